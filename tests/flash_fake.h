@@ -1,0 +1,71 @@
+/* flash_fake.h: a flash in memory that knows the rules of real ones and breaks on demand, for tests.
+ *
+ * RKM04_FLASH_BLOCKS blocks of RKM04_FLASH_BLOCK_SIZE bytes. An erased byte reads FF. Programming works on units of 8 bytes,
+ * each once after an erase. Whoever breaks a rule gets an error and is counted in `misuse`: a test asserts that it is 0.
+ *
+ *     flash_fake_init(&flash);
+ *     flash_fake_arm(&flash, 3, FLASH_CUT_TORN, seed);    // the third erase or program from now on
+ *     ...                                                 // fails, and so does everything after it
+ *     flash_fake_power_on(&flash);                        // what a unit finds after the power cut */
+#ifndef RKM04_TESTS_FLASH_FAKE_H
+#define RKM04_TESTS_FLASH_FAKE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <rkm04/limits.h>
+
+#define FLASH_FAKE_UNIT 8 /* bytes programmed together */
+
+/* What goes wrong at the armed operation. FAIL_*: it returns an error and the flash works on; CUT_*: the power goes, nothing
+ * works until flash_fake_power_on. */
+enum flash_fault {
+    FLASH_WELL,
+    FLASH_FAIL_NOTHING,  /* nothing happened */
+    FLASH_FAIL_TORN,     /* it happened in part, as with FLASH_CUT_BITS */
+    FLASH_FAIL_DONE,     /* it happened, and reports an error all the same */
+    FLASH_LIE,           /* it happened in part and reports success */
+    FLASH_CUT_BEFORE,    /* nothing happened */
+    FLASH_CUT_PREFIX,    /* only the first bytes were erased or programmed; how many follows from the seed */
+    FLASH_CUT_SUFFIX,    /* only the last ones */
+    FLASH_CUT_BITS,      /* some of the bits that had to change did, all over the range */
+    FLASH_CUT_GARBAGE,   /* every byte of the range is anything */
+    FLASH_CUT_AFTER,     /* all of it happened */
+    FLASH_FAULTS
+};
+
+struct flash_fake {
+    uint8_t data[RKM04_FLASH_BLOCKS][RKM04_FLASH_BLOCK_SIZE];
+    bool used[RKM04_FLASH_BLOCKS][RKM04_FLASH_BLOCK_SIZE / FLASH_FAKE_UNIT]; /* programmed since the last erase */
+    bool off;                            /* the power is cut */
+    unsigned erases[RKM04_FLASH_BLOCKS]; /* of each block, tried */
+    unsigned operations;                 /* erases and programs tried */
+    unsigned reads;                      /* reads tried */
+    unsigned misuse;                     /* rules broken by the caller */
+    unsigned fault_at;                   /* value of `operations` at which the fault strikes; 0 = never */
+    unsigned read_fault_at;              /* value of `reads` at which one read fails; 0 = never */
+    enum flash_fault fault;
+    uint32_t random;                     /* decides how far a torn operation went */
+};
+
+/* A new, erased flash under power. */
+void flash_fake_init(struct flash_fake *flash);
+
+/* Let the n-th (1..) erase or program from now on go wrong; counters begin anew. Same seed, same damage. */
+void flash_fake_arm(struct flash_fake *flash, unsigned n, enum flash_fault fault, uint32_t seed);
+
+/* Let the n-th (1..) read from now on fail. */
+void flash_fake_arm_read(struct flash_fake *flash, unsigned n);
+
+/* Power comes back; nothing is armed any more. The contents stay as they are. */
+void flash_fake_power_on(struct flash_fake *flash);
+
+/* Name of a fault for messages. */
+const char *flash_fault_name(enum flash_fault fault);
+
+/* The three port functions; `flash` is a struct flash_fake. 0 = well, 1 = failed. */
+int flash_fake_read(void *flash, unsigned block, unsigned offset, void *data, unsigned length);
+int flash_fake_erase(void *flash, unsigned block);
+int flash_fake_program(void *flash, unsigned block, unsigned offset, const void *data, unsigned length);
+
+#endif
