@@ -1,0 +1,98 @@
+# tools/setup.sh: what has to be installed. Sourced by tools/run and tools/test; needs nothing but bash.
+#
+#   setup_packages run|test    install the Debian packages that are missing, or say which ones are needed elsewhere
+
+# Needed to build and run the emulator and its client.
+run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev)
+# Needed on top of that by the tests.
+test_packages=(check libgmp-dev socat procps gcc-arm-none-eabi libnewlib-arm-none-eabi)
+
+say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
+
+# Is this Debian 12 or later?
+is_debian() {
+    local ID='' VERSION_ID=''
+    [[ -r /etc/os-release ]] && . /etc/os-release
+    [[ $ID == debian && ( -z $VERSION_ID || ${VERSION_ID%%.*} -ge 12 ) ]] && command -v dpkg-query apt-get >/dev/null
+}
+
+# Names of those packages given that are not installed.
+missing_packages() {
+    local installed package
+    installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null)
+    for package in "$@"; do
+        grep -qx "$package installed" <<<"$installed" || echo "$package"
+    done
+}
+
+# What cannot be found, whoever installed it: one line each.
+missing_tools() {
+    local tool
+    for tool in cc make cmake pkg-config; do
+        command -v "$tool" >/dev/null || echo "$tool"
+    done
+    for tool in libuv jansson $([[ $1 == test ]] && echo check gmp); do
+        pkg-config --exists "$tool" 2>/dev/null || echo "library $tool (pkg-config)"
+    done
+    if [[ $1 == test ]]; then
+        for tool in socat ps; do
+            command -v "$tool" >/dev/null || echo "$tool"
+        done
+    fi
+}
+
+# Go on if the tools are there all the same, otherwise give up.
+check_tools() {
+    local missing
+    missing=$(missing_tools "$1")
+    [[ -z $missing ]] && return
+    say "not found: ${missing//$'\n'/, }"
+    exit 1
+}
+
+install_packages() {
+    local as_root=()
+    if [[ $(id -u) != 0 ]]; then
+        if ! command -v sudo >/dev/null; then
+            say "missing: $*"
+            say "as root, do: apt-get install --no-install-recommends $*"
+            return 1
+        fi
+        as_root=(sudo)
+    fi
+    say "installing $*"
+    # The list of packages first: on a fresh machine it is empty. What apt tells goes to stderr, stdout is for results.
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q update </dev/null >&2 &&
+        "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install "$@" </dev/null >&2
+}
+
+setup_packages() {
+    local packages=("${run_packages[@]}") missing
+    [[ $1 == test ]] && packages+=("${test_packages[@]}")
+    if ! is_debian; then
+        say "this is not Debian 12 or later; needed are what these Debian packages hold: ${packages[*]}"
+        check_tools "$1"
+        return
+    fi
+    mapfile -t missing < <(missing_packages "${packages[@]}")
+    ((${#missing[@]} == 0)) && return
+    install_packages "${missing[@]}" || {
+        say "could not install ${missing[*]}"
+        check_tools "$1"
+    }
+}
+
+# Build a preset; the compiler's talk is shown if it fails.
+build_preset() {
+    local log status
+    log=$(mktemp) || exit 1
+    say "building ($1)"
+    { cmake --preset "$1" && cmake --build --preset "$1" -j "$(nproc)"; } >"$log" 2>&1 </dev/null
+    status=$?
+    if ((status != 0)); then
+        cat "$log" >&2
+        say "the build failed"
+    fi
+    rm -f "$log"
+    return $status
+}
