@@ -32,8 +32,10 @@ void flash_fake_power_on(struct flash_fake *flash)
 
 const char *flash_fault_name(enum flash_fault fault)
 {
-    static const char *const name[FLASH_FAULTS] = {"well",       "fail-nothing", "fail-torn", "fail-done",   "lie",      "cut-before",
-                                                   "cut-prefix", "cut-suffix",   "cut-bits",  "cut-garbage", "cut-after"};
+    static const char *const name[FLASH_FAULTS] = {
+        "well",       "fail-nothing", "fail-torn", "fail-done",   "lie",      "cut-before",
+        "cut-prefix", "cut-suffix",   "cut-bits",  "cut-garbage", "cut-after",
+    };
     return (unsigned)fault < FLASH_FAULTS ? name[fault] : "?";
 }
 

@@ -4,7 +4,7 @@
  * each once after an erase. Whoever breaks a rule gets an error and is counted in `misuse`: a test asserts that it is 0.
  *
  *     flash_fake_init(&flash);
- *     flash_fake_arm(&flash, 3, FLASH_CUT_TORN, seed);    // the third erase or program from now on
+ *     flash_fake_arm(&flash, 3, FLASH_CUT_BITS, seed);    // the third erase or program from now on
  *     ...                                                 // fails, and so does everything after it
  *     flash_fake_power_on(&flash);                        // what a unit finds after the power cut */
 #ifndef RKM04_TESTS_FLASH_FAKE_H

@@ -48,17 +48,20 @@ static void *flash_of(void *context)
 
 static int on_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
 {
-    return flash_fake_read(flash_of(context), block, offset, data, length);
+    void *flash = flash_of(context);
+    return flash ? flash_fake_read(flash, block, offset, data, length) : 1;
 }
 
 static int on_erase(void *context, unsigned block)
 {
-    return flash_fake_erase(flash_of(context), block);
+    void *flash = flash_of(context);
+    return flash ? flash_fake_erase(flash, block) : 1;
 }
 
 static int on_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
 {
-    return flash_fake_program(flash_of(context), block, offset, data, length);
+    void *flash = flash_of(context);
+    return flash ? flash_fake_program(flash, block, offset, data, length) : 1;
 }
 
 const struct rkm04_port recorder_port = {
@@ -111,7 +114,8 @@ uint64_t recorder_step(const struct recorder *recorder, unsigned motor, size_t n
     return RKM04_NEVER;
 }
 
-const struct record *recorder_event(const struct recorder *recorder, unsigned motor, enum rkm04_event what, int64_t value, size_t n)
+const struct record *recorder_event(const struct recorder *recorder, unsigned motor, enum rkm04_event what, int64_t value,
+                                    size_t n)
 {
     for (size_t i = 0; i < recorder->count; i++) {
         const struct record *record = &recorder->list[i];
