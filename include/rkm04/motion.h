@@ -34,11 +34,9 @@ struct rkm04_instant {
     uint64_t high, low;
 };
 
-/* A place in a motion: step + (high * 2^32 + low) / 2^96. */
+/* A place in a motion, 32.96 fixed point: (high * 2^64 + low) / 2^96 steps; the upper half of `high` counts whole steps. */
 struct rkm04_place {
-    uint64_t high;
-    uint32_t low;
-    uint32_t step;
+    uint64_t high, low;
 };
 
 /* From this place on the slope holds until the next break point. */
@@ -58,17 +56,16 @@ struct rkm04_profile {
 
 /* The pulse generator of one motor. */
 struct rkm04_ramp {
-    uint64_t next;           /* tick of the next pulse, or of the change to the next leg; RKM04_NEVER: no motion */
-    uint64_t at;             /* tick at which y and w stand; == next while pulses are left in the leg */
-    struct rkm04_fixed y;    /* 2e12 * (position - number of the next pulse) */
-    struct rkm04_fixed w;    /* 2e6 * speed */
-    struct rkm04_instant end; /* when the present leg ends */
-    uint32_t left;           /* pulses left in the present leg */
-    int32_t interval;        /* ticks between the last two pulses */
-    int32_t change;          /* by how much the interval changed */
-    int32_t slope;           /* of the present leg */
-    bool last;               /* the present leg is the last one */
-    bool exact;              /* no irrational number has come in so far (R5) */
+    uint64_t next;            /* tick of the next pulse, or of the change to the next leg; RKM04_NEVER: no motion */
+    uint64_t at;              /* tick at which y and w stand; == next while pulses are left in the leg */
+    struct rkm04_fixed y;     /* 2e12 * (position - number of the next pulse) */
+    struct rkm04_fixed w;     /* 2e6 * speed */
+    struct rkm04_instant end; /* when the present leg ends; RKM04_NEVER: it does not */
+    uint32_t left;            /* pulses left in the present leg */
+    int32_t interval;         /* ticks between the last two pulses */
+    int32_t change;           /* by how much the interval changed */
+    int32_t slope;            /* of the present leg */
+    bool exact;               /* no irrational number has come in so far (R5) */
 };
 
 enum rkm04_motion_kind {
@@ -85,7 +82,7 @@ struct rkm04_motion {
     struct rkm04_segment segment[RKM04_SEGMENTS_MAX];
     uint32_t done;       /* pulses sent so far, modulo 2^32 (P9) */
     uint32_t total;      /* of a STEPS motion */
-    uint32_t mark;       /* done at which the outputs of T51-58 are set; 0 = no more (C12) */
+    uint32_t mark;       /* pulse at which the outputs of T51-58 are set; 0 = none (C12) */
     uint16_t start_speed; /* S when the motion began */
     uint8_t segments;
     uint8_t kind;        /* enum rkm04_motion_kind */

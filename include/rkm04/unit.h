@@ -114,7 +114,12 @@ enum rkm04_state {
 };
 
 /* What the end of a motion leads to. */
-enum rkm04_after { RKM04_AFTER_GO_ON, RKM04_AFTER_HOLD, RKM04_AFTER_END };
+enum rkm04_after {
+    RKM04_AFTER_GO_ON,
+    RKM04_AFTER_HOLD_REST, /* K: hold with the rest of the motion to do */
+    RKM04_AFTER_HOLD_NEXT, /* K on the ramp of M or N: hold before the next command */
+    RKM04_AFTER_END        /* X */
+};
 
 struct rkm04_motor {
     struct rkm04_program program;
@@ -153,7 +158,7 @@ struct rkm04_motor {
     uint8_t after;       /* enum rkm04_after */
     uint8_t fault;       /* enum rkm04_fault */
     uint8_t led;         /* enum rkm04_led */
-    bool resume;         /* C75 came during the ramp of K */
+    bool resume;         /* C75 came: go on as soon as the motor may */
     bool pin_forward;    /* the direction output */
     uint8_t slot;        /* enum rkm04_slot: what power-up found in flash */
 
