@@ -1,0 +1,62 @@
+/* rkm04: the virtual RKM04. This file chooses the sub-command. */
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <rkm04/limits.h>
+
+#include "subcommands.h"
+
+const char *argp_program_version = "rkm04 " RKM04_VERSION;
+
+static const char help[] =
+    "Usage: rkm04 serve [OPTION...]\n"
+    "  or:  rkm04 exec [OPTION...] [M=]FILE...\n"
+    "A virtual RKM04, the unit for four stepper motors on RS485.\n"
+    "\n"
+    "  serve      one unit on a pseudo terminal or serial device, in real time\n"
+    "  exec       run programs in virtual time, as fast as the machine can\n"
+    "\n"
+    "      --help      give this help; `rkm04 serve --help' tells more about serve\n"
+    "      --version   print the program's version\n"
+    "\n"
+    "Examples:\n"
+    "  rkm04 serve --node 3 --flash unit3.flash\n"
+    "  rkm04 exec --trace pulses.csv program.rks\n"
+    "\n"
+    "Exit status: 0 well, 1 failure at run time, 2 usage, 124 --until of exec reached with a motor still running.\n";
+
+static const struct {
+    const char *name, *full_name;
+    int (*run)(int argc, char **argv);
+} subcommands[] = {
+    {"serve", "rkm04 serve", serve_main},
+    {"exec", "rkm04 exec", exec_main},
+};
+
+int main(int argc, char **argv)
+{
+    argp_err_exit_status = STATUS_USAGE;
+    if (argc < 2) {
+        fputs("rkm04: no sub-command: expected `rkm04 serve' or `rkm04 exec'; `rkm04 --help' tells more\n", stderr);
+        return STATUS_USAGE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-?") == 0 || strcmp(argv[1], "help") == 0) {
+        fputs(help, stdout);
+        return STATUS_WELL;
+    }
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+        puts(argp_program_version);
+        return STATUS_WELL;
+    }
+    for (size_t i = 0; i < sizeof subcommands / sizeof subcommands[0]; i++) {
+        if (strcmp(argv[1], subcommands[i].name) == 0) {
+            char name[32];
+            snprintf(name, sizeof name, "%s", subcommands[i].full_name);
+            argv[1] = name;
+            return subcommands[i].run(argc - 1, argv + 1);
+        }
+    }
+    fprintf(stderr, "rkm04: unknown sub-command `%s': expected serve or exec; `rkm04 --help' tells more\n", argv[1]);
+    return STATUS_USAGE;
+}
