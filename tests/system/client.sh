@@ -1,0 +1,93 @@
+#!/bin/bash
+# rkmctl against a real unit: long programs, refusals, silence, broadcast, machine-readable answers.
+
+. "$(dirname "$0")/lib.sh"
+
+test_no_answer_in_time_is_exit_3_with_advice() {
+    serve bus --node 2
+    exits 3 ctl bus -n 5 --timeout 200 version
+    holds "$complained" 5 "the message names the node"
+    holds "${complained,,}" framing "the message says what to check"
+}
+
+test_a_device_that_cannot_be_opened_is_exit_1() {
+    exits 1 "$RKMCTL" -p "$folder/nothing" version
+    holds "$complained" "$folder/nothing" "the message names it"
+}
+
+test_P1_a_refusal_is_exit_1_and_names_the_character() {
+    serve bus --baud 0
+    exits 1 ctl bus set 'F1000 R q'
+    holds "$complained" q "the character"
+    exits 0 ctl bus command
+    [[ $said != *F1000* ]] || fail "something of a refused text was stored: $said"
+}
+
+test_a_refusal_in_a_file_is_shown_with_line_and_column() {
+    serve bus --baud 0
+    printf 'S100 A2000\n{ two }\nF1000 V99999 R\n' >"$folder/program.rks"
+    exits 1 ctl bus send "$folder/program.rks"
+    holds "$complained" "$folder/program.rks:3:7:" "place of the error"
+}
+
+test_a_program_longer_than_a_message_is_cut_and_runs_once_it_is_whole() {
+    local i
+    serve bus --baud 0 --clock max
+    {
+        echo '\ C100 { a comment longer than one message:'
+        for i in {1..400}; do echo "  line $i of a comment that goes on and on"; done
+        echo '}'
+        for i in {1..300}; do echo "F$i R { step $i }"; done
+    } >"$folder/long.rks"
+    (($(wc -c <"$folder/long.rks") > 9216)) || fail "the program is not long"
+    exits 0 ctl bus -m 1 send "$folder/long.rks"
+    soon "all 300 motions are done" position_is bus 1 45150
+}
+
+test_a_program_that_memory_cannot_hold_is_refused() {
+    local i
+    serve bus --baud 0
+    for i in {1..2000}; do echo "F16000000 {$i}"; done >"$folder/long.rks"
+    exits 1 ctl bus send "$folder/long.rks"
+    holds "$complained" 69 "the message says how many commands fit"
+}
+
+test_typographic_apostrophes_are_calls() {
+    serve bus --baud 0 --clock max
+    exits 0 ctl bus set 'F250 ´3 J4 @3 R . @4'
+    soon "the subroutine has run" position_is bus 1 250
+    exits 0 ctl bus command
+    holds "$said" "'3" "the canonical call"
+}
+
+test_L3_a_broadcast_is_obeyed_and_not_waited_for() {
+    serve bus --node 9 --baud 0 --clock max
+    exits 0 ctl bus -n 0 -m 0 set 'F77 R'
+    soon "the broadcast was obeyed" position_of_node_9
+}
+
+position_of_node_9() { [[ $(ctl bus -n 9 -m 4 position | tr -dc '0-9-') == 77 ]]; }
+
+test_raw_shows_the_bytes_of_the_answer() {
+    serve bus
+    exits 0 ctl bus raw 08
+    same "ff080000" "$(tr -d ' \n' <<<"${said,,}")" "answer to message 8"
+}
+
+test_every_answer_can_be_had_as_json() {
+    serve bus --baud 0
+    exits 0 ctl bus --json version
+    holds "$said" '"01.02,06.03.2009"' version
+    exits 0 ctl bus --json -m 2 position
+    holds "$said" '"position"' position
+    exits 0 ctl bus --json -m 2 set 'W16000000'
+    holds "$said" '"flag"' set
+    exits 0 ctl bus --json -m 2 command
+    holds "$said" '"W16000000"' command
+    exits 0 ctl bus --json -m 2 progress
+    holds "$said" '"index"' progress
+    exits 0 ctl bus --json -m 2 table
+    holds "$said" '"points"' table
+}
+
+run_cases "$@"

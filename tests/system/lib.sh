@@ -1,0 +1,148 @@
+# lib.sh: what the system tests share. Real processes, one temporary folder a case, no fixed ports or paths, and no waiting
+# but for a condition with a time limit.
+#
+# A test file sources this, defines functions test_CLAUSE_what_is_so and ends with: run_cases "$@"
+# RKM04 and RKMCTL name the programs; ctest sets them. Each case runs in a shell of its own, which starts with the folder
+# $folder and ends with everything it started.
+
+set -u
+: "${RKM04:=rkm04}" "${RKMCTL:=rkmctl}"
+limit=30 # seconds until a condition counts as never coming true
+
+# What went wrong, with what the programs said, and out.
+fail() {
+    local file
+    printf '  failed: %s\n' "$*"
+    for file in "$folder"/*.err; do
+        [[ -s $file ]] && printf '  %s said:\n' "${file##*/}" && sed 's/^/    /' "$file"
+    done
+    exit 1
+}
+
+# same WANTED GOT WHAT: both texts are equal.
+same() {
+    [[ $1 == "$2" ]] || fail "$3: expected '$1', got '$2'"
+}
+
+# holds TEXT PART WHAT: the text has the part in it.
+holds() {
+    [[ $1 == *"$2"* ]] || fail "$3: expected '$2' in '$1'"
+}
+
+# exits STATUS COMMAND...: the command ends with this status; its output is in $said and its errors in $complained.
+exits() {
+    local wanted=$1 status
+    shift
+    said=$("$@" 2>"$folder/complained" </dev/null)
+    status=$?
+    complained=$(<"$folder/complained")
+    [[ $status == "$wanted" ]] || fail "'$*': expected exit status $wanted, got $status; it said '$said' '$complained'"
+}
+
+# soon WHAT COMMAND...: the command succeeds before the time limit.
+soon() {
+    local what=$1 end=$((SECONDS + limit))
+    shift
+    until "$@"; do
+        ((SECONDS < end)) || fail "not within $limit s: $what"
+        sleep 0.02
+    done
+}
+
+# start NAME COMMAND...: begin a process; $started is its id, its output goes to $folder/NAME.out and NAME.err.
+start() {
+    local name=$1
+    shift
+    "$@" >"$folder/$name.out" 2>"$folder/$name.err" </dev/null &
+    started=$!
+    processes+=("$started")
+}
+
+# ended PID: the process is no more (or waits to be asked for its status).
+ended() {
+    local state
+    state=$(ps -o stat= -p "$1")
+    [[ -z $state || $state == Z* ]]
+}
+
+# status_of PID: wait for a process started here to end; its exit status is in $status.
+status_of() {
+    soon "process $1 ends" ended "$1"
+    wait "$1"
+    status=$?
+}
+
+# serve NAME OPTIONS...: start a unit on $folder/NAME and wait until it is ready; $started is its id.
+serve() {
+    local name=$1
+    shift
+    start "$name" "$RKM04" serve --link "$folder/$name" "$@"
+    soon "unit $name is ready" ready "$name"
+}
+
+ready() {
+    grep -q '^READY ' "$folder/$1.out" && return
+    ended "$started" && fail "unit $1 ended before it was ready"
+    return 1
+}
+
+# ctl NAME ARGUMENTS...: the client on the unit's link.
+ctl() {
+    "$RKMCTL" -p "$folder/$1" "${@:2}"
+}
+
+# position_is NAME MOTOR STEPS
+position_is() {
+    [[ $(ctl "$1" -m "$2" position 2>>"$folder/ctl.err" | tr -dc '0-9-') == "$3" ]]
+}
+
+# say_bytes FD HEX: bytes as they are.
+say_bytes() {
+    local hex=${2// /}
+    # shellcheck disable=SC2059
+    printf "$(sed 's/../\\x&/g' <<<"$hex")" >&"$1"
+}
+
+# hear_bytes FD COUNT: so many bytes as hex, or fewer if they do not come in time.
+hear_bytes() {
+    timeout "$limit" head -c "$2" <&"$1" | od -An -v -tx1 | tr -d ' \n'
+}
+
+# dialogue FD REQUEST ANSWER WHAT: these bytes are answered by those; both in hex, blanks do not count.
+dialogue() {
+    local wanted=${3// /}
+    say_bytes "$1" "$2"
+    same "$wanted" "$(hear_bytes "$1" $((${#wanted} / 2)))" "$4"
+}
+
+leave() {
+    local process
+    for process in ${processes[@]+"${processes[@]}"}; do
+        kill "$process" 2>/dev/null
+    done
+    for process in ${processes[@]+"${processes[@]}"}; do
+        wait "$process" 2>/dev/null
+    done
+    rm -rf "$folder"
+}
+
+run_case() {
+    processes=()
+    folder=$(mktemp -d) || exit 1
+    trap leave EXIT
+    "$1"
+}
+
+# run_cases [NAME]: every test_ function of the file, or one.
+run_cases() {
+    local name failed=0
+    for name in ${1-$(compgen -A function test_)}; do
+        if (run_case "$name"); then
+            echo "ok $name"
+        else
+            echo "FAILED $name; alone: RKM04=$RKM04 RKMCTL=$RKMCTL $0 $name"
+            failed=1
+        fi
+    done
+    exit $failed
+}

@@ -1,0 +1,73 @@
+#!/bin/bash
+# Wrong options: exit status 2 and a message that names what was expected; --help and --version: 0, on stdout.
+
+. "$(dirname "$0")/lib.sh"
+
+# refused PART COMMAND...: usage error whose message has the part in it and whose output is empty.
+refused() {
+    exits 2 "${@:2}"
+    holds "$complained" "$1" "'${*:2}' says what is wrong"
+    same "" "$said" "stdout of '${*:2}'"
+}
+
+test_help_and_version_go_to_stdout() {
+    local command
+    for command in "$RKM04 --help" "$RKM04 serve --help" "$RKM04 exec --help" "$RKMCTL --help"; do
+        # shellcheck disable=SC2086
+        exits 0 $command
+        holds "${said,,}" usage "'$command'"
+        same "" "$complained" "stderr of '$command'"
+    done
+    for command in "$RKM04 --version" "$RKMCTL --version"; do
+        # shellcheck disable=SC2086
+        exits 0 $command
+        holds "$said" 0.1.0 "'$command'"
+    done
+}
+
+test_no_or_an_unknown_subcommand_is_a_usage_error() {
+    exits 2 "$RKM04"
+    refused frobnicate "$RKM04" frobnicate
+    exits 2 "$RKMCTL"
+    refused frobnicate "$RKMCTL" -p "$folder/bus" frobnicate
+}
+
+test_values_out_of_range_are_usage_errors_of_serve() {
+    local link=(--link "$folder/bus")
+    refused 16 "$RKM04" serve "${link[@]}" --node 0
+    refused 16 "$RKM04" serve "${link[@]}" --node 17
+    refused 16 "$RKM04" serve "${link[@]}" --node one
+    refused 16 "$RKM04" serve "${link[@]}" --node 1x
+    refused 16 "$RKM04" serve "${link[@]}" --node ''
+    refused hdlc "$RKM04" serve "${link[@]}" --framing morse
+    refused 19200 "$RKM04" serve "${link[@]}" --baud 9600
+    refused max "$RKM04" serve "${link[@]}" --clock slow
+    refused max "$RKM04" serve "${link[@]}" --clock x0
+    refused max "$RKM04" serve "${link[@]}" --clock x-1
+    refused 2000 "$RKM04" serve "${link[@]}" --speed-change-latency 2001
+    refused 2000 "$RKM04" serve "${link[@]}" --speed-change-latency -1
+    refused 255 "$RKM04" serve "${link[@]}" --version-text "$(printf 'x%.0s' {1..256})"
+    exits 2 "$RKM04" serve --no-such-option
+    exits 2 "$RKM04" serve --node
+    exits 2 "$RKM04" serve an-argument-too-many
+    exits 2 "$RKM04" serve --link "$folder/bus" --port "$folder/device"
+    [[ ! -L $folder/bus ]] || fail "a refused command line has left a link"
+}
+
+test_values_out_of_range_are_usage_errors_of_the_client() {
+    local port=(-p "$folder/bus")
+    refused 16 "$RKMCTL" "${port[@]}" -n 17 version
+    refused 16 "$RKMCTL" "${port[@]}" -n -1 version
+    refused 4 "$RKMCTL" "${port[@]}" -m 5 position
+    refused hdlc "$RKMCTL" "${port[@]}" --framing morse version
+    exits 2 "$RKMCTL" "${port[@]}" --timeout soon version
+    exits 2 "$RKMCTL" version
+    exits 2 "$RKMCTL" "${port[@]}" set
+    exits 2 "$RKMCTL" "${port[@]}" raw 0g
+    exits 2 "$RKMCTL" "${port[@]}" raw 012
+    exits 2 "$RKMCTL" "${port[@]}" version of what
+    exits 2 "$RKMCTL" -p tcp:localhost:notaport version
+    exits 2 "$RKMCTL" -p tcp:localhost version
+}
+
+run_cases "$@"
