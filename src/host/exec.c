@@ -1,0 +1,318 @@
+/* `rkm04 exec`: programs in virtual time. Its options, texts and exit status; the run itself is exec_run.c. */
+#include <argp.h>
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "diagnose.h"
+#include "exec_program.h"
+#include "exec_report.h"
+#include "exec_run.h"
+#include "stimulus.h"
+#include "subcommands.h"
+#include "time_value.h"
+#include "trace.h"
+
+struct options {
+    struct argument {
+        char motor;
+        const char *path;
+    } *argument; /* in the order of the command line */
+    size_t arguments;
+    bool stdin_taken;
+    const char *stimulus, *trace, *until_text;
+    uint64_t until;
+    bool json;
+};
+
+static const struct argp_option option_table[] = {
+    {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
+    {"stimulus", 's', "FILE", 0, "What comes from outside while the programs run", 0},
+    {"trace", 't', "FILE", 0, "Write all that happens as CSV; - is standard output", 0},
+    {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
+    {0},
+};
+
+static const char doc[] =
+    "Run programs of the RKM04 in virtual time, as fast as the machine can, until every motor is idle, stopped, or waiting "
+    "for what can never come. M is the motor, 1 to 4 or 0 for all; without it 1. FILE is a program text (.rks), - standard "
+    "input. Several files for one motor are sent to it one after the other."
+    "\v"
+    "Lines of a stimulus file (times as in --until, from the start of the run):\n"
+    "  TIME di NN 0|1        input 01 to 08\n"
+    "  TIME set M TEXT       program text for motor M, to the end of the line\n"
+    "  TIME message HEX      a message of the protocol; the answer is shown\n"
+    "  # comment\n"
+    "\n"
+    "A trace has the columns t_us,source,event,value:\n"
+    "  m1,step,POSITION   m1,dir,1|-1        m1,motion,begin|end\n"
+    "  m1,led,off|on|blink                   m1,command,INDEX (0: idle)\n"
+    "  unit,di|do|var,MASK\n"
+    "\n"
+    "Examples:\n"
+    "  rkm04 exec drill.rks\n"
+    "  rkm04 exec 1=x.rks 2=y.rks --until 10s --trace run.csv\n"
+    "  echo 'F1000 R' | rkm04 exec --json -\n"
+    "\n"
+    "Exit status: 0 well; 1 a text was refused, a motor ended in a fault, a file could not be read or written, or the run was "
+    "interrupted; 2 wrong usage; 124 --until was reached with a motor still running.";
+
+/* ---- Command line ------------------------------------------------------------------------------------------------- */
+
+static void take_path(struct argp_state *state, struct options *options, const char *path)
+{
+    if (strcmp(path, "-") != 0)
+        return;
+    if (options->stdin_taken)
+        argp_error(state, "standard input (-) can be read only once");
+    options->stdin_taken = true;
+}
+
+static void take_until(struct argp_state *state, struct options *options, const char *text)
+{
+    size_t wrong;
+    const char *form = time_value_read(text, strlen(text), &options->until, &wrong);
+    if (form != NULL)
+        argp_error(state, "--until: expected %s, found '%s'", form, text);
+    options->until_text = text;
+}
+
+static void take_argument(struct argp_state *state, struct options *options, const char *text)
+{
+    struct argument *argument = &options->argument[options->arguments++];
+    if (!exec_program_argument(text, &argument->motor, &argument->path))
+        argp_error(state, "%s: expected a motor 1 to 4, or 0 for all, before '='", text);
+    take_path(state, options, argument->path);
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case 'u':
+        take_until(state, options, text);
+        return 0;
+    case 's':
+        take_path(state, options, text);
+        options->stimulus = text;
+        return 0;
+    case 't':
+        options->trace = text;
+        return 0;
+    case 'j':
+        options->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        take_argument(state, options, text);
+        return 0;
+    case ARGP_KEY_END:
+        if (options->arguments == 0 && options->stimulus == NULL)
+            argp_error(state, "no program given");
+        if (options->json && options->trace != NULL && strcmp(options->trace, "-") == 0)
+            argp_error(state, "--json and --trace - both want standard output");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static void parse_options(int argc, char **argv, struct options *options)
+{
+    static const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, NULL, NULL, NULL};
+    argp_err_exit_status = STATUS_USAGE;
+    argp_parse(&argp, argc, argv, 0, NULL, options);
+}
+
+/* ---- Texts -------------------------------------------------------------------------------------------------------- */
+
+struct inputs {
+    struct exec_program *program;
+    size_t programs;
+    struct exec_text stimulus_text;
+    struct stimuli stimuli;
+};
+
+static bool read_programs(struct inputs *inputs, const struct options *options)
+{
+    bool well = true;
+    for (size_t i = 0; i < options->arguments; i++) {
+        struct exec_program *program = &inputs->program[inputs->programs++];
+        program->motor = options->argument[i].motor;
+        if (!exec_text_read(&program->text, options->argument[i].path))
+            well = false;
+        else if (diagnose_text(program->text.name, program->text.text, program->text.length, stderr) > 0)
+            well = false;
+    }
+    return well;
+}
+
+/* Report what is wrong with a text that stands in the middle of a file, by its place in the file. */
+static bool check_set(const struct stimulus *s, const char *name)
+{
+    size_t before = s->line - 1 + s->column - 1;
+    char *padded = malloc(before + s->length + 1);
+    if (padded == NULL)
+        return false;
+    memset(padded, '\n', s->line - 1);
+    memset(padded + s->line - 1, ' ', s->column - 1);
+    memcpy(padded + before, s->data, s->length);
+    int errors = diagnose_text(name, padded, before + s->length, stderr);
+    free(padded);
+    return errors == 0;
+}
+
+static bool is_refused(const struct stimulus *s)
+{
+    struct rkm04_reader reader;
+    struct rkm04_command command;
+    enum rkm04_read found;
+    rkm04_read_begin(&reader, s->data, s->length);
+    do
+        found = rkm04_read(&reader, &command);
+    while (found == RKM04_READ_COMMAND);
+    return found != RKM04_READ_END;
+}
+
+static bool read_stimuli(struct inputs *inputs, const char *path)
+{
+    struct exec_text *text = &inputs->stimulus_text;
+    if (!exec_text_read(text, path))
+        return false;
+    int errors = stimuli_read(&inputs->stimuli, text->name, text->text, text->length, stderr);
+    if (errors < 0)
+        fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
+    bool well = errors == 0;
+    for (size_t i = 0; i < inputs->stimuli.count; i++) {
+        const struct stimulus *s = &inputs->stimuli.list[i];
+        if (s->kind == STIMULUS_SET && is_refused(s) && !check_set(s, text->name))
+            well = false;
+    }
+    return well;
+}
+
+static void free_inputs(struct inputs *inputs)
+{
+    for (size_t i = 0; i < inputs->programs; i++)
+        exec_text_free(&inputs->program[i].text);
+    free(inputs->program);
+    exec_text_free(&inputs->stimulus_text);
+    stimuli_free(&inputs->stimuli);
+}
+
+/* ---- Run ---------------------------------------------------------------------------------------------------------- */
+
+static void store_programs(struct exec_run *run, const struct inputs *inputs)
+{
+    for (size_t i = 0; i < inputs->programs; i++) {
+        const struct exec_program *program = &inputs->program[i];
+        if (exec_run_set(run, program->motor, program->text.text, program->text.length) == 3)
+            fprintf(stderr, "%s: warning: more commands than the %d a motor has room for\n", program->text.name,
+                    RKM04_PROGRAM_MAX);
+    }
+}
+
+/* A second signal ends the process at once. */
+static void catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = exec_run_interrupt, .sa_flags = (int)SA_RESETHAND};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    signal(SIGPIPE, SIG_IGN); /* a closed pipe is a failed write, which is reported */
+}
+
+static bool is_running(const struct rkm04_unit *unit)
+{
+    bool running = false;
+    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+        struct rkm04_motor_state state;
+        rkm04_motor_state(unit, motor, &state);
+        running = running || state.state == RKM04_READY || state.state == RKM04_MOVING || state.state == RKM04_DWELL;
+    }
+    return running;
+}
+
+static int exit_status(const struct exec_run *run, const struct options *options, enum exec_end end, bool written)
+{
+    bool fault = report_faults(&run->unit);
+    if (end == EXEC_UNTIL && is_running(&run->unit)) {
+        fprintf(stderr, "rkm04 exec: --until %s reached with a motor still running\n", options->until_text);
+        return written ? STATUS_UNTIL : STATUS_FAILURE;
+    }
+    if (end == EXEC_INTERRUPTED)
+        fprintf(stderr, "rkm04 exec: interrupted\n");
+    return end == EXEC_INTERRUPTED || fault || !written ? STATUS_FAILURE : STATUS_WELL;
+}
+
+/* Run with the trace open on `trace_file`, or without. Returns the exit status. */
+static int run_programs(const struct options *options, const struct inputs *inputs, FILE *trace_file)
+{
+    static struct exec_run run;
+    static struct trace trace;
+    struct report report;
+
+    report_begin(&report, options->json);
+    run.stimuli = &inputs->stimuli;
+    run.stimulus_name = inputs->stimulus_text.name;
+    run.trace = trace_file != NULL ? &trace : NULL;
+    run.until = options->until;
+    run.progress = isatty(STDERR_FILENO) != 0;
+    run.answered = report_answer;
+    run.context = &report;
+    if (trace_file != NULL)
+        trace_begin(&trace, trace_file);
+    catch_signals();
+    exec_run_begin(&run);
+    store_programs(&run, inputs);
+    enum exec_end end = exec_run(&run);
+
+    int wrong = trace_file != NULL ? trace_finish(&trace) : 0;
+    if (wrong != 0)
+        fprintf(stderr, "rkm04 exec: cannot write the trace %s: %s\n", options->trace, strerror(wrong));
+    bool written = report_end(&report, &run, end, trace_file == stdout ? stderr : stdout);
+    return exit_status(&run, options, end, written && wrong == 0);
+}
+
+static int run_traced(const struct options *options, const struct inputs *inputs)
+{
+    if (options->trace == NULL)
+        return run_programs(options, inputs, NULL);
+    if (strcmp(options->trace, "-") == 0)
+        return run_programs(options, inputs, stdout);
+    FILE *file = fopen(options->trace, "w");
+    if (file == NULL) {
+        fprintf(stderr, "rkm04 exec: cannot write the trace %s: %s\n", options->trace, strerror(errno));
+        return STATUS_FAILURE;
+    }
+    int status = run_programs(options, inputs, file);
+    if (fclose(file) != 0 && status == STATUS_WELL) {
+        fprintf(stderr, "rkm04 exec: cannot write the trace %s: %s\n", options->trace, strerror(errno));
+        status = STATUS_FAILURE;
+    }
+    return status;
+}
+
+int exec_main(int argc, char **argv)
+{
+    struct options options = {.until = RKM04_NEVER};
+    struct inputs inputs = {0};
+    int status = STATUS_FAILURE;
+
+    options.argument = calloc((size_t)argc, sizeof options.argument[0]);
+    inputs.program = calloc((size_t)argc, sizeof inputs.program[0]);
+    if (options.argument == NULL || inputs.program == NULL) {
+        fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
+    } else {
+        parse_options(argc, argv, &options);
+        bool well = read_programs(&inputs, &options);
+        if (options.stimulus != NULL && !read_stimuli(&inputs, options.stimulus))
+            well = false;
+        if (well)
+            status = run_traced(&options, &inputs);
+    }
+    free_inputs(&inputs);
+    free(options.argument);
+    return status;
+}

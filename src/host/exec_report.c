@@ -1,0 +1,145 @@
+#include "exec_report.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "state_json.h"
+
+static const char *end_name(enum exec_end end)
+{
+    static const char *const names[] = {
+        [EXEC_DONE] = "done",
+        [EXEC_UNTIL] = "until",
+        [EXEC_INTERRUPTED] = "interrupted",
+        [EXEC_NO_TRACE] = "no_trace",
+    };
+    return names[end];
+}
+
+void report_begin(struct report *report, bool json)
+{
+    report->answers = json ? json_array() : NULL;
+}
+
+/* The bytes in hexadecimal. Returns a string to be freed, or NULL if memory is short. */
+static char *hex_text(const uint8_t *bytes, size_t length)
+{
+    static const char digits[] = "0123456789ABCDEF";
+    char *text = malloc(2 * length + 1);
+    if (text == NULL)
+        return NULL;
+    for (size_t i = 0; i < length; i++) {
+        text[2 * i] = digits[bytes[i] >> 4];
+        text[2 * i + 1] = digits[bytes[i] & 15];
+    }
+    text[2 * length] = '\0';
+    return text;
+}
+
+void report_answer(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length)
+{
+    struct report *report = context;
+    char *sent = hex_text(stimulus->data, stimulus->length);
+    char *received = length > 0 ? hex_text(answer, length) : NULL;
+    if (report->answers != NULL)
+        json_array_append_new(report->answers, json_pack("{s:I, s:s?, s:s?}", "t_us", (json_int_t)tick, "message", sent,
+                                                         "answer", received));
+    else
+        fprintf(stderr, "%" PRIu64 " us: message %s, answer %s\n", tick, sent != NULL ? sent : "?",
+                received != NULL ? received : "none");
+    free(sent);
+    free(received);
+}
+
+/* ---- For people --------------------------------------------------------------------------------------------------- */
+
+/* The numbers of the set bits, two digits each, "01 05". */
+static void print_bits(FILE *out, const char *name, unsigned mask, unsigned first)
+{
+    fprintf(out, "%s", name);
+    if (mask == 0)
+        fputs(" none", out);
+    for (unsigned bit = 0; mask >> bit != 0; bit++) {
+        if (mask >> bit & 1)
+            fprintf(out, " %02u", first + bit);
+    }
+}
+
+static void print_table(FILE *out, const struct exec_run *run, enum exec_end end)
+{
+    static const char *const ends[] = {
+        [EXEC_DONE] = "nothing more to do",
+        [EXEC_UNTIL] = "--until reached",
+        [EXEC_INTERRUPTED] = "interrupted",
+        [EXEC_NO_TRACE] = "stopped",
+    };
+    fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / RKM04_TICKS_PER_SECOND,
+            run->reached % RKM04_TICKS_PER_SECOND, ends[end]);
+    fprintf(out, "motor     position  state   command  led    fault\n");
+    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+        struct rkm04_motor_state state;
+        rkm04_motor_state(&run->unit, motor, &state);
+        fprintf(out, "%-5u  %11" PRId32 "  %-6s  %7u  %-5s  %s\n", motor, state.position, rkm04_state_name(state.state),
+                (unsigned)state.index, rkm04_led_name(state.led),
+                state.fault == RKM04_FAULT_NONE ? "-" : rkm04_fault_name(state.fault));
+    }
+    print_bits(out, "at 1: inputs", rkm04_inputs(&run->unit), 1);
+    print_bits(out, "; outputs", rkm04_outputs(&run->unit), 1);
+    print_bits(out, "; variables", rkm04_variables(&run->unit), RKM04_FIRST_VARIABLE);
+    fputc('\n', out);
+}
+
+bool report_faults(const struct rkm04_unit *unit)
+{
+    static const char *const reasons[] = {
+        [RKM04_FAULT_NO_LABEL] = "a jump or call to a label that is not in memory",
+        [RKM04_FAULT_LOOP_LEVELS] = "more than 8 loops inside one another",
+        [RKM04_FAULT_NO_LOOP] = "E without a loop",
+        [RKM04_FAULT_CALL_LEVELS] = "more than 6 calls inside one another",
+        [RKM04_FAULT_NO_CALL] = ". without a call",
+        [RKM04_FAULT_OVERWRITTEN] = "the start of the loop or the place to return to has been overwritten",
+        [RKM04_FAULT_MOTION] = "the compound motion cannot be computed: more than ten segments, two directions, or a segment "
+                               "without steps",
+    };
+    bool any = false;
+    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+        struct rkm04_motor_state state;
+        rkm04_motor_state(unit, motor, &state);
+        if (state.fault == RKM04_FAULT_NONE)
+            continue;
+        any = true;
+        fprintf(stderr, "rkm04 exec: motor %u: fault at command %u: %s\n", motor, (unsigned)state.index,
+                reasons[state.fault]);
+    }
+    return any;
+}
+
+/* ---- The end ------------------------------------------------------------------------------------------------------ */
+
+static bool print_json(FILE *out, json_t *answers, const struct exec_run *run, enum exec_end end)
+{
+    json_t *state = state_json(&run->unit, run->reached);
+    bool well = state != NULL && json_object_set_new(state, "end", json_string(end_name(end))) == 0 &&
+                json_object_set(state, "answers", answers) == 0 && json_dumpf(state, out, JSON_COMPACT) == 0;
+    json_decref(state);
+    fputc('\n', out);
+    return well;
+}
+
+bool report_end(struct report *report, const struct exec_run *run, enum exec_end end, FILE *out)
+{
+    bool well = true;
+    errno = 0;
+    if (report->answers != NULL)
+        well = print_json(out, report->answers, run, end);
+    else
+        print_table(out, run, end);
+    json_decref(report->answers);
+    if (fflush(out) != 0 || ferror(out))
+        well = false;
+    if (!well)
+        fprintf(stderr, "rkm04 exec: cannot write the final state: %s\n", strerror(errno ? errno : EIO));
+    return well;
+}

@@ -1,0 +1,233 @@
+#include "stimulus.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <rkm04/limits.h>
+
+#include "time_value.h"
+
+#define FOUND_MAX 32 /* characters of a wrong word shown in a message */
+
+struct parser {
+    struct stimuli *stimuli;
+    size_t room;
+    const char *name;
+    FILE *errors;
+    int error_count;
+    const char *line; /* the present line, without its end */
+    size_t length, at;
+    size_t number;
+    uint8_t *free_byte; /* in stimuli->bytes */
+};
+
+struct word {
+    const char *text;
+    size_t length;
+    size_t at; /* in the line */
+};
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+static void skip_blanks(struct parser *p)
+{
+    while (p->at < p->length && is_blank(p->line[p->at]))
+        p->at++;
+}
+
+static struct word next_word(struct parser *p)
+{
+    skip_blanks(p);
+    struct word word = {p->line + p->at, 0, p->at};
+    while (p->at < p->length && !is_blank(p->line[p->at]))
+        p->at++;
+    word.length = p->at - word.at;
+    return word;
+}
+
+static bool word_is(struct word word, const char *text)
+{
+    return word.length == strlen(text) && memcmp(word.text, text, word.length) == 0;
+}
+
+/* Report what was expected at the word, or `offset` characters into it. Returns false. */
+static bool expected(struct parser *p, struct word word, size_t offset, const char *what)
+{
+    char found[FOUND_MAX + 1];
+    size_t n = word.length < FOUND_MAX ? word.length : FOUND_MAX;
+    while (n > 0 && n < word.length && ((unsigned char)word.text[n] & 0xC0) == 0x80)
+        n--; /* not inside a UTF-8 character */
+    for (size_t i = 0; i < n; i++)
+        found[i] = (unsigned char)word.text[i] < ' ' || word.text[i] == 0x7F ? '?' : word.text[i];
+    found[n] = '\0';
+    fprintf(p->errors, "%s:%zu:%zu: error: expected %s, found ", p->name, p->number, word.at + offset + 1, what);
+    if (word.length == 0)
+        fputs("the end of the line\n", p->errors);
+    else
+        fprintf(p->errors, "'%s%s'\n", found, n < word.length ? "..." : "");
+    p->error_count++;
+    return false;
+}
+
+/* Nothing but a comment may follow. */
+static bool read_end(struct parser *p)
+{
+    struct word word = next_word(p);
+    if (word.length > 0 && word.text[0] != '#')
+        return expected(p, word, 0, "the end of the line");
+    return true;
+}
+
+static bool read_input(struct parser *p, struct stimulus *s)
+{
+    struct word word = next_word(p);
+    unsigned number = 0;
+    for (size_t i = 0; i < word.length; i++) {
+        if (word.text[i] < '0' || word.text[i] > '9' || word.length > 2)
+            return expected(p, word, 0, "an input 01 to 08");
+        number = number * 10 + (unsigned)(word.text[i] - '0');
+    }
+    if (number < 1 || number > RKM04_INPUTS)
+        return expected(p, word, 0, "an input 01 to 08");
+    s->kind = STIMULUS_INPUT;
+    s->input = (uint8_t)number;
+    word = next_word(p);
+    if (!word_is(word, "0") && !word_is(word, "1"))
+        return expected(p, word, 0, "0 or 1");
+    s->level = word.text[0] == '1';
+    return read_end(p);
+}
+
+static bool read_set(struct parser *p, struct stimulus *s)
+{
+    struct word word = next_word(p);
+    if (word.length != 1 || word.text[0] < '0' || word.text[0] > '0' + RKM04_MOTORS)
+        return expected(p, word, 0, "a motor 1 to 4, or 0 for all");
+    s->kind = STIMULUS_SET;
+    s->motor = word.text[0];
+    skip_blanks(p);
+    size_t end = p->length;
+    while (end > p->at && is_blank(p->line[end - 1]))
+        end--;
+    if (end == p->at)
+        return expected(p, next_word(p), 0, "a program text");
+    s->data = p->free_byte;
+    s->length = end - p->at;
+    s->column = p->at + 1;
+    memcpy(p->free_byte, p->line + p->at, s->length);
+    p->free_byte += s->length;
+    return true;
+}
+
+static int hex_digit(char c)
+{
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    if (c >= 'a' && c <= 'f')
+        return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F')
+        return c - 'A' + 10;
+    return -1;
+}
+
+static bool read_message(struct parser *p, struct stimulus *s)
+{
+    struct word word = next_word(p);
+    s->kind = STIMULUS_MESSAGE;
+    s->data = p->free_byte;
+    s->column = word.at + 1;
+    if (word.length == 0 || word.text[0] == '#')
+        return expected(p, word, 0, "the bytes of a message in hexadecimal, such as 0431");
+    for (; word.length > 0 && word.text[0] != '#'; word = next_word(p)) {
+        for (size_t i = 0; i < word.length; i += 2) {
+            int high = hex_digit(word.text[i]);
+            int low = i + 1 < word.length ? hex_digit(word.text[i + 1]) : -1;
+            if (high < 0 || low < 0)
+                return expected(p, word, high < 0 ? i : i + 1, "two hexadecimal digits a byte");
+            if (s->length == RKM04_MESSAGE_MAX)
+                return expected(p, word, i, "no more bytes than a request may have");
+            p->free_byte[s->length++] = (uint8_t)(high << 4 | low);
+        }
+    }
+    p->free_byte += s->length;
+    return true;
+}
+
+/* Read the line. Returns true if *s is a stimulus; false for an empty line or an error. */
+static bool read_line(struct parser *p, struct stimulus *s)
+{
+    struct word time = next_word(p);
+    if (time.length == 0 || time.text[0] == '#')
+        return false;
+    size_t wrong;
+    const char *form = time_value_read(time.text, time.length, &s->tick, &wrong);
+    if (form != NULL)
+        return expected(p, time, wrong, form);
+    s->line = p->number;
+    struct word kind = next_word(p);
+    if (word_is(kind, "di"))
+        return read_input(p, s);
+    if (word_is(kind, "set"))
+        return read_set(p, s);
+    if (word_is(kind, "message"))
+        return read_message(p, s);
+    return expected(p, kind, 0, "di, set or message");
+}
+
+static bool append(struct parser *p, const struct stimulus *s)
+{
+    struct stimuli *stimuli = p->stimuli;
+    if (stimuli->count == p->room) {
+        size_t room = p->room > 0 ? 2 * p->room : 64;
+        struct stimulus *list = realloc(stimuli->list, room * sizeof *list);
+        if (list == NULL)
+            return false;
+        stimuli->list = list;
+        p->room = room;
+    }
+    stimuli->list[stimuli->count++] = *s;
+    return true;
+}
+
+/* Lines of one time stay in the order of the file. */
+static int by_tick(const void *left, const void *right)
+{
+    const struct stimulus *a = left, *b = right;
+    if (a->tick != b->tick)
+        return a->tick < b->tick ? -1 : 1;
+    return (a->line > b->line) - (a->line < b->line);
+}
+
+int stimuli_read(struct stimuli *stimuli, const char *name, const char *text, size_t length, FILE *errors)
+{
+    struct parser p = {.stimuli = stimuli, .name = name, .errors = errors};
+    *stimuli = (struct stimuli){0};
+    stimuli->bytes = malloc(length + 1); /* what a line holds is never longer than the line */
+    if (stimuli->bytes == NULL)
+        return -1;
+    p.free_byte = stimuli->bytes;
+    for (size_t begin = 0; begin < length;) {
+        const char *end = memchr(text + begin, '\n', length - begin);
+        p.line = text + begin;
+        p.length = end != NULL ? (size_t)(end - p.line) : length - begin;
+        p.at = 0;
+        p.number++;
+        struct stimulus s = {0};
+        if (read_line(&p, &s) && !append(&p, &s))
+            return -1;
+        begin += p.length + 1;
+    }
+    if (stimuli->count > 1)
+        qsort(stimuli->list, stimuli->count, sizeof stimuli->list[0], by_tick);
+    return p.error_count;
+}
+
+void stimuli_free(struct stimuli *stimuli)
+{
+    free(stimuli->list);
+    free(stimuli->bytes);
+    *stimuli = (struct stimuli){0};
+}
