@@ -1,0 +1,420 @@
+#include "profile.h"
+
+#include "ramp.h"
+#include "wide.h"
+
+/* Speeds are handled as their squares, which grow evenly with the way: q = 2 * speed^2 * 2^34 (rkm04_break.speed2), so that
+ * q' = q + energy(a, way) with energy = 4 * a * way * 2^34. Every limit and border speed of a motion from standstill is then a
+ * whole number. */
+#define Q_MAX ((uint64_t)2 * RKM04_SPEED_MAX * RKM04_SPEED_MAX << RAMP_SPEED2_BITS)
+
+static uint64_t q_of(uint32_t speed)
+{
+    return (uint64_t)2 * speed * speed << RAMP_SPEED2_BITS;
+}
+
+static uint64_t lower(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint16_t slower(uint16_t a, uint16_t b)
+{
+    return a < b ? a : b;
+}
+
+/* q + gain, or Q_MAX if that is less. */
+static uint64_t raised(uint64_t q, uint64_t gain)
+{
+    return gain >= Q_MAX ? Q_MAX : lower(Q_MAX, q + gain);
+}
+
+static uint64_t lowered(uint64_t q, uint64_t loss)
+{
+    return loss < q ? q - loss : 0;
+}
+
+/* ---- Places ------------------------------------------------------------------------------------------------------- */
+
+static struct wide wide_of(struct rkm04_place place)
+{
+    return (struct wide){place.high, place.low};
+}
+
+static struct rkm04_place place_of(struct wide number)
+{
+    return (struct rkm04_place){number.high, number.low};
+}
+
+static struct rkm04_place place_at(uint32_t step)
+{
+    return (struct rkm04_place){(uint64_t)step << 32, 0};
+}
+
+/* The change q / (4 * a * 2^34) in steps, with 96 places, cut off; *inexact: something was. */
+static struct wide way_of(uint64_t q, uint16_t acceleration, bool *inexact)
+{
+    uint64_t divisor = (uint64_t)4 * acceleration << RAMP_SPEED2_BITS;
+    struct wide places = wide_fraction(q % divisor, divisor, inexact);
+    *inexact = *inexact || (uint32_t)places.low != 0;
+    return (struct wide){q / divisor << 32 | places.high >> 32, places.high << 32 | places.low >> 32};
+}
+
+/* Rounded towards the end of the motion, so that what begins there is not a tick late. */
+static struct rkm04_place ahead(struct rkm04_place place, uint64_t q, uint16_t acceleration)
+{
+    bool inexact;
+    struct wide way = way_of(q, acceleration, &inexact);
+    return place_of(wide_sum(wide_sum(wide_of(place), way), (struct wide){0, inexact}));
+}
+
+/* Rounded towards the beginning. */
+static struct rkm04_place behind(struct rkm04_place place, uint64_t q, uint16_t acceleration)
+{
+    bool inexact;
+    struct wide way = way_of(q, acceleration, &inexact);
+    return place_of(wide_difference(wide_difference(wide_of(place), way), (struct wide){0, inexact}));
+}
+
+static bool before(struct rkm04_place a, struct rkm04_place b)
+{
+    return wide_less(wide_of(a), wide_of(b));
+}
+
+/* q gained on the way from `from` to `to`; 2 * Q_MAX if that or more. */
+static uint64_t energy(uint16_t acceleration, struct rkm04_place from, struct rkm04_place to)
+{
+    struct wide way = wide_difference(wide_of(to), wide_of(from));
+    uint64_t factor = (uint64_t)4 * acceleration;
+    if ((way.high >> 32) >= (2 * Q_MAX >> RAMP_SPEED2_BITS) / factor)
+        return 2 * Q_MAX;
+    /* factor * way has 96 places; keep 34 of them. */
+    struct wide gain = {way.high * factor + wide_high(way.low, factor), way.low * factor};
+    return lower(2 * Q_MAX, gain.high << 2 | gain.low >> 62);
+}
+
+/* ---- The table of break points -------------------------------------------------------------------------------------- */
+
+/* Append a break point; where nothing bends, none is needed. The first of a plan, at profile->leg, always is one. The oldest
+ * passed one makes room for a change too many. */
+static void add_break(struct rkm04_profile *profile, struct rkm04_place at, uint64_t q, int32_t slope)
+{
+    if (profile->count > profile->leg) {
+        const struct rkm04_break *last = &profile->point[profile->count - 1];
+        if (last->slope == slope && (slope != 0 || last->speed2 == q))
+            return;
+    }
+    if (profile->count == RKM04_BREAKS_MAX) {
+        for (unsigned i = 1; i < RKM04_BREAKS_MAX; i++)
+            profile->point[i - 1] = profile->point[i];
+        profile->count--;
+        profile->leg--;
+    }
+    profile->point[profile->count++] = (struct rkm04_break){.speed2 = q, .at = at, .slope = slope};
+}
+
+static void add_end(struct rkm04_profile *profile, struct rkm04_place at, uint64_t q)
+{
+    add_break(profile, at, q, INT32_MIN); /* a slope that no other point has */
+}
+
+/* ---- The plan ----------------------------------------------------------------------------------------------------- */
+
+/* Where planning stands: a place in a segment, and the speed there. */
+struct state {
+    struct rkm04_place at;
+    uint64_t q;
+    unsigned segment;
+    bool moving; /* a present speed, which may be above the limit, instead of one to be chosen */
+};
+
+/* End of a segment, counted from the begin of the motion. */
+static struct rkm04_place end_of(const struct rkm04_motion *motion, unsigned segment)
+{
+    uint32_t steps = 0;
+    for (unsigned i = 0; i <= segment; i++)
+        steps += motion->segment[i].steps;
+    return place_at(steps);
+}
+
+/* The segment that a place belongs to; a border belongs to the later one. */
+static unsigned segment_at(const struct rkm04_motion *motion, struct rkm04_place at)
+{
+    unsigned segment = 0;
+    while (segment + 1 < motion->segments && !before(at, end_of(motion, segment)))
+        segment++;
+    return segment;
+}
+
+/* Adds the break points that bring a present speed to the limit of its segment; leaves in *state where that is done, at the
+ * end of the segment at the latest. At or below S a change happens at once (R6). */
+static void reach_limit(struct rkm04_motion *motion, struct state *state, struct rkm04_place end, uint64_t limit)
+{
+    struct rkm04_profile *profile = &motion->profile;
+    uint16_t acceleration = motion->segment[state->segment].acceleration;
+    uint64_t jump = q_of(motion->start_speed);
+    if (state->moving && state->q < limit && state->q < jump) {
+        add_break(profile, state->at, state->q, 0);
+        state->q = lower(limit, jump);
+        return;
+    }
+    if (state->q <= limit)
+        return;
+    uint64_t floor = lower(state->q, jump > limit ? jump : limit);
+    struct rkm04_place down = ahead(state->at, state->q - floor, acceleration);
+    if (floor < state->q)
+        add_break(profile, state->at, state->q, -(int32_t)acceleration);
+    if (before(end, down)) {
+        state->q = lowered(state->q, energy(acceleration, state->at, end));
+        state->at = end;
+        return;
+    }
+    if (floor > limit)
+        add_break(profile, down, floor, 0);
+    state->q = limit;
+    state->at = down;
+}
+
+/* The break points of one segment from *state to its end with speed `leave` there (R1 between two border speeds). */
+static void plan_segment(struct rkm04_motion *motion, const struct state *state, struct rkm04_place end, uint64_t leave)
+{
+    struct rkm04_profile *profile = &motion->profile;
+    const struct rkm04_segment *segment = &motion->segment[state->segment];
+    int32_t slope = segment->acceleration;
+    uint64_t limit = q_of(segment->speed);
+    uint64_t gain = energy(segment->acceleration, state->at, end);
+    uint64_t peak = lower(limit, state->q / 2 + leave / 2 + gain / 2);
+    struct rkm04_place top = state->at;
+    if (peak > state->q) {
+        add_break(profile, state->at, state->q, slope);
+        top = ahead(state->at, peak - state->q, segment->acceleration);
+    }
+    struct rkm04_place fall = peak > leave ? behind(end, peak - leave, segment->acceleration) : end;
+    if (peak == limit && before(top, fall))
+        add_break(profile, top, peak, 0);
+    else
+        fall = top;
+    if (peak > leave)
+        add_break(profile, fall, peak, -slope);
+}
+
+/* The speeds at the segments' ends: limits, then what can be braked from, then what can be reached (R4). */
+static void plan_borders(const struct rkm04_motion *motion, const struct state *from, uint64_t *start, uint64_t *leave)
+{
+    unsigned last = motion->segments - 1u;
+    leave[last] = q_of(slower(motion->start_speed, motion->segment[last].speed));
+    for (unsigned i = last; i-- > from->segment;)
+        leave[i] = q_of(slower(motion->segment[i].speed, motion->segment[i + 1].speed));
+    for (unsigned i = last; i > from->segment; i--) {
+        uint64_t gain = energy(motion->segment[i].acceleration, end_of(motion, i - 1), end_of(motion, i));
+        leave[i - 1] = lower(leave[i - 1], raised(leave[i], gain));
+    }
+    if (!from->moving) {
+        struct rkm04_place end = end_of(motion, from->segment);
+        uint64_t gain = energy(motion->segment[from->segment].acceleration, from->at, end);
+        *start = lower(*start, raised(leave[from->segment], gain));
+    }
+}
+
+static void plan_steps(struct rkm04_motion *motion, struct state state)
+{
+    uint64_t leave[RKM04_SEGMENTS_MAX];
+    plan_borders(motion, &state, &state.q, leave);
+    struct rkm04_place end = place_at(0);
+    for (; state.segment < motion->segments; state.segment++) {
+        uint16_t acceleration = motion->segment[state.segment].acceleration;
+        end = end_of(motion, state.segment);
+        reach_limit(motion, &state, end, q_of(motion->segment[state.segment].speed));
+        uint64_t gain = energy(acceleration, state.at, end);
+        uint64_t out = lower(leave[state.segment], raised(state.q, gain));
+        if (out < lowered(state.q, gain)) /* a present speed that cannot be braked in time */
+            out = lowered(state.q, gain);
+        if (before(state.at, end))
+            plan_segment(motion, &state, end, out);
+        state.q = out;
+        state.at = end;
+        state.moving = false;
+    }
+    add_end(&motion->profile, end, state.q);
+}
+
+static void plan_endless(struct rkm04_motion *motion, struct state state)
+{
+    uint64_t limit = q_of(motion->segment[0].speed);
+    uint16_t acceleration = motion->segment[0].acceleration;
+    reach_limit(motion, &state, (struct rkm04_place){UINT64_MAX, UINT64_MAX}, limit);
+    if (state.q < limit) {
+        add_break(&motion->profile, state.at, state.q, acceleration);
+        state.at = ahead(state.at, limit - state.q, acceleration);
+    }
+    add_break(&motion->profile, state.at, limit, 0);
+    motion->profile.endless = true;
+}
+
+static void plan_from(struct rkm04_motion *motion, struct state state)
+{
+    motion->profile.endless = false;
+    if (motion->kind == RKM04_MOTION_STEPS)
+        plan_steps(motion, state);
+    else
+        plan_endless(motion, state);
+}
+
+void profile_plan(struct rkm04_motion *motion)
+{
+    struct rkm04_profile *profile = &motion->profile;
+    struct rkm04_place at = place_at(motion->done);
+    unsigned segment = segment_at(motion, at);
+    uint16_t speed = motion->segment[segment].speed;
+    if (profile->count > 0) { /* after a hold: its end is no end any more */
+        profile->count--;
+        profile->leg = profile->count;
+    } else {
+        profile->leg = 0;
+    }
+    plan_from(motion, (struct state){at, q_of(slower(speed, motion->start_speed)), segment, false});
+}
+
+/* ---- Planning anew while moving -------------------------------------------------------------------------------------- */
+
+/* The place and speed at `tick`, from the pulse generator. */
+static struct state present(const struct rkm04_motion *motion, uint64_t tick)
+{
+    struct rkm04_fixed y, w;
+    ramp_look(&motion->ramp, tick, &y, &w);
+    if (y.whole >= 0)
+        y = (struct rkm04_fixed){-1, 0};
+    uint64_t rest;
+    uint64_t high = wide_divide((struct wide){(uint64_t)(y.whole + RAMP_STEP), y.part}, RAMP_STEP, &rest);
+    uint64_t low = wide_divide((struct wide){rest, 0}, RAMP_STEP, &rest);
+    struct state state = {.moving = true};
+    state.at = (struct rkm04_place){(uint64_t)motion->done << 32 | high >> 32, high << 32 | low >> 32};
+    struct wide square = wide_product((uint64_t)w.whole, (uint64_t)w.whole);
+    square = wide_sum(square, (struct wide){0, wide_high(w.part, (uint64_t)w.whole * 2)});
+    state.q = wide_divide(wide_shifted(square, RAMP_SPEED2_BITS), RAMP_STEP, &rest);
+    state.segment = segment_at(motion, state.at);
+    return state;
+}
+
+static bool on_final_ramp(const struct rkm04_motion *motion)
+{
+    const struct rkm04_profile *profile = &motion->profile;
+    return !profile->endless && profile->leg + 2 == profile->count && motion->ramp.slope < 0;
+}
+
+/* Keep the points that were passed; the next one added is where the motion is now. */
+static void mark_present(struct rkm04_profile *profile)
+{
+    profile->leg++;
+    profile->count = profile->leg;
+}
+
+void profile_change_speed(struct rkm04_motion *motion, uint64_t tick, uint16_t speed)
+{
+    if (on_final_ramp(motion))
+        return;
+    struct state state = present(motion, tick);
+    motion->segment[state.segment].speed = speed;
+    mark_present(&motion->profile);
+    plan_from(motion, state);
+    ramp_go_on(&motion->ramp, &motion->profile, tick);
+}
+
+/* Where a stop ends, in exact arithmetic (R5). In units of 1/(8e12 * a) step the way is a whole number:
+ * w^2 - (2e6 * S)^2 plus 4 * a * y, counted from the next pulse on. */
+struct stop {
+    struct wide energy; /* w^2 - w_S^2 still to be lost */
+    int64_t offset;     /* 4 * a * y: where the motion is, from `step`; <= 0 */
+    uint32_t step;
+};
+
+/* Steps from stop->step to the end of the ramp at this acceleration, rounded up. What lies less than the tolerance above a
+ * whole number counts as that number: rational ways cannot come so near, irrational ones shall (R5). */
+static uint32_t steps_of_stop(const struct stop *stop, uint16_t acceleration, bool exact)
+{
+    const uint64_t unit = (uint64_t)4 * acceleration * (uint64_t)RAMP_STEP;
+    const uint64_t tolerance = exact ? 1000000 : unit / 1000000;
+    uint64_t short_of = (uint64_t)-stop->offset;
+    if (stop->energy.high == 0 && stop->energy.low <= short_of)
+        return 0;
+    struct wide way = wide_difference(stop->energy, (struct wide){0, short_of});
+    uint64_t rest, steps = wide_divide(way, unit, &rest);
+    return (uint32_t)steps + (rest >= tolerance);
+}
+
+/* The last step of a stop from `state`, and the break points of its ramp, one a segment. */
+static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, struct rkm04_fixed y, struct rkm04_fixed w)
+{
+    const int64_t w_end = RAMP_SPEED * motion->start_speed;
+    struct stop stop = {.step = motion->done + 1};
+    stop.energy = wide_difference(wide_product((uint64_t)w.whole, (uint64_t)w.whole), wide_product((uint64_t)w_end, (uint64_t)w_end));
+    stop.energy = wide_sum(stop.energy, (struct wide){0, wide_high(w.part, (uint64_t)w.whole * 2)});
+    for (;; state->segment++) {
+        uint16_t acceleration = motion->segment[state->segment].acceleration;
+        uint64_t factor = (uint64_t)4 * acceleration;
+        stop.offset = y.whole * (int64_t)factor + (int64_t)wide_high(y.part, factor);
+        uint32_t last = stop.step + steps_of_stop(&stop, acceleration, motion->ramp.exact);
+        add_break(&motion->profile, state->at, state->q, -(int32_t)acceleration);
+        if (motion->kind != RKM04_MOTION_STEPS)
+            return last;
+        struct rkm04_place end = end_of(motion, state->segment);
+        if (last <= ramp_step_of(end))
+            return last;
+        if (state->segment + 1u == motion->segments)
+            return motion->total;
+        struct wide lost = wide_product(factor * (uint64_t)RAMP_STEP, ramp_step_of(end) - stop.step);
+        stop.energy = wide_difference(stop.energy, wide_difference(lost, (struct wide){stop.offset < 0 ? UINT64_MAX : 0, (uint64_t)stop.offset}));
+        state->q -= lower(state->q, energy(acceleration, state->at, end));
+        state->at = end;
+        stop.step = ramp_step_of(end);
+        y = (struct rkm04_fixed){0, 0};
+    }
+}
+
+bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
+{
+    struct rkm04_profile *profile = &motion->profile;
+    if (on_final_ramp(motion))
+        return true;
+    struct rkm04_fixed y, w;
+    ramp_look(&motion->ramp, tick, &y, &w);
+    struct state state = present(motion, tick);
+    uint64_t q_end = q_of(motion->start_speed);
+    mark_present(profile);
+    const uint64_t rounding = 64; /* of q, far below the smallest rest of a step that can occur */
+    uint32_t last;
+    if (state.q <= q_end) {
+        last = (uint32_t)(state.at.high >> 32) + ((uint32_t)state.at.high != 0 || state.at.low != 0);
+        add_break(profile, state.at, state.q, 0);
+        q_end = state.q;
+    } else {
+        last = plan_stop(motion, &state, y, w);
+        uint16_t acceleration = motion->segment[state.segment].acceleration;
+        struct rkm04_place slow = ahead(state.at, lowered(state.q, q_end), acceleration);
+        if (before(slow, place_at(last)) && energy(acceleration, slow, place_at(last)) > rounding)
+            add_break(profile, slow, q_end, 0);
+    }
+    profile->endless = false;
+    add_end(profile, place_at(last), q_end);
+    if (last == motion->done)
+        return false;
+    ramp_go_on(&motion->ramp, profile, tick);
+    return true;
+}
+
+/* ---- What the host sees --------------------------------------------------------------------------------------------- */
+
+bool profile_point(const struct rkm04_motion *motion, unsigned i, struct profile_point *point)
+{
+    const struct rkm04_profile *profile = &motion->profile;
+    if (i >= profile->count)
+        return false;
+    const struct rkm04_break *at = &profile->point[i];
+    bool last = !profile->endless && i + 1u == profile->count;
+    uint32_t end = ramp_step_of(profile->point[profile->count - 1].at);
+    point->step = ramp_step_of(at->at) + !last;
+    if (!profile->endless && point->step > end)
+        point->step = end;
+    point->speed = last ? 0 : wide_root_of(at->speed2 >> (RAMP_SPEED2_BITS + 1));
+    return true;
+}

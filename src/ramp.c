@@ -1,0 +1,374 @@
+#include "ramp.h"
+
+/* ---- 64.64 numbers ------------------------------------------------------------------------------------------------ */
+
+static struct rkm04_fixed sum(struct rkm04_fixed a, struct rkm04_fixed b)
+{
+    uint64_t part = a.part + b.part;
+    return (struct rkm04_fixed){(int64_t)((uint64_t)a.whole + (uint64_t)b.whole + (part < a.part)), part};
+}
+
+static struct rkm04_fixed difference(struct rkm04_fixed a, struct rkm04_fixed b)
+{
+    return (struct rkm04_fixed){(int64_t)((uint64_t)a.whole - (uint64_t)b.whole - (a.part < b.part)), a.part - b.part};
+}
+
+/* factor * places / 2^128 for a whole factor, cut off behind 64 places. */
+static struct rkm04_fixed scaled(uint64_t factor, struct wide places)
+{
+    struct wide product = wide_sum(wide_product(factor, places.high), (struct wide){0, wide_high(factor, places.low)});
+    return (struct rkm04_fixed){(int64_t)product.high, product.low};
+}
+
+/* a * places / 2^128 for a >= 0, cut off; at most 3 units of the last place too small. */
+static struct rkm04_fixed times(struct rkm04_fixed a, struct wide places)
+{
+    return sum(scaled((uint64_t)a.whole, places), (struct rkm04_fixed){0, wide_high(a.part, places.high)});
+}
+
+static bool below(struct rkm04_fixed a, struct rkm04_fixed b)
+{
+    return a.whole < b.whole || (a.whole == b.whole && a.part < b.part);
+}
+
+/* What cutting off may have lost: always added, so that a pulse due exactly at a tick is never a tick late. */
+static const struct rkm04_fixed ROUND_UP = {0, 4};
+
+/* ---- Instants ----------------------------------------------------------------------------------------------------- */
+
+static struct rkm04_instant later(struct rkm04_instant a, uint64_t ticks, struct wide places)
+{
+    struct wide part = wide_sum((struct wide){a.high, a.low}, places);
+    bool carry = wide_less(part, places);
+    return (struct rkm04_instant){a.tick + ticks + carry, part.high, part.low};
+}
+
+static uint64_t tick_from(struct rkm04_instant a)
+{
+    return a.tick + ((a.high | a.low) != 0);
+}
+
+/* Ticks that a change of w by `change` takes at `slope` > 0. */
+static struct rkm04_instant after_slope(struct rkm04_instant start, struct rkm04_fixed change, uint32_t slope)
+{
+    uint64_t divisor = 2 * (uint64_t)slope, rest = (uint64_t)change.whole % divisor;
+    struct wide places;
+    places.high = wide_divide((struct wide){rest, change.part}, divisor, &rest);
+    places.low = wide_divide((struct wide){rest, 0}, divisor, &rest);
+    return later(start, (uint64_t)change.whole / divisor, places);
+}
+
+/* Ticks that the way from `from` to `to` takes at a constant speed in steps/s. */
+static struct rkm04_instant after_way(struct rkm04_instant start, struct rkm04_place from, struct rkm04_place to, uint32_t speed)
+{
+    struct wide way = wide_difference((struct wide){to.high, to.low}, (struct wide){from.high, from.low});
+    uint64_t rest = way.high % speed;
+    struct wide share = {way.high / speed, wide_divide((struct wide){rest, way.low}, speed, &rest)};
+    /* share * 1e6 has 96 places and up to 148 bits: take it apart at bit 96 of 192. */
+    struct wide low = wide_product(share.low, RKM04_TICKS_PER_SECOND);
+    struct wide high = wide_sum(wide_product(share.high, RKM04_TICKS_PER_SECOND), (struct wide){0, low.high});
+    low.low += rest * RKM04_TICKS_PER_SECOND / speed;
+    if (low.low < rest * RKM04_TICKS_PER_SECOND / speed)
+        high = wide_sum(high, (struct wide){0, 1});
+    uint64_t ticks = high.high << 32 | high.low >> 32;
+    return later(start, ticks, (struct wide){high.low << 32 | low.low >> 32, low.low << 32});
+}
+
+/* ---- Legs --------------------------------------------------------------------------------------------------------- */
+
+struct rkm04_fixed ramp_w(uint64_t speed2, bool *exact)
+{
+    uint64_t square = speed2 >> (RAMP_SPEED2_BITS + 1);
+    uint32_t speed = wide_root_of(square);
+    if (square << (RAMP_SPEED2_BITS + 1) == speed2 && (uint64_t)speed * speed == square)
+        return (struct rkm04_fixed){RAMP_SPEED * (int64_t)speed, 0};
+    /* w = sqrt(2e12 * speed2 / 2^34), with 64 places: sqrt(2e12 * speed2 * 4^47). */
+    bool inexact;
+    struct wide root = wide_root(wide_product((uint64_t)RAMP_STEP, speed2), 47, &inexact);
+    *exact = *exact && !inexact;
+    return (struct rkm04_fixed){(int64_t)root.high, root.low};
+}
+
+/* y of the part of a step in a place. */
+static struct rkm04_fixed y_of_part(struct rkm04_place place)
+{
+    struct wide places = {place.high << 32 | place.low >> 32, place.low << 32};
+    struct rkm04_fixed y = scaled((uint64_t)RAMP_STEP, places);
+    return places.high | places.low ? sum(y, ROUND_UP) : y;
+}
+
+static bool leg_is_open(const struct rkm04_profile *profile)
+{
+    return profile->endless && profile->leg + 1 == profile->count;
+}
+
+/* No pulse is left behind the present leg. */
+static bool nothing_behind(const struct rkm04_profile *profile)
+{
+    return !profile->endless &&
+           ramp_step_of(profile->point[profile->leg + 1].at) == ramp_step_of(profile->point[profile->count - 1].at);
+}
+
+/* y and w at ramp->at for a leg that began at `start` at `place` with speed w. */
+static void reckon_from_start(struct rkm04_ramp *ramp, struct rkm04_instant start, struct rkm04_place place, struct rkm04_fixed w)
+{
+    struct rkm04_fixed y = y_of_part(place);
+    y.whole -= RAMP_STEP;
+    if (start.high | start.low) {
+        struct wide gone = wide_difference((struct wide){0, 0}, (struct wide){start.high, start.low});
+        struct rkm04_fixed half = scaled((uint32_t)ramp->slope, gone);
+        y = sum(sum(y, times(sum(w, half), gone)), ROUND_UP);
+        w = sum(w, sum(half, half));
+    }
+    ramp->y = y;
+    ramp->w = w;
+}
+
+/* The same for a falling leg that ends at ramp->end at `place` with speed w. The products may pass 2^64; their difference
+ * does not. */
+static void reckon_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, struct rkm04_fixed w)
+{
+    uint64_t fall = (uint32_t)-ramp->slope;
+    uint64_t ticks = ramp->end.tick - ramp->at;
+    struct wide places = {ramp->end.high, ramp->end.low};
+    if (ramp->end.tick < ramp->at) { /* shorter than a tick */
+        ticks = 0;
+        places = (struct wide){0, 0};
+    }
+    struct rkm04_fixed half = scaled(fall, places);
+    struct rkm04_fixed w_whole = {(int64_t)((uint64_t)w.whole + 2 * fall * ticks), w.part};
+    struct wide part = wide_product(w.part, ticks);
+    struct rkm04_fixed way = {(int64_t)((uint64_t)w.whole * ticks + fall * ticks * ticks + part.high), part.low};
+    way = sum(way, times(sum(w_whole, half), places));
+    struct rkm04_fixed y = y_of_part(place);
+    y.whole = (int64_t)((uint64_t)y.whole + (uint64_t)RAMP_STEP * (ramp->left - UINT64_C(1)));
+    ramp->y = difference(y, way);
+    ramp->w = sum(w_whole, sum(half, half));
+    if (places.high | places.low)
+        ramp->w = sum(ramp->w, (struct rkm04_fixed){0, 1});
+}
+
+/* d ticks on (or back) along the present slope. */
+static void move_on(struct rkm04_fixed *y, struct rkm04_fixed *w, int64_t slope, int64_t d)
+{
+    uint64_t size = d < 0 ? (uint64_t)-d : (uint64_t)d;
+    struct wide part = wide_product(w->part, size);
+    struct rkm04_fixed way = {(int64_t)part.high, part.low};
+    y->whole = (int64_t)((uint64_t)y->whole + (uint64_t)(d * (w->whole + slope * d)));
+    *y = d < 0 ? difference(*y, way) : sum(*y, way);
+    w->whole += 2 * slope * d;
+}
+
+/* Roughly how many ticks until y >= 0, by Newton's rule on whole numbers: from above on a rising leg, from below on a
+ * falling one, so that it never passes the vertex. */
+static int64_t guess_ticks(int64_t y, int64_t w, int64_t slope)
+{
+    int64_t d = -y / w;
+    for (int i = 0; i < 64; i++) {
+        int64_t speed = w + 2 * slope * d;
+        if (speed <= 0)
+            break;
+        int64_t change = (y + d * (w + slope * d)) / speed;
+        if (change == 0)
+            break;
+        d -= change;
+    }
+    return d;
+}
+
+/* From y and w, `d` ticks after a known point: settle on the first tick, not before `least`, with y >= 0. */
+static int64_t settle(struct rkm04_fixed *y, struct rkm04_fixed *w, int64_t slope, int64_t d, int64_t least)
+{
+    while (y->whole < 0 && w->whole + slope > 0) {
+        *y = sum(*y, (struct rkm04_fixed){w->whole + slope, w->part});
+        w->whole += 2 * slope;
+        d++;
+    }
+    while (d > least) {
+        struct rkm04_fixed back = {w->whole - slope, w->part};
+        if (below(*y, back))
+            break;
+        *y = difference(*y, back);
+        w->whole -= 2 * slope;
+        d--;
+    }
+    return d;
+}
+
+/* The leg's first pulse: from ramp->at to the tick at which it is due, which may be ramp->at itself. */
+static void find_first(struct rkm04_ramp *ramp)
+{
+    int64_t d = 0;
+    if (ramp->y.whole < 0 && ramp->w.whole > 0) {
+        d = guess_ticks(ramp->y.whole, ramp->w.whole, ramp->slope);
+        move_on(&ramp->y, &ramp->w, ramp->slope, d);
+        d = settle(&ramp->y, &ramp->w, ramp->slope, d, 0);
+    }
+    ramp->at += (uint64_t)d;
+    ramp->next = ramp->at;
+    ramp->change = 0;
+    ramp->interval = (int32_t)(RAMP_STEP / (ramp->w.whole > 0 ? ramp->w.whole : RAMP_SPEED));
+}
+
+static void begin_pulses(struct rkm04_ramp *ramp, const struct rkm04_profile *profile)
+{
+    if (ramp->left > 0)
+        find_first(ramp);
+    else
+        ramp->next = nothing_behind(profile) ? RKM04_NEVER : tick_from(ramp->end);
+}
+
+/* How long the leg takes from `start`, where it has speed w. */
+static void set_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_instant start, struct rkm04_fixed w)
+{
+    const struct rkm04_break *from = &profile->point[profile->leg], *to = from + 1;
+    if (leg_is_open(profile)) {
+        ramp->end = (struct rkm04_instant){RKM04_NEVER, 0, 0};
+        ramp->left = UINT32_MAX;
+        return;
+    }
+    ramp->left = ramp_step_of(to->at) - ramp_step_of(from->at);
+    struct rkm04_fixed w_end = ramp_w(to->speed2, &ramp->exact);
+    if (from->slope > 0)
+        ramp->end = after_slope(start, difference(w_end, w), (uint32_t)from->slope);
+    else if (from->slope < 0)
+        ramp->end = after_slope(start, difference(w, w_end), (uint32_t)-from->slope);
+    else /* a speed that is no whole number is taken as higher: the end must not come before ramp->end */
+        ramp->end = after_way(start, from->at, to->at, (uint32_t)((w.whole - 1) / RAMP_SPEED) + 1);
+}
+
+static void begin_leg(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_instant start)
+{
+    const struct rkm04_break *from = &profile->point[profile->leg];
+    struct rkm04_fixed w = ramp_w(from->speed2, &ramp->exact);
+    ramp->slope = from->slope;
+    ramp->at = tick_from(start);
+    set_end(ramp, profile, start, w);
+    if (from->slope < 0)
+        reckon_from_end(ramp, from[1].at, ramp_w(from[1].speed2, &ramp->exact));
+    else
+        reckon_from_start(ramp, start, from->at, w);
+    begin_pulses(ramp, profile);
+}
+
+void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick)
+{
+    ramp->exact = true;
+    begin_leg(ramp, profile, (struct rkm04_instant){tick, 0, 0});
+}
+
+void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
+{
+    *y = ramp->y;
+    *w = ramp->w;
+    move_on(y, w, ramp->slope, (int64_t)(tick - ramp->at));
+}
+
+void ramp_go_on(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick)
+{
+    ramp_look(ramp, tick, &ramp->y, &ramp->w);
+    ramp->at = tick;
+    ramp->slope = profile->point[profile->leg].slope;
+    set_end(ramp, profile, (struct rkm04_instant){tick, 0, 0}, ramp->w);
+    begin_pulses(ramp, profile);
+}
+
+uint64_t ramp_quiet_until(const struct rkm04_ramp *ramp)
+{
+    const uint64_t margin = 4; /* more than any rounding of a leg's end */
+    if (ramp->end.tick == RKM04_NEVER)
+        return RKM04_NEVER;
+    return ramp->end.tick > margin ? ramp->end.tick - margin : 0;
+}
+
+/* ---- Pulses ------------------------------------------------------------------------------------------------------- */
+
+/* Constant speed in whole steps/s: one addition a pulse. */
+static size_t level_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room)
+{
+    const int64_t w = ramp->w.whole, period = RAMP_STEP / w, shortfall = RAMP_STEP - period * w;
+    uint64_t at = ramp->at;
+    int64_t y = ramp->y.whole;
+    uint32_t left = ramp->left;
+    size_t n = 0;
+    do {
+        tick[n++] = at;
+        if (--left == 0) {
+            y -= RAMP_STEP;
+            break;
+        }
+        y -= shortfall;
+        at += (uint64_t)period;
+        if (y < 0) {
+            y += w;
+            at++;
+        }
+    } while (at <= limit && n < room);
+    ramp->y.whole = y;
+    ramp->at = at;
+    ramp->left = left;
+    return n;
+}
+
+/* Rising or falling speed: the interval follows the one before, corrected to the tick. */
+static size_t sloped_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room)
+{
+    struct rkm04_fixed y = ramp->y, w = ramp->w;
+    const int64_t slope = ramp->slope;
+    uint64_t at = ramp->at;
+    int64_t interval = ramp->interval, change = ramp->change;
+    size_t n = 0;
+    do {
+        tick[n++] = at;
+        y.whole -= RAMP_STEP;
+        if (--ramp->left == 0)
+            break;
+        int64_t d = interval + change;
+        if (d < 1)
+            d = 1;
+        struct rkm04_fixed y_next = y, w_next = w;
+        move_on(&y_next, &w_next, slope, d);
+        if (y_next.whole > 8 * w_next.whole || y_next.whole < -8 * w_next.whole) {
+            d = guess_ticks(y.whole, w.whole, slope);
+            y_next = y;
+            w_next = w;
+            move_on(&y_next, &w_next, slope, d);
+        }
+        d = settle(&y_next, &w_next, slope, d, 1);
+        y = y_next;
+        w = w_next;
+        change = d - interval;
+        interval = d;
+        at += (uint64_t)d;
+    } while (at <= limit && n < room);
+    ramp->y = y;
+    ramp->w = w;
+    ramp->at = at;
+    ramp->interval = (int32_t)interval;
+    ramp->change = (int32_t)change;
+    return n;
+}
+
+size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t limit, uint64_t *tick, size_t room)
+{
+    size_t n = 0;
+    while (n < room && ramp->next <= limit) {
+        if (ramp->left == 0) {
+            struct rkm04_instant end = ramp->end;
+            profile->leg++;
+            begin_leg(ramp, profile, end);
+            continue;
+        }
+        if (ramp->slope == 0 && ramp->w.part == 0)
+            n += level_pulses(ramp, limit, tick + n, room - n);
+        else
+            n += sloped_pulses(ramp, limit, tick + n, room - n);
+        ramp->next = ramp->at;
+        if (ramp->left == 0) {
+            if (leg_is_open(profile))
+                ramp->left = UINT32_MAX;
+            begin_pulses(ramp, profile);
+        }
+    }
+    return n;
+}
