@@ -35,7 +35,7 @@ missing_tools() {
         pkg-config --exists "$tool" 2>/dev/null || echo "library $tool (pkg-config)"
     done
     if [[ $1 == test ]]; then
-        for tool in socat ps; do
+        for tool in socat ps arm-none-eabi-gcc; do
             command -v "$tool" >/dev/null || echo "$tool"
         done
     fi
