@@ -15,8 +15,8 @@
  *         16    5*n  commands, the oldest first: op, argument (4 bytes)
  *                    FF up to a multiple of 8
  *
- * Order of a store, always in the block that does not hold the newest whole record: erase, commands, read them back, header,
- * read all back. The record begins to count with the last byte of its header; until then the other block does. */
+ * Order of a store, always in the block that does not hold the newest whole record: erase, commands, header, read all back.
+ * The record begins to count with the last byte of its header; until then the other block does. */
 #define VERSION 1
 #define HEADER_SIZE 16
 #define CHECKED_SIZE 12 /* bytes of the header under the check value */
@@ -220,13 +220,10 @@ static int write_record(const struct slot *slot, unsigned block, uint32_t genera
     uint8_t bytes[HEADER_SIZE];
     struct header header = {(uint16_t)program_count(program), generation, 0}, found;
     put_header(bytes, slot->motor, &header);
-    uint32_t start = crc32_update(0, bytes, CHECKED_SIZE), check = start;
-    header.check = check_commands(start, program);
+    header.check = check_commands(crc32_update(0, bytes, CHECKED_SIZE), program);
     put_header(bytes, slot->motor, &header);
 
     if (slot->port->flash_erase(slot->context, block) != 0 || write_commands(slot, block, program) != 0)
-        return 1;
-    if (read_commands(slot, block, header.count, &check, NULL) != CONTENT_RECORD || check != header.check)
         return 1;
     if (slot->port->flash_program(slot->context, block, 0, bytes, HEADER_SIZE) == 0 &&
         read_record(slot, block, &found, NULL) == CONTENT_RECORD && found.check == header.check &&

@@ -122,9 +122,9 @@ int flash_fake_erase(void *context, unsigned block)
     uint8_t erased[RKM04_FLASH_BLOCK_SIZE];
     memset(erased, 0xff, sizeof erased);
     int result = operate(flash, flash->data[block], erased, sizeof erased);
-    /* What an erase left halfway has to be erased again before it is programmed. */
+    /* What an erase left halfway has to be erased again before it is programmed, but the caller has to be told so. */
     bool whole = memcmp(flash->data[block], erased, sizeof erased) == 0;
-    memset(flash->used[block], !whole, sizeof flash->used[block]);
+    memset(flash->used[block], !whole && result != 0, sizeof flash->used[block]);
     return result;
 }
 
@@ -141,5 +141,8 @@ int flash_fake_program(void *context, unsigned block, unsigned offset, const voi
             return misuse(flash);
     flash->operations++;
     memset(used, true, length / FLASH_FAKE_UNIT);
-    return operate(flash, &flash->data[block][offset], data, length);
+    uint8_t *cell = &flash->data[block][offset], wanted[RKM04_FLASH_BLOCK_SIZE];
+    for (unsigned i = 0; i < length; i++)
+        wanted[i] = cell[i] & ((const uint8_t *)data)[i]; /* programming only makes 0 of 1 */
+    return operate(flash, cell, wanted, length);
 }
