@@ -1,0 +1,26 @@
+/* diagnose.h: what is wrong with a program text, for people: FILE:LINE:COLUMN: error: what was expected. */
+#ifndef RKM04_HOST_DIAGNOSE_H
+#define RKM04_HOST_DIAGNOSE_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+/* A place in a text as an editor shows it: both count from 1, a UTF-8 character is one column. Plain data. */
+struct text_place {
+    const char *text;
+    size_t length;
+    size_t at; /* offset in bytes */
+    size_t line, column;
+};
+
+/* The beginning of a text. */
+struct text_place text_place_begin(const char *text, size_t length);
+
+/* Go on to `offset`, not before the present place, at most the end of the text. */
+void text_place_move(struct text_place *place, size_t offset);
+
+/* Read a whole program text and print one line `NAME:LINE:COLUMN: error: …` to `out` for each command that the unit would
+ * refuse (flags 1 and 2 of message 2), at the place of the command. Returns their number; 0: the unit takes the text. */
+int diagnose_text(const char *name, const char *text, size_t length, FILE *out);
+
+#endif
