@@ -106,6 +106,8 @@ START_TEST(S5_the_position_may_be_negative_and_nothing_else)
     expect_command("=-2000000000", '=', (uint32_t)-2000000000);
     expect_error("=-2000000001", RKM04_READ_BAD_VALUE, 0, 1);
     expect_error("=-4294967295", RKM04_READ_BAD_VALUE, 0, 1);
+    expect_error("= -3000000000", RKM04_READ_BAD_VALUE, 0, 2);
+    expect_error("= \r\n3000000000", RKM04_READ_BAD_VALUE, 0, 4);
     expect_error("=+5", RKM04_READ_BAD_VALUE, 0, 1);
     expect_error("=--5", RKM04_READ_BAD_VALUE, 0, 2);
     expect_error("=-", RKM04_READ_BAD_VALUE, 0, 2);
@@ -335,6 +337,8 @@ START_TEST(S5_reading_goes_on_behind_an_error_to_find_the_others)
 {
     ck_assert_reads("\\ F0 R f100 R V16001 S R A-5 R", "\\ !2:3 R ?7 R !14:15 !21:23 R !25:26 R");
     ck_assert_reads("F0R", "!0:1 R");
+    ck_assert_reads("F0xR", "!0:1 ?2 R");
+    ck_assert_reads("F0{}R", "!0:1 R");
     ck_assert_reads("FR", "!0:1 R");
     ck_assert_reads("F\\", "!0:1 \\");
     ck_assert_reads("F'1", "!0:1 '1");
