@@ -177,7 +177,7 @@ struct rkm04_answer {
     uint8_t to;          /* asker's node */
     uint8_t phase;       /* begin, body, end */
     uint16_t at;         /* next item of the body: byte, command or point */
-    uint8_t head;        /* bytes in `byte` that precede the body */
+    uint8_t head, head_at; /* bytes in `byte` that precede the body, and how many of them are out */
     uint8_t points;
     uint8_t chunk_at, chunk_length; /* within `chunk` */
     uint8_t byte[64];

@@ -1,0 +1,39 @@
+/* flash_file.h: the unit's flash: an image file that survives, or memory that lives as long as the process.
+ *
+ * The image is the blocks of the flash one after the other, RKM04_FLASH_BLOCKS x RKM04_FLASH_BLOCK_SIZE bytes, and nothing
+ * else. Every operation reaches the file when it is asked for, in order; what has been read back, as the unit does with each
+ * part of a record before it goes on, is on the disk. So the record's own rules hold for a killed emulator and for a machine
+ * that lost its power. */
+#ifndef RKM04_HOST_FLASH_FILE_H
+#define RKM04_HOST_FLASH_FILE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <rkm04/unit.h>
+
+#define FLASH_FILE_SIZE (RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE)
+
+struct flash_file {
+    const char *path; /* NULL: memory only */
+    int fd;           /* -1: memory only */
+    bool unsynced;
+    uint8_t memory[FLASH_FILE_SIZE]; /* without a file */
+};
+
+/* Open the image `path`, making an erased one if there is none, for this process alone; NULL: memory only. `path` must stay.
+ * Failures are reported. Returns false if it did not work. */
+bool flash_file_open(struct flash_file *flash, const char *path);
+
+/* See that all is on the disk. Failures are reported. Returns false if it did not work. */
+bool flash_file_sync(struct flash_file *flash);
+
+/* Sync and close. Returns as flash_file_sync(). */
+bool flash_file_close(struct flash_file *flash);
+
+/* As in struct rkm04_port. Failures are reported. */
+int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, void *data, unsigned length);
+int flash_file_erase(struct flash_file *flash, unsigned block);
+int flash_file_program(struct flash_file *flash, unsigned block, unsigned offset, const void *data, unsigned length);
+
+#endif

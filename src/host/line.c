@@ -1,0 +1,53 @@
+#include "line.h"
+
+#include <errno.h>
+#include <unistd.h>
+
+#define INPUT_OFF (IGNBRK | BRKINT | PARMRK | INPCK | ISTRIP | INLCR | IGNCR | ICRNL | IXON | IXOFF | IXANY)
+#define LOCAL_OFF (ECHO | ECHONL | ICANON | ISIG | IEXTEN)
+#define CONTROL_OFF (CSIZE | PARENB | CSTOPB | CRTSCTS)
+#define CONTROL_ON (CS8 | CREAD | CLOCAL)
+
+bool line_make_raw(struct termios *settings)
+{
+    struct termios old = *settings;
+    settings->c_iflag &= ~(tcflag_t)INPUT_OFF;
+    settings->c_oflag &= ~(tcflag_t)OPOST;
+    settings->c_lflag &= ~(tcflag_t)LOCAL_OFF;
+    settings->c_cflag = (settings->c_cflag & ~(tcflag_t)CONTROL_OFF) | CONTROL_ON;
+    return settings->c_iflag != old.c_iflag || settings->c_oflag != old.c_oflag || settings->c_lflag != old.c_lflag ||
+           settings->c_cflag != old.c_cflag;
+}
+
+ssize_t line_read(struct line *line, uint8_t *bytes, size_t room)
+{
+    errno = 0;
+    ssize_t length = read(line->fd, bytes, room);
+    if (length > 0)
+        return length;
+    return length < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
+}
+
+size_t line_write(struct line *line, const uint8_t *bytes, size_t length)
+{
+    size_t done = 0;
+    while (line->clients > 0 && done < length) {
+        ssize_t sent = write(line->fd, bytes + done, length - done);
+        if (sent > 0)
+            done += (size_t)sent;
+        else if (sent == 0 || errno != EINTR)
+            break;
+    }
+    line->dropped += length - done;
+    return length - done;
+}
+
+void line_close(struct line *line)
+{
+    int *fds[] = {&line->notices, &line->slave, &line->fd};
+    for (size_t i = 0; i < sizeof fds / sizeof fds[0]; i++) {
+        if (*fds[i] >= 0)
+            close(*fds[i]);
+        *fds[i] = -1;
+    }
+}

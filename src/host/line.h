@@ -1,0 +1,53 @@
+/* line.h: the emulator's end of the serial line: a pty of its own (line_pty.c) or a device that is there (line_serial.c). */
+#ifndef RKM04_HOST_LINE_H
+#define RKM04_HOST_LINE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/types.h>
+#include <termios.h>
+
+struct line {
+    int fd;           /* for bytes: master of the pty, or the device; non-blocking */
+    int notices;      /* inotify: clients open and close the pty; -1: a device */
+    int slave;        /* held open, so that the master never sees a hang-up; -1: a device */
+    int watch;
+    unsigned own;     /* notices of our own open and close still to come */
+    unsigned clients; /* have the line open; a device counts as one */
+    uint64_t dropped; /* bytes that nobody was there for, or that a client did not read in time */
+    char path[64];    /* of the pty's slave; "" for a device */
+};
+
+/* What line_notice() saw; several may come at once, in this order. */
+#define LINE_DETACHED 1u /* the last client has closed the line */
+#define LINE_ATTACHED 2u /* the first client has opened it */
+#define LINE_SHARED 4u   /* one more client has opened it */
+#define LINE_FAILED 8u   /* the pty is lost (reported) */
+
+/* Make a pty, raw from the start. Failures are reported. Returns false if it did not work. */
+bool line_pty_open(struct line *line);
+
+/* Handle what clients did since the last call: count them, make the line raw again, forget what the last one left unread.
+ * Returns LINE_ bits. */
+unsigned line_pty_notice(struct line *line);
+
+/* Bytes came although no client is known: look again. Returns LINE_ bits. */
+unsigned line_pty_look_again(struct line *line);
+
+/* Use the serial device or pty `path`: raw, 19200 baud, 8N1 (U7). Failures are reported. Returns false if it did not work. */
+bool line_serial_open(struct line *line, const char *path);
+
+/* Read up to `room` bytes. Returns their number; 0: none now; -1: the line is gone (errno says why; 0: hung up). */
+ssize_t line_read(struct line *line, uint8_t *bytes, size_t room);
+
+/* Send. Bytes for nobody and bytes that do not fit are dropped and counted: a line has no memory. Never blocks.
+ * Returns the number of dropped ones. */
+size_t line_write(struct line *line, const uint8_t *bytes, size_t length);
+
+void line_close(struct line *line);
+
+/* Settings of a raw line with 8N1. Leaves speed and control characters alone. Returns false if nothing had to change. */
+bool line_make_raw(struct termios *settings);
+
+#endif

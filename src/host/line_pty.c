@@ -1,0 +1,167 @@
+/* The emulator's own pty. It holds one slave descriptor itself, so the master never reports a hang-up (which would make
+ * poll() return at once, for ever) and the settings stay within reach; who comes and goes is told by inotify.
+ *
+ * inotify merges equal notices that follow each other, so counting them may err when two clients come or go together. Hence
+ * `clients` is corrected whenever it looks doubtful: with our own slave closed for a moment, the master tells by a hang-up
+ * whether anybody else has the slave open. */
+#include "line.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/inotify.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "log.h"
+
+static bool set_flags(int fd)
+{
+    return fcntl(fd, F_SETFD, FD_CLOEXEC) == 0 && fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK) == 0;
+}
+
+/* The settings of a pty nobody has touched: raw, 19200 baud, reads return what is there. */
+static void fresh_settings(struct termios *settings)
+{
+    line_make_raw(settings);
+    cfsetspeed(settings, B19200);
+    settings->c_cc[VMIN] = 1;
+    settings->c_cc[VTIME] = 0;
+}
+
+bool line_pty_open(struct line *line)
+{
+    *line = (struct line){.fd = -1, .notices = -1, .slave = -1, .watch = -1};
+    struct termios settings = {0};
+    fresh_settings(&settings);
+    if (openpty(&line->fd, &line->slave, NULL, &settings, NULL) != 0) {
+        log_error("cannot make a pty: %s; is /dev/pts mounted?", strerror(errno));
+        return false;
+    }
+    line->notices = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    int failed = ptsname_r(line->fd, line->path, sizeof line->path);
+    if (failed == 0 && line->notices >= 0 && set_flags(line->fd) && set_flags(line->slave))
+        line->watch = inotify_add_watch(line->notices, line->path, IN_OPEN | IN_CLOSE);
+    if (line->watch < 0) {
+        log_error("cannot use the pty %s: %s", line->path, strerror(failed ? failed : errno));
+        line_close(line);
+        return false;
+    }
+    return true;
+}
+
+/* Nobody listens any more: what the unit sent and nobody read is lost, as on a line; the next client finds a fresh pty. */
+static void forget_client(struct line *line)
+{
+    uint8_t bytes[1024];
+    ssize_t length;
+    struct termios settings;
+    ioctl(line->slave, TIOCNXCL); /* a client's TIOCEXCL outlives it and would keep the next one out */
+    if (tcgetattr(line->slave, &settings) == 0) {
+        fresh_settings(&settings);
+        tcsetattr(line->slave, TCSANOW, &settings);
+    }
+    tcflow(line->slave, TCOON);
+    while ((length = read(line->slave, bytes, sizeof bytes)) > 0)
+        line->dropped += (uint64_t)length;
+    tcflush(line->fd, TCOFLUSH);    /* what is still on its way to the slave; what the client wrote stays */
+    tcflush(line->slave, TCIFLUSH);
+}
+
+/* A client has come. It may already have made its own settings, so only what is not raw is touched. */
+static void greet_client(struct line *line)
+{
+    struct termios settings;
+    if (tcgetattr(line->slave, &settings) == 0 && line_make_raw(&settings))
+        tcsetattr(line->slave, TCSANOW, &settings);
+}
+
+static unsigned opened(struct line *line)
+{
+    if (line->clients++ > 0)
+        return LINE_SHARED;
+    greet_client(line);
+    return LINE_ATTACHED;
+}
+
+static unsigned closed(struct line *line)
+{
+    if (line->clients == 0 || --line->clients > 0)
+        return 0;
+    forget_client(line);
+    return LINE_DETACHED;
+}
+
+/* Does anybody else have the slave open? Returns 1 or 0; -1: the slave is lost. */
+static int anybody_else(struct line *line)
+{
+    struct pollfd master = {.fd = line->fd};
+    int exclusive = 0;
+    /* TIOCEXCL would keep us out as well, unless we are root. */
+    ioctl(line->slave, TIOCGEXCL, &exclusive);
+    ioctl(line->slave, TIOCNXCL);
+    close(line->slave);
+    bool others = poll(&master, 1, 0) >= 0 && !(master.revents & POLLHUP);
+    line->slave = open(line->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (line->slave < 0) {
+        log_error("a client has locked the pty %s for good: %s; start the emulator again", line->path, strerror(errno));
+        return -1;
+    }
+    if (others && exclusive)
+        ioctl(line->slave, TIOCEXCL);
+    line->own += 2;
+    return others;
+}
+
+/* Correct `clients`. Returns LINE_ bits. */
+static unsigned count_again(struct line *line)
+{
+    int others = anybody_else(line);
+    if (others < 0)
+        return LINE_FAILED;
+    if (others && line->clients == 0)
+        return opened(line);
+    if (!others && line->clients > 0) {
+        line->clients = 1;
+        return closed(line);
+    }
+    return 0;
+}
+
+/* Handle one notice. Returns LINE_ bits. */
+static unsigned handle(struct line *line, uint32_t mask)
+{
+    if (!(mask & (IN_OPEN | IN_CLOSE)))
+        return 0;
+    if (line->own > 0) {
+        line->own--;
+        return 0;
+    }
+    return mask & IN_OPEN ? opened(line) : closed(line);
+}
+
+unsigned line_pty_notice(struct line *line)
+{
+    _Alignas(struct inotify_event) char buffer[4096];
+    unsigned seen = 0;
+    uint32_t masks = 0;
+    ssize_t length;
+    while ((length = read(line->notices, buffer, sizeof buffer)) > 0) {
+        for (ssize_t at = 0; at < length;) {
+            const struct inotify_event *event = (const void *)(buffer + at);
+            masks |= event->mask;
+            seen |= handle(line, event->mask);
+            at += (ssize_t)(sizeof *event + event->len);
+        }
+    }
+    bool doubtful = (masks & IN_Q_OVERFLOW) || ((masks & IN_CLOSE) && line->clients > 0);
+    return doubtful ? seen | count_again(line) : seen;
+}
+
+unsigned line_pty_look_again(struct line *line)
+{
+    return count_again(line);
+}

@@ -1,0 +1,190 @@
+#include "link_path.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "log.h"
+
+#define RECORD "rkm04 process %ld, pty %63s" /* in the lock file: whose the link is, and where it leads */
+#define RECORD_MAX 128
+
+/* ---- The default ---------------------------------------------------------------------------------------------------- */
+
+/* Make the folder, for its owner alone; one that is there must be such a one. */
+static bool private_folder(const char *path)
+{
+    struct stat found;
+    if (mkdir(path, 0700) != 0 && errno != EEXIST)
+        return false;
+    if (lstat(path, &found) != 0)
+        return false;
+    if (!S_ISDIR(found.st_mode) || found.st_uid != geteuid()) {
+        errno = EPERM;
+        return false;
+    }
+    return (found.st_mode & 077) == 0 || chmod(path, 0700) == 0;
+}
+
+static bool default_path(char path[PATH_MAX])
+{
+    char folder[PATH_MAX - 16];
+    const char *base = getenv("XDG_RUNTIME_DIR");
+    if (base && base[0] == '/' && snprintf(folder, sizeof folder, "%s/rkm04", base) < (int)sizeof folder &&
+        private_folder(folder)) {
+        snprintf(path, PATH_MAX, "%s/bus0", folder);
+        return true;
+    }
+    base = getenv("TMPDIR");
+    if (!base || base[0] != '/')
+        base = "/tmp";
+    if (snprintf(folder, sizeof folder, "%s/rkm04-%lu", base, (unsigned long)geteuid()) >= (int)sizeof folder) {
+        log_error("the name of the temporary directory is too long: set TMPDIR, or give --link PATH");
+        return false;
+    }
+    if (!private_folder(folder)) {
+        log_error("cannot use the folder %s: %s; give --link PATH", folder,
+                  errno == EPERM ? "it is not a folder of yours" : strerror(errno));
+        return false;
+    }
+    snprintf(path, PATH_MAX, "%s/bus0", folder);
+    return true;
+}
+
+/* ---- The lock ------------------------------------------------------------------------------------------------------- */
+
+/* Open and lock LINK.lock. Returns false with errno; EWOULDBLOCK: another holds it, its record is in `record`. */
+static bool lock(struct link_path *link, char record[RECORD_MAX])
+{
+    struct stat ours, there;
+    for (;;) {
+        int fd = open(link->lock_path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0600);
+        if (fd < 0)
+            return false;
+        bool locked = flock(fd, LOCK_EX | LOCK_NB) == 0;
+        int why = errno;
+        ssize_t length = pread(fd, record, RECORD_MAX - 1, 0);
+        record[length > 0 ? length : 0] = '\0';
+        record[strcspn(record, "\n")] = '\0';
+        if (!locked) {
+            close(fd);
+            errno = why;
+            return false;
+        }
+        /* The one before us may have removed the file between our open and our lock. */
+        if (fstat(fd, &ours) == 0 && stat(link->lock_path, &there) == 0 && ours.st_ino == there.st_ino &&
+            ours.st_dev == there.st_dev) {
+            link->lock = fd;
+            return true;
+        }
+        close(fd);
+    }
+}
+
+/* Find the target of the link in a record. Returns false if it is none; an empty one (we made the file) has an empty target. */
+static bool read_record(const char *record, char target[64])
+{
+    long pid;
+    target[0] = '\0';
+    return record[0] == '\0' || sscanf(record, RECORD, &pid, target) == 2;
+}
+
+static bool write_record(const struct link_path *link, const char *target)
+{
+    char record[RECORD_MAX];
+    int length = snprintf(record, sizeof record, "rkm04 process %ld, pty %s\n", (long)getpid(), target);
+    return ftruncate(link->lock, 0) == 0 && pwrite(link->lock, record, (size_t)length, 0) == length;
+}
+
+/* Remove the lock file and give the lock free. */
+static void unlock(struct link_path *link)
+{
+    unlink(link->lock_path);
+    close(link->lock);
+    link->lock = -1;
+}
+
+/* ---- The link ------------------------------------------------------------------------------------------------------- */
+
+/* Does the link at `path` lead to `target`? */
+static bool leads_to(const char *path, const char *target)
+{
+    char found[64];
+    ssize_t length = readlink(path, found, sizeof found);
+    return length > 0 && (size_t)length < sizeof found && (size_t)length == strlen(target) &&
+           memcmp(found, target, (size_t)length) == 0;
+}
+
+/* Remove what a killed emulator has left. Returns false if something else is there (reported). */
+static bool clear_stale(const struct link_path *link, const char *target)
+{
+    struct stat found;
+    if (lstat(link->path, &found) != 0)
+        return true;
+    if (target[0] && leads_to(link->path, target) && unlink(link->path) == 0)
+        return true;
+    log_error("%s is there already and is not a link that an emulator left behind: remove it, or choose another --link",
+              link->path);
+    return false;
+}
+
+bool link_path_claim(struct link_path *link, const char *path)
+{
+    char record[RECORD_MAX], target[64];
+    *link = (struct link_path){.lock = -1};
+    if (!path && !default_path(link->path))
+        return false;
+    if (path && snprintf(link->path, sizeof link->path, "%s", path) >= (int)sizeof link->path) {
+        log_error("--link: the path is too long");
+        return false;
+    }
+    if (snprintf(link->lock_path, sizeof link->lock_path, "%s.lock", link->path) >= (int)sizeof link->lock_path) {
+        log_error("--link: the path is too long");
+        return false;
+    }
+    if (!lock(link, record)) {
+        if (errno == EWOULDBLOCK)
+            log_error("another emulator (%s) holds the link %s: end it, or choose another --link",
+                      record[0] ? record : "about to start", link->path);
+        else
+            log_error("cannot lock %s: %s; choose a --link in a folder that is there and that you may write to",
+                      link->lock_path, strerror(errno));
+        return false;
+    }
+    if (!read_record(record, target)) {
+        log_error("%s is not a lock file of an emulator: remove it, or choose another --link", link->lock_path);
+        close(link->lock);
+        link->lock = -1;
+        return false;
+    }
+    if (!clear_stale(link, target)) {
+        unlock(link);
+        return false;
+    }
+    return true;
+}
+
+bool link_path_make(struct link_path *link, const char *target)
+{
+    /* The record first: a link without it would not be known as ours. symlink() is atomic and replaces nothing. */
+    if (!write_record(link, target) || symlink(target, link->path) != 0) {
+        log_error("cannot make the link %s: %s; choose another --link", link->path, strerror(errno));
+        return false;
+    }
+    snprintf(link->target, sizeof link->target, "%s", target);
+    return true;
+}
+
+void link_path_release(struct link_path *link)
+{
+    if (link->lock < 0)
+        return;
+    if (link->target[0] && leads_to(link->path, link->target))
+        unlink(link->path);
+    unlock(link);
+}

@@ -1,0 +1,27 @@
+/* link_path.h: the stable name of the emulator's pty: a symbolic link, and beside it a lock file "LINK.lock" that says whose
+ * the link is. The kernel frees the lock however its holder ends, so a link under a free lock of ours is stale. */
+#ifndef RKM04_HOST_LINK_PATH_H
+#define RKM04_HOST_LINK_PATH_H
+
+#include <limits.h>
+#include <stdbool.h>
+
+struct link_path {
+    char path[PATH_MAX];
+    char lock_path[PATH_MAX];
+    char target[64]; /* of the link once it is made; "" before */
+    int lock;        /* -1: not ours */
+};
+
+/* Take the name `path` (NULL: the default, $XDG_RUNTIME_DIR/rkm04/bus0 or a private folder under the temporary directory), and
+ * remove a stale link of our own there. Whatever else stands there is left alone, and refused. Failures are reported.
+ * Returns false if the name cannot be had. */
+bool link_path_claim(struct link_path *link, const char *path);
+
+/* Make the link to `target`, atomically. Failures are reported. Returns false if it did not work. */
+bool link_path_make(struct link_path *link, const char *target);
+
+/* Remove the link if it is still ours, and give the name free. */
+void link_path_release(struct link_path *link);
+
+#endif

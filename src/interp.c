@@ -1,0 +1,320 @@
+#include "interp.h"
+
+#include "execute.h"
+#include "motion.h"
+#include "profile.h"
+#include "program.h"
+#include "ramp.h"
+#include "report.h"
+
+uint64_t interp_slot(uint64_t tick)
+{
+    if (tick > UINT64_MAX - RKM04_SLOT_TICKS)
+        return RKM04_NEVER;
+    uint64_t slot = (tick + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS * RKM04_SLOT_TICKS;
+    return slot ? slot : RKM04_SLOT_TICKS;
+}
+
+unsigned interp_index(const struct rkm04_motor *motor)
+{
+    switch ((enum rkm04_state)motor->state) {
+    case RKM04_IDLE:
+    case RKM04_ENDED:
+        return 0;
+    case RKM04_HELD:
+        if (motor->held == RKM04_READY && motor->next < motor->program.written) {
+            uint64_t oldest = program_oldest(&motor->program);
+            return program_place(motor->next > oldest ? motor->next : oldest);
+        }
+        return program_place(motor->number);
+    default:
+        return program_place(motor->number);
+    }
+}
+
+/* ---- What arrives ----------------------------------------------------------------------------------------------------- */
+
+static void clear_stacks(struct rkm04_motor *motor)
+{
+    motor->loops = 0;
+    motor->calls = 0;
+}
+
+void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    bool busy = interp_index(motor) != 0;
+    motion_abort(unit, motor);
+    write_led(unit, motor, unit->now, RKM04_LED_OFF);
+    program_clear(&motor->program);
+    clear_stacks(motor);
+    motor->next = 0;
+    motor->number = 0;
+    motor->fresh = RKM04_NEVER;
+    motor->wake = RKM04_NEVER;
+    motor->state = RKM04_IDLE;
+    motor->held = RKM04_READY;
+    motor->resume = false;
+    motor->pendings = 0;
+    motor->change_speed = 0;
+    motor->start_speed = 100; /* U8 */
+    motor->speed = 1000;
+    motor->acceleration = 2000;
+    motor->forward = true;
+    motor->count = 0;
+    motor->segments = 0;
+    motor->segments_bad = false;
+    motor->functions = 0;
+    motor->keep = false;
+    motor->guard_m = motor->guard_n = motor->guard_x = 0;
+    if (motor->fault != RKM04_FAULT_NONE) {
+        motor->fault = RKM04_FAULT_NONE;
+        report_event(unit, motor, unit->now, RKM04_EVENT_FAULT, RKM04_FAULT_NONE);
+    }
+    if (busy)
+        report_event(unit, motor, unit->now, RKM04_EVENT_COMMAND, 0);
+}
+
+/* Execution goes on at the commands stored since K, X or a fault; the rest of what was before is dropped (C3). */
+static void take_fresh(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    clear_stacks(motor);
+    motor->motion.kind = RKM04_MOTION_NONE;
+    motor->next = motor->fresh;
+    motor->fresh = RKM04_NEVER;
+    motor->resume = false;
+    motor->state = RKM04_READY;
+    motor->due = motion_free_from(unit, motor);
+}
+
+/* Will the motor stand still, with new commands as one way out? */
+static bool ends_with_fresh(const struct rkm04_motor *motor)
+{
+    bool moving = motor->state == RKM04_MOVING;
+    if (motor->state == RKM04_ENDED || motor->state == RKM04_FAULTY || (moving && motor->after == RKM04_AFTER_END))
+        return true;
+    if (motor->pendings > 0)
+        return motor->pending[motor->pendings - 1] == 'K';
+    return !motor->resume && (motor->state == RKM04_HELD || (moving && motor->after != RKM04_AFTER_GO_ON));
+}
+
+void interp_stored(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
+{
+    unit->touched = true;
+    if (ends_with_fresh(motor) && motor->fresh == RKM04_NEVER)
+        motor->fresh = first;
+    if (motor->state == RKM04_IDLE) {
+        motor->state = RKM04_READY;
+        motor->due = motion_free_from(unit, motor);
+    }
+}
+
+void interp_request(struct rkm04_unit *unit, struct rkm04_motor *motor, char request)
+{
+    unsigned n = motor->pendings;
+    unit->touched = true;
+    if (n > 0 && motor->pending[n - 1] == request)
+        return;
+    if (n > 1 && request == 'K') { /* K C75 K is the same as K */
+        motor->pendings--;
+        if (motor->change_after > motor->pendings)
+            motor->change_after = motor->pendings;
+        return;
+    }
+    motor->pending[motor->pendings++] = request;
+}
+
+bool interp_change_speed(struct rkm04_unit *unit, struct rkm04_motor *motor, uint16_t speed)
+{
+    if (!motor->motion.moving)
+        return false;
+    unit->touched = true;
+    if (motor->change_speed == 0) {
+        motor->change_due = unit->now + (uint64_t)unit->config.speed_change_latency * 1000;
+        motor->change_after = motor->pendings;
+    }
+    motor->change_speed = speed;
+    return true;
+}
+
+/* ---- X (C6) --------------------------------------------------------------------------------------------------- */
+
+/* Has the motor a command to execute, or is it in one? (C6) */
+static bool has_work(const struct rkm04_motor *motor)
+{
+    switch ((enum rkm04_state)motor->state) {
+    case RKM04_READY:
+        return motor->next < motor->program.written;
+    case RKM04_MOVING:
+    case RKM04_DWELL:
+    case RKM04_WAIT:
+    case RKM04_BLOCK:
+    case RKM04_HELD:
+        return true;
+    default:
+        return false;
+    }
+}
+
+static void look_at_total_stop(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    if (motor->guard_x == 0 || !input_is_high(unit, motor->guard_x) || !has_work(motor))
+        return;
+    if (motor->state == RKM04_MOVING && motor->after == RKM04_AFTER_END)
+        return;
+    motor->guard_x = 0;
+    motor->fresh = RKM04_NEVER;
+    motor->resume = false;
+    if (motor->state != RKM04_MOVING) {
+        motor->motion.kind = RKM04_MOTION_NONE;
+        motor->state = RKM04_ENDED;
+        report_event(unit, motor, unit->now, RKM04_EVENT_COMMAND, 0);
+    } else if (motor->motion.stopping) {
+        motor->after = RKM04_AFTER_END;
+    } else {
+        motion_stop(unit, motor, RKM04_AFTER_END);
+    }
+}
+
+/* ---- K, C75, V (C3, C4) ------------------------------------------------------------------------------------------------- */
+
+static void act_on_halt(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    motor->resume = false;
+    motor->change_speed = 0;
+    switch ((enum rkm04_state)motor->state) {
+    case RKM04_READY:
+        if (motor->next == motor->program.written)
+            return;
+        break;
+    case RKM04_DWELL:
+        motor->due -= unit->now;
+        break;
+    case RKM04_WAIT:
+    case RKM04_BLOCK:
+        break;
+    case RKM04_MOVING:
+        if (!motor->motion.stopping)
+            motion_stop(unit, motor, RKM04_AFTER_HOLD_REST);
+        else if (motor->after == RKM04_AFTER_GO_ON)
+            motor->after = RKM04_AFTER_HOLD_NEXT;
+        return;
+    default:
+        return;
+    }
+    motor->held = motor->state;
+    motor->state = RKM04_HELD;
+}
+
+static void act_on_change(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    if (motor->change_speed == 0 || motor->change_due > unit->now)
+        return;
+    struct rkm04_motion *motion = &motor->motion;
+    if (motion->moving && !motion->stopping && motion->kind != RKM04_MOTION_LIMIT)
+        profile_change_speed(motion, unit->now, motor->change_speed);
+    motor->change_speed = 0;
+}
+
+static void act_on_requests(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    unsigned count = motor->pendings;
+    motor->pendings = 0;
+    for (unsigned i = 0; i <= count; i++) {
+        if (i == (motor->change_after < count ? motor->change_after : count))
+            act_on_change(unit, motor);
+        if (i == count)
+            break;
+        if (motor->pending[i] == 'K')
+            act_on_halt(unit, motor);
+        else if (motor->state == RKM04_HELD || (motor->state == RKM04_MOVING && (motor->after == RKM04_AFTER_HOLD_REST ||
+                                                                                motor->after == RKM04_AFTER_HOLD_NEXT)))
+            motor->resume = true;
+    }
+    motor->change_after = 0;
+    if (count > 0 && !ends_with_fresh(motor))
+        motor->fresh = RKM04_NEVER;
+}
+
+static bool stands_still(const struct rkm04_motor *motor)
+{
+    return motor->state == RKM04_HELD || motor->state == RKM04_ENDED || motor->state == RKM04_FAULTY;
+}
+
+/* A held motor goes on: with what it was doing after C75, or with new commands, which also end X and faults. */
+static void look_at_hold(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    if (stands_still(motor) && motor->fresh != RKM04_NEVER)
+        take_fresh(unit, motor);
+    if (motor->state != RKM04_HELD || !motor->resume || motion_free_from(unit, motor) > unit->now)
+        return;
+    motor->resume = false;
+    motor->state = motor->held;
+    if (motor->held == RKM04_MOVING)
+        motion_resume(unit, motor);
+    else if (motor->held == RKM04_DWELL)
+        motor->due += unit->now;
+    else
+        motor->due = unit->now;
+}
+
+/* ---- The turn ----------------------------------------------------------------------------------------------------------- */
+
+static void execute_next(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    uint64_t oldest = program_oldest(&motor->program);
+    if (motor->next < oldest) /* overwritten (C10) */
+        motor->next = oldest;
+    if (motor->next == motor->program.written) {
+        motor->state = RKM04_IDLE;
+        report_event(unit, motor, unit->now, RKM04_EVENT_COMMAND, 0);
+        return;
+    }
+    if (motor->fault != RKM04_FAULT_NONE) {
+        motor->fault = RKM04_FAULT_NONE;
+        report_event(unit, motor, unit->now, RKM04_EVENT_FAULT, RKM04_FAULT_NONE);
+    }
+    motor->number = motor->next++;
+    motor->command = program_at(&motor->program, motor->number);
+    motor->due = unit->now + RKM04_SLOT_TICKS;
+    report_event(unit, motor, unit->now, RKM04_EVENT_COMMAND, program_place(motor->number));
+    execute_command(unit, motor);
+}
+
+/* The slot in which the next turn is needed if nothing comes in from outside. */
+static uint64_t next_turn(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
+{
+    uint64_t quiet;
+    switch ((enum rkm04_state)motor->state) {
+    case RKM04_READY:
+    case RKM04_DWELL:
+        return interp_slot(motor->due > unit->now ? motor->due : unit->now + 1);
+    case RKM04_HELD:
+    case RKM04_ENDED:
+    case RKM04_FAULTY:
+        return motor->resume || motor->fresh != RKM04_NEVER ? interp_slot(motion_free_from(unit, motor)) : RKM04_NEVER;
+    case RKM04_MOVING:
+        quiet = ramp_quiet_until(&motor->motion.ramp);
+        if (motor->change_speed != 0 && motor->change_due < quiet)
+            quiet = motor->change_due;
+        return interp_slot(quiet > unit->now ? quiet : unit->now + 1);
+    default:
+        return RKM04_NEVER;
+    }
+}
+
+void interp_turn(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    act_on_requests(unit, motor);
+    look_at_hold(unit, motor);
+    look_at_total_stop(unit, motor);
+    motion_look_at_inputs(unit, motor);
+    if (motor->state == RKM04_DWELL && unit->now >= motor->due)
+        motor->state = RKM04_READY;
+    if ((motor->state == RKM04_WAIT || motor->state == RKM04_BLOCK) && execute_wait_is_over(unit, motor)) {
+        motor->state = RKM04_READY;
+        motor->due = unit->now + RKM04_SLOT_TICKS;
+    }
+    if (motor->state == RKM04_READY && unit->now >= motor->due)
+        execute_next(unit, motor);
+    motor->wake = next_turn(unit, motor);
+}

@@ -1,0 +1,238 @@
+#include "motion.h"
+
+#include "profile.h"
+#include "ramp.h"
+#include "report.h"
+
+uint64_t motion_free_from(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
+{
+    uint64_t free_from = motor->last_pulse + RKM04_PULSE_TICKS;
+    return motor->last_pulse != 0 && free_from > unit->now ? free_from : unit->now;
+}
+
+/* ---- End ------------------------------------------------------------------------------------------------------------ */
+
+/* The motion is over, at `tick`: at its last pulse, or in the slot that ended it without one. */
+static void end_motion(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t tick)
+{
+    struct rkm04_motion *motion = &motor->motion;
+    motion->moving = false;
+    motion->stopping = false;
+    motion->ramp.next = RKM04_NEVER;
+    motor->change_speed = 0;
+    if (motor->led == RKM04_LED_ON)
+        write_led(unit, motor, tick, RKM04_LED_OFF);
+    report_event(unit, motor, tick, RKM04_EVENT_MOTION, 0);
+    motor->due = motor->last_pulse + RKM04_PULSE_TICKS;
+    switch ((enum rkm04_after)motor->after) {
+    case RKM04_AFTER_GO_ON:
+        motor->state = RKM04_READY;
+        break;
+    case RKM04_AFTER_HOLD_REST:
+        motor->state = RKM04_HELD;
+        motor->held = RKM04_MOVING;
+        break;
+    case RKM04_AFTER_HOLD_NEXT:
+        motor->state = RKM04_HELD;
+        motor->held = RKM04_READY;
+        break;
+    case RKM04_AFTER_END:
+        motor->state = RKM04_ENDED;
+        report_event(unit, motor, tick, RKM04_EVENT_COMMAND, 0);
+        break;
+    }
+    if (motor->after != RKM04_AFTER_HOLD_REST)
+        motion->kind = RKM04_MOTION_NONE;
+}
+
+void motion_abort(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    if (motor->motion.moving) {
+        motor->after = RKM04_AFTER_GO_ON;
+        end_motion(unit, motor, unit->now);
+    }
+    motor->motion.kind = RKM04_MOTION_NONE;
+}
+
+/* ---- Guards (C5) ------------------------------------------------------------------------------------------------------ */
+
+/* Use up the guards whose condition holds. Returns whether there was one. */
+static bool take_guards(const struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    bool m = motor->guard_m != 0 && input_is_high(unit, motor->guard_m);
+    bool n = motor->guard_n != 0 && !input_is_high(unit, motor->guard_n);
+    if (m)
+        motor->guard_m = 0;
+    if (n)
+        motor->guard_n = 0;
+    return m || n;
+}
+
+void motion_look_at_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    struct rkm04_motion *motion = &motor->motion;
+    if (!motion->moving || motion->stopping)
+        return;
+    if (take_guards(unit, motor)) {
+        motion_stop(unit, motor, RKM04_AFTER_GO_ON);
+    } else if (motion->kind == RKM04_MOTION_LIMIT && input_is_high(unit, motion->input)) {
+        motor->after = RKM04_AFTER_GO_ON;
+        end_motion(unit, motor, unit->now);
+    }
+}
+
+/* ---- Begin ------------------------------------------------------------------------------------------------------------ */
+
+/* From here on the outputs move: direction, LED, pulse generator. */
+static void set_off(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    struct rkm04_motion *motion = &motor->motion;
+    if (motor->pin_forward != motion->forward) {
+        motor->pin_forward = motion->forward;
+        if (!unit->simulation)
+            report_direction(unit, motor, unit->now, motion->forward);
+    }
+    write_led(unit, motor, unit->now, RKM04_LED_ON);
+    report_event(unit, motor, unit->now, RKM04_EVENT_MOTION, 1);
+    profile_plan(motion);
+    ramp_begin(&motion->ramp, &motion->profile, unit->now);
+    motion->moving = true;
+    motion->stopping = false;
+    motor->after = RKM04_AFTER_GO_ON;
+    motor->state = RKM04_MOVING;
+}
+
+/* Prepare a motion of one segment with the present parameters. Returns false if a guard ends it before its first step. */
+static bool prepare(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_motion_kind kind, bool forward)
+{
+    struct rkm04_motion *motion = &motor->motion;
+    if (take_guards(unit, motor))
+        return false;
+    motion->kind = (uint8_t)kind;
+    motion->forward = forward;
+    motion->done = 0;
+    motion->total = 0;
+    motion->mark = 0;
+    motion->marks = 0;
+    motion->start_speed = motor->start_speed;
+    motion->segments = 1;
+    motion->segment[0] = (struct rkm04_segment){.steps = 0, .speed = motor->speed, .acceleration = motor->acceleration};
+    motion->profile.count = 0;
+    return true;
+}
+
+void motion_begin_steps(struct rkm04_unit *unit, struct rkm04_motor *motor, uint32_t steps, bool forward)
+{
+    if (steps == 0 || !prepare(unit, motor, RKM04_MOTION_STEPS, forward))
+        return;
+    motor->motion.segment[0].steps = steps;
+    motor->motion.total = steps;
+    set_off(unit, motor);
+}
+
+void motion_begin_endless(struct rkm04_unit *unit, struct rkm04_motor *motor, bool forward)
+{
+    if (prepare(unit, motor, RKM04_MOTION_ENDLESS, forward))
+        set_off(unit, motor);
+}
+
+void motion_begin_limit(struct rkm04_unit *unit, struct rkm04_motor *motor, bool forward, unsigned input)
+{
+    if (input_is_high(unit, input) || !prepare(unit, motor, RKM04_MOTION_LIMIT, forward))
+        return;
+    motor->motion.input = (uint8_t)input;
+    motor->motion.segment[0].speed = motor->start_speed;
+    set_off(unit, motor);
+}
+
+bool motion_compound_possible(const struct rkm04_motor *motor)
+{
+    uint64_t steps = 0;
+    if (motor->segments > RKM04_SEGMENTS_MAX || motor->segments_bad)
+        return false;
+    for (unsigned i = 0; i < motor->segments; i++)
+        steps += motor->segment[i].steps;
+    return steps <= RKM04_COMPOUND_STEPS_MAX;
+}
+
+void motion_begin_compound(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    struct rkm04_motion *motion = &motor->motion;
+    unsigned segments = motor->segments;
+    motor->segments = 0;
+    if (!prepare(unit, motor, RKM04_MOTION_STEPS, motor->segments_forward))
+        return;
+    motion->segments = (uint8_t)segments;
+    motion->marks = motor->segments_marks & motor->functions;
+    for (unsigned i = 0; i < segments; i++) {
+        motion->segment[i] = motor->segment[i];
+        motion->mark = motion->total;
+        motion->total += motor->segment[i].steps;
+    }
+    if (segments == 1)
+        write_outputs(unit, unit->now, unit->outputs | motion->marks);
+    set_off(unit, motor);
+}
+
+/* ---- Stop, hold, rest ------------------------------------------------------------------------------------------------- */
+
+void motion_stop(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_after after)
+{
+    motor->motion.stopping = true;
+    motor->after = (uint8_t)after;
+    if (!profile_stop(&motor->motion, unit->now))
+        end_motion(unit, motor, unit->now);
+}
+
+void motion_resume(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    struct rkm04_motion *motion = &motor->motion;
+    bool over = motion->kind == RKM04_MOTION_STEPS && motion->done == motion->total;
+    if (motion->kind == RKM04_MOTION_LIMIT && input_is_high(unit, motion->input))
+        over = true;
+    if (over || take_guards(unit, motor)) {
+        motion->kind = RKM04_MOTION_NONE;
+        motor->state = RKM04_READY;
+        motor->due = unit->now + (over ? 0 : RKM04_SLOT_TICKS);
+        return;
+    }
+    set_off(unit, motor);
+}
+
+/* ---- Pulses ----------------------------------------------------------------------------------------------------------- */
+
+static void send_pulses(struct rkm04_unit *unit, struct rkm04_motor *motor, const uint64_t *tick, size_t count)
+{
+    void (*step)(void *, uint64_t, unsigned, int32_t) = unit->simulation ? NULL : unit->port->step;
+    uint32_t position = (uint32_t)motor->position;
+    uint32_t way = motor->motion.forward ? 1 : UINT32_MAX;
+    if (step) {
+        unsigned number = motor_number(unit, motor);
+        for (size_t i = 0; i < count; i++)
+            step(unit->context, tick[i], number, (int32_t)(position += way));
+    } else {
+        position += way * (uint32_t)count;
+    }
+    motor->position = (int32_t)position;
+    motor->motion.done += (uint32_t)count;
+    motor->last_pulse = tick[count - 1];
+}
+
+void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit)
+{
+    struct rkm04_motion *motion = &motor->motion;
+    uint64_t tick[64];
+    while (motion->ramp.next <= limit) {
+        size_t room = sizeof tick / sizeof *tick;
+        bool marking = motion->done < motion->mark && motion->mark - motion->done <= room;
+        if (marking)
+            room = motion->mark - motion->done;
+        size_t count = ramp_pulses(&motion->ramp, &motion->profile, limit, tick, room);
+        if (count > 0)
+            send_pulses(unit, motor, tick, count);
+        if (marking && motion->done == motion->mark)
+            write_outputs(unit, motor->last_pulse, unit->outputs | motion->marks);
+        if (motion->ramp.next == RKM04_NEVER)
+            end_motion(unit, motor, motor->last_pulse);
+    }
+}
