@@ -150,8 +150,8 @@ END_TEST
 
 START_TEST(P9_the_index_is_the_place_of_the_command_being_executed)
 {
-    rig_accept(&rig, '1', "W5 F1000 R O03 U");
     ASK("\x07" "1", "\x07" "1 0; 0");
+    rig_accept(&rig, '1', "W5 F1000 R O03 U");
     rig_to(&rig, 3 * MS);
     ASK("\x07" "1", "\x07" "1 0; 1"); /* in the dwell */
     rig_to(&rig, 8 * MS + 250 * MS);

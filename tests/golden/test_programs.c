@@ -106,7 +106,7 @@ START_TEST(M7_5_output_06_off)
     rig_accept(&rig, '1', "C06");
     rig_to(&rig, 100 * MS);
     ck_assert_uint_eq(rig_outputs_became(&rig, 0x30, 1), 2 * MS);
-    ck_assert_uint_eq(rig_outputs_became(&rig, 0x10, 2), 8 * MS);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 0x10, 1), 8 * MS);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0x10);
 }
 END_TEST

@@ -269,7 +269,7 @@ END_TEST
 START_TEST(M7_35_the_counter_is_5000)
 {
     rig_accept(&rig, '1', "=5000");
-    rig_to(&rig, 2 * MS);
+    rig_to(&rig, 10 * MS);
     expect_rest(5000);
 }
 END_TEST
