@@ -8,32 +8,34 @@
 #include <sys/types.h>
 #include <termios.h>
 
+/* What line_pty.c tells about clients. */
+enum line_news {
+    LINE_DETACHED, /* the last client has closed the line */
+    LINE_ATTACHED, /* the first client has opened it */
+    LINE_SHARED,   /* one more client has opened it */
+    LINE_FAILED    /* the pty is lost (reported) */
+};
+typedef void line_tell(void *context, enum line_news news);
+
 struct line {
     int fd;           /* for bytes: master of the pty, or the device; non-blocking */
     int notices;      /* inotify: clients open and close the pty; -1: a device */
     int slave;        /* held open, so that the master never sees a hang-up; -1: a device */
-    int watch;
-    unsigned own;     /* notices of our own open and close still to come */
     unsigned clients; /* have the line open; a device counts as one */
     uint64_t dropped; /* bytes that nobody was there for, or that a client did not read in time */
     char path[64];    /* of the pty's slave; "" for a device */
+    line_tell *tell;
+    void *context;
 };
 
-/* What line_notice() saw; several may come at once, in this order. */
-#define LINE_DETACHED 1u /* the last client has closed the line */
-#define LINE_ATTACHED 2u /* the first client has opened it */
-#define LINE_SHARED 4u   /* one more client has opened it */
-#define LINE_FAILED 8u   /* the pty is lost (reported) */
-
 /* Make a pty, raw from the start. Failures are reported. Returns false if it did not work. */
-bool line_pty_open(struct line *line);
+bool line_pty_open(struct line *line, line_tell *tell, void *context);
 
-/* Handle what clients did since the last call: count them, make the line raw again, forget what the last one left unread.
- * Returns LINE_ bits. */
-unsigned line_pty_notice(struct line *line);
+/* Follow what clients did since the last call: count them, make the line raw again, forget what the last one left unread. */
+void line_pty_notice(struct line *line);
 
-/* Bytes came although no client is known: look again. Returns LINE_ bits. */
-unsigned line_pty_look_again(struct line *line);
+/* Bytes came although no client is known: look who is there. */
+void line_pty_count_again(struct line *line);
 
 /* Use the serial device or pty `path`: raw, 19200 baud, 8N1 (U7). Failures are reported. Returns false if it did not work. */
 bool line_serial_open(struct line *line, const char *path);

@@ -18,6 +18,8 @@
 
 #include "log.h"
 
+#define COUNT_TRIES 5
+
 static bool set_flags(int fd)
 {
     return fcntl(fd, F_SETFD, FD_CLOEXEC) == 0 && fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK) == 0;
@@ -32,9 +34,9 @@ static void fresh_settings(struct termios *settings)
     settings->c_cc[VTIME] = 0;
 }
 
-bool line_pty_open(struct line *line)
+bool line_pty_open(struct line *line, line_tell *tell, void *context)
 {
-    *line = (struct line){.fd = -1, .notices = -1, .slave = -1, .watch = -1};
+    *line = (struct line){.fd = -1, .notices = -1, .slave = -1, .tell = tell, .context = context};
     struct termios settings = {0};
     fresh_settings(&settings);
     if (openpty(&line->fd, &line->slave, NULL, &settings, NULL) != 0) {
@@ -43,9 +45,8 @@ bool line_pty_open(struct line *line)
     }
     line->notices = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     int failed = ptsname_r(line->fd, line->path, sizeof line->path);
-    if (failed == 0 && line->notices >= 0 && set_flags(line->fd) && set_flags(line->slave))
-        line->watch = inotify_add_watch(line->notices, line->path, IN_OPEN | IN_CLOSE);
-    if (line->watch < 0) {
+    if (failed != 0 || line->notices < 0 || !set_flags(line->fd) || !set_flags(line->slave) ||
+        inotify_add_watch(line->notices, line->path, IN_OPEN | IN_CLOSE) < 0) {
         log_error("cannot use the pty %s: %s", line->path, strerror(failed ? failed : errno));
         line_close(line);
         return false;
@@ -79,23 +80,45 @@ static void greet_client(struct line *line)
         tcsetattr(line->slave, TCSANOW, &settings);
 }
 
-static unsigned opened(struct line *line)
+static void opened(struct line *line)
 {
-    if (line->clients++ > 0)
-        return LINE_SHARED;
-    greet_client(line);
-    return LINE_ATTACHED;
+    line->clients++;
+    if (line->clients == 1)
+        greet_client(line);
+    line->tell(line->context, line->clients == 1 ? LINE_ATTACHED : LINE_SHARED);
 }
 
-static unsigned closed(struct line *line)
+static void closed(struct line *line)
 {
     if (line->clients == 0 || --line->clients > 0)
-        return 0;
+        return;
     forget_client(line);
-    return LINE_DETACHED;
+    line->tell(line->context, LINE_DETACHED);
 }
 
-/* Does anybody else have the slave open? Returns 1 or 0; -1: the slave is lost. */
+/* Read the notices that are waiting, and follow them unless `ignored`. Returns their masks, or-ed; *number: how many. */
+static uint32_t read_notices(struct line *line, bool ignored, unsigned *number)
+{
+    _Alignas(struct inotify_event) char buffer[4096];
+    uint32_t masks = 0;
+    ssize_t length;
+    *number = 0;
+    while ((length = read(line->notices, buffer, sizeof buffer)) > 0) {
+        for (ssize_t at = 0; at < length;) {
+            const struct inotify_event *event = (const void *)(buffer + at);
+            masks |= event->mask;
+            *number += 1;
+            if (!ignored && (event->mask & IN_OPEN))
+                opened(line);
+            if (!ignored && (event->mask & IN_CLOSE))
+                closed(line);
+            at += (ssize_t)(sizeof *event + event->len);
+        }
+    }
+    return masks;
+}
+
+/* Does anybody else have the slave open? Returns 1 or 0; -1: the slave is lost (reported). */
 static int anybody_else(struct line *line)
 {
     struct pollfd master = {.fd = line->fd};
@@ -112,56 +135,31 @@ static int anybody_else(struct line *line)
     }
     if (others && exclusive)
         ioctl(line->slave, TIOCEXCL);
-    line->own += 2;
     return others;
 }
 
-/* Correct `clients`. Returns LINE_ bits. */
-static unsigned count_again(struct line *line)
+void line_pty_count_again(struct line *line)
 {
-    int others = anybody_else(line);
+    int others = 0;
+    /* Our own close and open give two notices; if there are more, somebody came or went meanwhile. */
+    for (unsigned tries = 0, notices = 0; tries < COUNT_TRIES && notices != 2; tries++) {
+        others = anybody_else(line);
+        read_notices(line, true, &notices);
+    }
     if (others < 0)
-        return LINE_FAILED;
-    if (others && line->clients == 0)
-        return opened(line);
-    if (!others && line->clients > 0) {
+        line->tell(line->context, LINE_FAILED);
+    else if (others && line->clients == 0)
+        opened(line);
+    else if (!others && line->clients > 0) {
         line->clients = 1;
-        return closed(line);
+        closed(line);
     }
-    return 0;
 }
 
-/* Handle one notice. Returns LINE_ bits. */
-static unsigned handle(struct line *line, uint32_t mask)
+void line_pty_notice(struct line *line)
 {
-    if (!(mask & (IN_OPEN | IN_CLOSE)))
-        return 0;
-    if (line->own > 0) {
-        line->own--;
-        return 0;
-    }
-    return mask & IN_OPEN ? opened(line) : closed(line);
-}
-
-unsigned line_pty_notice(struct line *line)
-{
-    _Alignas(struct inotify_event) char buffer[4096];
-    unsigned seen = 0;
-    uint32_t masks = 0;
-    ssize_t length;
-    while ((length = read(line->notices, buffer, sizeof buffer)) > 0) {
-        for (ssize_t at = 0; at < length;) {
-            const struct inotify_event *event = (const void *)(buffer + at);
-            masks |= event->mask;
-            seen |= handle(line, event->mask);
-            at += (ssize_t)(sizeof *event + event->len);
-        }
-    }
-    bool doubtful = (masks & IN_Q_OVERFLOW) || ((masks & IN_CLOSE) && line->clients > 0);
-    return doubtful ? seen | count_again(line) : seen;
-}
-
-unsigned line_pty_look_again(struct line *line)
-{
-    return count_again(line);
+    unsigned number;
+    uint32_t masks = read_notices(line, false, &number);
+    if ((masks & IN_Q_OVERFLOW) || ((masks & IN_CLOSE) && line->clients > 0))
+        line_pty_count_again(line);
 }

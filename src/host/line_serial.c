@@ -29,7 +29,7 @@ static bool set_up(int fd, const char *path)
 
 bool line_serial_open(struct line *line, const char *path)
 {
-    *line = (struct line){.fd = -1, .notices = -1, .slave = -1, .watch = -1, .clients = 1};
+    *line = (struct line){.fd = -1, .notices = -1, .slave = -1, .clients = 1};
     int fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) {
         log_error("cannot open %s: %s%s", path, strerror(errno),

@@ -217,23 +217,28 @@ static void on_timer(uv_poll_t *handle, int status, int events)
 
 /* ---- Bytes from the host -------------------------------------------------------------------------------------------- */
 
-static void tell_line(struct serve *serve, unsigned seen)
+static void on_news(void *context, enum line_news news)
 {
-    uint64_t tick = present(serve);
-    if (seen & LINE_DETACHED)
+    struct serve *serve = context;
+    const struct line *line = &serve->line;
+    uint64_t tick = present(serve), dropped = line->dropped - serve->told;
+    switch (news) {
+    case LINE_DETACHED:
         log_at(tick, "the client has closed the line");
-    if (seen & LINE_ATTACHED) {
-        if (serve->line.dropped != serve->told)
-            log_at(tick, "a client has opened the line; %" PRIu64 " bytes for nobody were dropped before",
-                   serve->line.dropped - serve->told);
+        break;
+    case LINE_ATTACHED:
+        if (dropped > 0)
+            log_at(tick, "a client has opened the line; %" PRIu64 " bytes for nobody were dropped before", dropped);
         else
             log_at(tick, "a client has opened the line");
-        serve->told = serve->line.dropped;
-    }
-    if (seen & LINE_SHARED)
-        log_at(tick, "one more client has opened the line: they will take each other's answers (%u now)", serve->line.clients);
-    if (seen & LINE_FAILED)
+        serve->told = line->dropped;
+        break;
+    case LINE_SHARED:
+        log_at(tick, "one more client has opened the line: they will take each other's answers (%u now)", line->clients);
+        break;
+    case LINE_FAILED:
         fail(serve);
+    }
 }
 
 static void on_notice(uv_poll_t *handle, int status, int events)
@@ -241,7 +246,7 @@ static void on_notice(uv_poll_t *handle, int status, int events)
     struct serve *serve = handle->data;
     (void)status;
     (void)events;
-    tell_line(serve, line_pty_notice(&serve->line));
+    line_pty_notice(&serve->line);
 }
 
 /* Read all there is room for. Returns false if the line is gone. */
@@ -259,7 +264,7 @@ static bool read_line(struct serve *serve)
         uint64_t tick = virtual_clock_tick(&serve->clock, serve->heard);
         paced_unit_take(&serve->paced, bytes, (size_t)length, tick);
         if (serve->line.clients == 0)
-            tell_line(serve, line_pty_look_again(&serve->line));
+            line_pty_count_again(&serve->line);
     }
     return true;
 }
@@ -270,7 +275,7 @@ static void on_readable(uv_poll_t *handle, int status, int events)
     (void)status; /* a hang-up shows when reading */
     (void)events;
     if (serve->line.notices >= 0)
-        tell_line(serve, line_pty_notice(&serve->line));
+        line_pty_notice(&serve->line);
     if (!read_line(serve)) {
         log_error("%s is gone: %s; start again when it is back", serve->options.port ? serve->options.port : serve->line.path,
                   errno ? strerror(errno) : "hung up");
@@ -347,7 +352,7 @@ static bool open_line(struct serve *serve)
 {
     if (serve->options.port)
         return line_serial_open(&serve->line, serve->options.port);
-    return link_path_claim(&serve->link, serve->options.link) && line_pty_open(&serve->line);
+    return link_path_claim(&serve->link, serve->options.link) && line_pty_open(&serve->line, on_news, serve);
 }
 
 static void tell_start(const struct serve *serve)
