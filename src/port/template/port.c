@@ -1,7 +1,7 @@
 /* port.c: template of a port to a board. Copy the folder, fill in what says BOARD, and it is a unit.
  *
- * Build the core (the sources in src/) and this file with the same RKM04_MESSAGE_MAX; -DRKM04_MESSAGE_MAX=1024 makes a unit that fits
- * 24 KiB of RAM. The core needs C11, memcpy and its like, and nothing else: no heap, no clock, no interrupt.
+ * Build the core (the sources in src/) and this file with the same RKM04_MESSAGE_MAX; -DRKM04_MESSAGE_MAX=1024 makes a unit
+ * that fits 24 KiB of RAM. The core needs C11, memcpy and its like, and nothing else: no heap, no clock, no interrupt.
  *
  * Who runs when: everything runs in the main loop, rkm04_* are never called from an interrupt, and no callback calls back into
  * the unit. Interrupts only fill and empty the queues of the serial line and end the pulses.
