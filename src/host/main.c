@@ -1,5 +1,6 @@
 /* rkm04: the virtual RKM04. This file chooses the sub-command. */
 #include <argp.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -34,8 +35,18 @@ static const struct {
     {"exec", "rkm04 exec", exec_main},
 };
 
+/* Whoever starts us with a standard stream closed shall not have a device or file of ours in its place. Writing to the
+ * substitute fails, as it would have. */
+static void fill_standard_streams(void)
+{
+    for (int fd = 0; fd <= 2; fd++)
+        if (fcntl(fd, F_GETFD) < 0)
+            (void)!open("/dev/null", O_RDONLY);
+}
+
 int main(int argc, char **argv)
 {
+    fill_standard_streams();
     argp_err_exit_status = STATUS_USAGE;
     if (argc < 2) {
         fputs("rkm04: no sub-command: expected `rkm04 serve' or `rkm04 exec'; `rkm04 --help' tells more\n", stderr);
