@@ -50,10 +50,10 @@ test_a_device_that_does_not_exist_is_an_error() {
 
 # The port that a process listens at, as /proc shows it; 0A is "listening".
 listening_port() {
-    local inode
+    local inode hex
     for inode in $(ls -l "/proc/$1/fd" 2>/dev/null | sed -n 's/.*socket:\[\([0-9]*\)\]$/\1/p'); do
-        port=$((16#$(awk -v inode="$inode" '$4 == "0A" && $10 == inode { split($2, at, ":"); print at[2] }' /proc/net/tcp) + 0))
-        ((port > 0)) && return
+        hex=$(awk -v inode="$inode" '$4 == "0A" && $10 == inode { split($2, at, ":"); print at[2] }' /proc/net/tcp)
+        [[ -n $hex ]] && port=$((16#$hex)) && return
     done
     return 1
 }
