@@ -47,8 +47,8 @@ test_every_public_header_stands_on_its_own() {
     for header in "$staged"/include/rkm04/*.h; do
         # shellcheck disable=SC2046
         echo "#include <rkm04/${header##*/}>" |
-            $CC -std=c11 -Wall -Wextra -Wconversion -Werror $(pkg-config --cflags rkm04) -fsyntax-only -x c - 2>"$folder/cc.err" ||
-            fail "${header##*/} does not compile alone"
+            $CC -std=c11 -Wall -Wextra -Wconversion -Werror $(pkg-config --cflags rkm04) -fsyntax-only -x c - \
+                2>"$folder/cc.err" || fail "${header##*/} does not compile alone"
     done
 }
 

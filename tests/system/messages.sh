@@ -113,7 +113,7 @@ test_L3_broadcasts_and_other_nodes_get_no_answer() {
     exec 3<>"$folder/bus"
     say_bytes 3 "7e 00 00 01 45 d7 7e"
     say_bytes 3 "7e 02 00 01 fd 62 7e"
-    dialogue 3 "7e 01 00 04 31 0f a7 7e" "7e 00 01 04 31 0a 20 20 20 20 20 20 20 20 20 30 b0 0d 7e" "only the unit's own request is answered"
+    dialogue 3 "7e 01 00 08 58 10 7e" "7e 00 01 ff 08 00 00 db ff 7e" "only the unit's own request is answered"
     exec 3>&-
     serve plain --baud 0 --framing plain
     exec 3<>"$folder/plain"

@@ -25,6 +25,19 @@ test_help_and_version_go_to_stdout() {
     done
 }
 
+# long_options COMMAND...: the ones its --help lists, but those that every program has.
+long_options() {
+    "$@" --help | grep -o -E -e '--[a-z][a-z-]+' | grep -v -x -e --help -e --usage -e --version | sort -u
+}
+
+test_the_manual_pages_know_every_option_and_no_other() {
+    local pages
+    pages=$(dirname "$0")/../../docs/man
+    in_page() { sed 's/\\//g' "$pages/$1" | grep -o -E -e '--[a-z][a-z-]+' | grep -v -x -e --help -e --version | sort -u; }
+    same "$({ long_options "$RKM04" serve; long_options "$RKM04" exec; } | sort -u)" "$(in_page rkm04.1)" "options in rkm04.1"
+    same "$(long_options "$RKMCTL")" "$(in_page rkmctl.1)" "options in rkmctl.1"
+}
+
 test_no_or_an_unknown_subcommand_is_a_usage_error() {
     exits 2 "$RKM04"
     refused frobnicate "$RKM04" frobnicate
