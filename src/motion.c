@@ -208,14 +208,14 @@ static void send_pulses(struct rkm04_unit *unit, struct rkm04_motor *motor, cons
     uint32_t way = motor->motion.forward ? 1 : UINT32_MAX;
     if (step) {
         unsigned number = motor_number(unit, motor);
-        for (size_t i = 0; i < count; i++)
-            step(unit->context, tick[i], number, (int32_t)(position += way));
+        void *context = unit->context;
+        for (const uint64_t *end = tick + count; tick < end; tick++)
+            step(context, *tick, number, (int32_t)(position += way));
     } else {
         position += way * (uint32_t)count;
     }
     motor->position = (int32_t)position;
     motor->motion.done += (uint32_t)count;
-    motor->last_pulse = tick[count - 1];
 }
 
 void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit)
@@ -228,8 +228,10 @@ void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t lim
         if (marking)
             room = motion->mark - motion->done;
         size_t count = ramp_pulses(&motion->ramp, &motion->profile, limit, tick, room);
-        if (count > 0)
+        if (count > 0) {
+            motor->last_pulse = tick[count - 1];
             send_pulses(unit, motor, tick, count);
+        }
         if (marking && motion->done == motion->mark)
             write_outputs(unit, motor->last_pulse, unit->outputs | motion->marks);
         if (motion->ramp.next == RKM04_NEVER)

@@ -2,13 +2,13 @@
 
 /* ---- 64.64 numbers ------------------------------------------------------------------------------------------------ */
 
-static struct rkm04_fixed sum(struct rkm04_fixed a, struct rkm04_fixed b)
+static inline struct rkm04_fixed sum(struct rkm04_fixed a, struct rkm04_fixed b)
 {
     uint64_t part = a.part + b.part;
     return (struct rkm04_fixed){(int64_t)((uint64_t)a.whole + (uint64_t)b.whole + (part < a.part)), part};
 }
 
-static struct rkm04_fixed difference(struct rkm04_fixed a, struct rkm04_fixed b)
+static inline struct rkm04_fixed difference(struct rkm04_fixed a, struct rkm04_fixed b)
 {
     return (struct rkm04_fixed){(int64_t)((uint64_t)a.whole - (uint64_t)b.whole - (a.part < b.part)), a.part - b.part};
 }
@@ -26,7 +26,7 @@ static struct rkm04_fixed times(struct rkm04_fixed a, struct wide places)
     return sum(scaled((uint64_t)a.whole, places), (struct rkm04_fixed){0, wide_high(a.part, places.high)});
 }
 
-static bool below(struct rkm04_fixed a, struct rkm04_fixed b)
+static inline bool below(struct rkm04_fixed a, struct rkm04_fixed b)
 {
     return a.whole < b.whole || (a.whole == b.whole && a.part < b.part);
 }
@@ -148,15 +148,27 @@ static void reckon_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, s
         ramp->w = sum(ramp->w, (struct rkm04_fixed){0, 1});
 }
 
-/* d ticks on (or back) along the present slope. */
-static void move_on(struct rkm04_fixed *y, struct rkm04_fixed *w, int64_t slope, int64_t d)
+struct motion_state {
+    struct rkm04_fixed y, w;
+};
+
+/* d >= 0 ticks on along a slope. */
+static inline struct motion_state moved(struct rkm04_fixed y, struct rkm04_fixed w, int64_t slope, int64_t d)
 {
-    uint64_t size = d < 0 ? (uint64_t)-d : (uint64_t)d;
-    struct wide part = wide_product(w->part, size);
-    struct rkm04_fixed way = {(int64_t)part.high, part.low};
-    y->whole = (int64_t)((uint64_t)y->whole + (uint64_t)(d * (w->whole + slope * d)));
-    *y = d < 0 ? difference(*y, way) : sum(*y, way);
-    w->whole += 2 * slope * d;
+    int64_t half = slope * d;
+    struct wide part = wide_product(w.part, (uint64_t)d);
+    struct rkm04_fixed way = {d * (w.whole + half) + (int64_t)part.high, part.low};
+    return (struct motion_state){sum(y, way), {w.whole + 2 * half, w.part}};
+}
+
+/* d ticks back. */
+static struct motion_state moved_back(struct rkm04_fixed y, struct rkm04_fixed w, int64_t slope, int64_t d)
+{
+    struct motion_state then = {y, {w.whole - 2 * slope * d, w.part}};
+    struct wide part = wide_product(w.part, (uint64_t)d);
+    struct rkm04_fixed way = {d * (w.whole - slope * d) + (int64_t)part.high, part.low};
+    then.y = difference(y, way);
+    return then;
 }
 
 /* Roughly how many ticks until y >= 0, by Newton's rule on whole numbers: from above on a rising leg, from below on a
@@ -176,38 +188,52 @@ static int64_t guess_ticks(int64_t y, int64_t w, int64_t slope)
     return d;
 }
 
-/* From y and w, `d` ticks after a known point: settle on the first tick, not before `least`, with y >= 0. */
-static int64_t settle(struct rkm04_fixed *y, struct rkm04_fixed *w, int64_t slope, int64_t d, int64_t least)
+/* Settle on the first tick with y >= 0, at most `back` ticks before the present one. Returns how many ticks on. */
+static int64_t settle(struct motion_state *state, int64_t slope, int64_t back)
 {
-    while (y->whole < 0 && w->whole + slope > 0) {
-        *y = sum(*y, (struct rkm04_fixed){w->whole + slope, w->part});
-        w->whole += 2 * slope;
+    int64_t d = 0;
+    while (state->y.whole < 0 && state->w.whole + slope > 0) {
+        state->y = sum(state->y, (struct rkm04_fixed){state->w.whole + slope, state->w.part});
+        state->w.whole += 2 * slope;
         d++;
     }
-    while (d > least) {
-        struct rkm04_fixed back = {w->whole - slope, w->part};
-        if (below(*y, back))
+    while (d > -back) {
+        struct rkm04_fixed way = {state->w.whole - slope, state->w.part};
+        if (below(state->y, way))
             break;
-        *y = difference(*y, back);
-        w->whole -= 2 * slope;
+        state->y = difference(state->y, way);
+        state->w.whole -= 2 * slope;
         d--;
     }
     return d;
 }
 
+/* `next`, *d ticks after the pulse at `now`, is not where the next one is due: find it. */
+static struct motion_state settled(struct motion_state now, struct motion_state next, int64_t slope, int64_t *d)
+{
+    now.y.whole -= RAMP_STEP;
+    if (next.y.whole > 8 * next.w.whole || next.y.whole < -8 * next.w.whole) {
+        *d = guess_ticks(now.y.whole, now.w.whole, slope);
+        next = moved(now.y, now.w, slope, *d);
+    }
+    *d += settle(&next, slope, *d - 1);
+    return next;
+}
+
 /* The leg's first pulse: from ramp->at to the tick at which it is due, which may be ramp->at itself. */
 static void find_first(struct rkm04_ramp *ramp)
 {
-    int64_t d = 0;
     if (ramp->y.whole < 0 && ramp->w.whole > 0) {
-        d = guess_ticks(ramp->y.whole, ramp->w.whole, ramp->slope);
-        move_on(&ramp->y, &ramp->w, ramp->slope, d);
-        d = settle(&ramp->y, &ramp->w, ramp->slope, d, 0);
+        int64_t d = guess_ticks(ramp->y.whole, ramp->w.whole, ramp->slope);
+        struct motion_state first = moved(ramp->y, ramp->w, ramp->slope, d);
+        d += settle(&first, ramp->slope, d);
+        ramp->y = first.y;
+        ramp->w = first.w;
+        ramp->at += (uint64_t)d;
     }
-    ramp->at += (uint64_t)d;
     ramp->next = ramp->at;
     ramp->change = 0;
-    ramp->interval = (int32_t)(RAMP_STEP / (ramp->w.whole > 0 ? ramp->w.whole : RAMP_SPEED));
+    ramp->interval = (int32_t)(RAMP_STEP / (ramp->w.whole > RAMP_SPEED ? ramp->w.whole : RAMP_SPEED));
 }
 
 static void begin_pulses(struct rkm04_ramp *ramp, const struct rkm04_profile *profile)
@@ -259,9 +285,13 @@ void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, ui
 
 void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
 {
-    *y = ramp->y;
-    *w = ramp->w;
-    move_on(y, w, ramp->slope, (int64_t)(tick - ramp->at));
+    struct motion_state then;
+    if (tick < ramp->at)
+        then = moved_back(ramp->y, ramp->w, ramp->slope, (int64_t)(ramp->at - tick));
+    else
+        then = moved(ramp->y, ramp->w, ramp->slope, (int64_t)(tick - ramp->at));
+    *y = then.y;
+    *w = then.w;
 }
 
 void ramp_go_on(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick)
@@ -310,42 +340,68 @@ static size_t level_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *ti
     return n;
 }
 
-/* Rising or falling speed: the interval follows the one before, corrected to the tick. */
+/* A guess of the next interval, with all that depends on it alone. */
+struct stride {
+    int64_t ticks, half; /* half: slope * ticks */
+    struct rkm04_fixed part; /* what the places of w behind the point add to y, less the step done */
+    bool changes;            /* from pulse to pulse */
+};
+
+static inline struct stride stride_of(const struct rkm04_ramp *ramp)
+{
+    struct stride stride = {.ticks = ramp->interval + ramp->change, .changes = ramp->change != 0};
+    struct wide part = wide_product(ramp->w.part, (uint64_t)stride.ticks);
+    stride.half = ramp->slope * stride.ticks;
+    stride.part = (struct rkm04_fixed){(int64_t)part.high - RAMP_STEP, part.low};
+    return stride;
+}
+
+/* The interval turned out to be `ticks`. While it hardly changes, the guess is the shorter one of two that take turns; at low
+ * speed it is what the last change leads to. */
+static void learn(struct rkm04_ramp *ramp, int64_t ticks)
+{
+    const int64_t noise = 2;
+    int64_t change = ticks - ramp->interval;
+    bool steady = change <= noise && change >= -noise;
+    ramp->interval = (int32_t)(steady && change > 0 ? ticks - 1 : ticks);
+    ramp->change = steady ? 0 : (int32_t)change;
+}
+
+/* Rising or falling speed: a guess, corrected to the tick. */
 static size_t sloped_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room)
 {
-    struct rkm04_fixed y = ramp->y, w = ramp->w;
+    struct motion_state now = {ramp->y, ramp->w};
     const int64_t slope = ramp->slope;
+    struct stride stride = stride_of(ramp);
+    const size_t left = ramp->left;
     uint64_t at = ramp->at;
-    int64_t interval = ramp->interval, change = ramp->change;
     size_t n = 0;
     do {
         tick[n++] = at;
-        y.whole -= RAMP_STEP;
-        if (--ramp->left == 0)
+        if (n == left) {
+            now.y.whole -= RAMP_STEP;
             break;
-        int64_t d = interval + change;
-        if (d < 1)
-            d = 1;
-        struct rkm04_fixed y_next = y, w_next = w;
-        move_on(&y_next, &w_next, slope, d);
-        if (y_next.whole > 8 * w_next.whole || y_next.whole < -8 * w_next.whole) {
-            d = guess_ticks(y.whole, w.whole, slope);
-            y_next = y;
-            w_next = w;
-            move_on(&y_next, &w_next, slope, d);
         }
-        d = settle(&y_next, &w_next, slope, d, 1);
-        y = y_next;
-        w = w_next;
-        change = d - interval;
-        interval = d;
-        at += (uint64_t)d;
+        struct motion_state next = {sum(now.y, stride.part), {now.w.whole + 2 * stride.half, now.w.part}};
+        next.y.whole += stride.ticks * (now.w.whole + stride.half);
+        int64_t ticks = stride.ticks;
+        if (next.y.whole < 0) { /* most often due at the next tick */
+            next.y = sum(next.y, (struct rkm04_fixed){next.w.whole + slope, next.w.part});
+            next.w.whole += 2 * slope;
+            ticks++;
+        }
+        if ((uint64_t)next.y.whole >= (uint64_t)(next.w.whole - slope) || stride.changes) {
+            next = settled(now, next, slope, &ticks);
+            learn(ramp, ticks);
+            stride = stride_of(ramp);
+        }
+        now = next;
+        at += (uint64_t)ticks;
     } while (at <= limit && n < room);
-    ramp->y = y;
-    ramp->w = w;
+    ramp->y = now.y;
+    ramp->w = now.w;
     ramp->at = at;
-    ramp->interval = (int32_t)interval;
-    ramp->change = (int32_t)change;
+    ramp->left -= (uint32_t)n;
     return n;
 }
 

@@ -8,6 +8,9 @@
 #include "report.h"
 #include "store.h"
 
+_Static_assert(sizeof(struct rkm04_unit) - RKM04_MESSAGE_MAX + 1024 <= 24 * 1024,
+               "a unit with requests of 1024 bytes has to fit into 24 KiB of a small microcontroller");
+
 static const struct rkm04_framing *framing_of(const struct rkm04_unit *unit)
 {
     return unit->config.framing ? unit->config.framing : &rkm04_hdlc;

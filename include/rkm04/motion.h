@@ -62,8 +62,8 @@ struct rkm04_ramp {
     struct rkm04_fixed w;     /* 2e6 * speed */
     struct rkm04_instant end; /* when the present leg ends; RKM04_NEVER: it does not */
     uint32_t left;            /* pulses left in the present leg */
-    int32_t interval;         /* ticks between the last two pulses */
-    int32_t change;           /* by how much the interval changed */
+    int32_t interval;         /* ticks between two pulses, about */
+    int32_t change;           /* by how much it changes from pulse to pulse; 0: hardly */
     int32_t slope;            /* of the present leg */
     bool exact;               /* no irrational number has come in so far (R5) */
 };
