@@ -9,10 +9,10 @@ test_packages=(check libgmp-dev socat procps gcc-arm-none-eabi libnewlib-arm-non
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
-# Is this Debian 12 or later?
+# Is this Debian 12 or later? (OS_RELEASE: another file than /etc/os-release, for the tests.)
 is_debian() {
     local ID='' VERSION_ID=''
-    [[ -r /etc/os-release ]] && . /etc/os-release
+    [[ -r ${OS_RELEASE:=/etc/os-release} ]] && . "$OS_RELEASE"
     [[ $ID == debian && ( -z $VERSION_ID || ${VERSION_ID%%.*} -ge 12 ) ]] && command -v dpkg-query apt-get >/dev/null
 }
 

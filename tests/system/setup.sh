@@ -1,0 +1,81 @@
+#!/bin/bash
+# tools/setup.sh: which packages are installed, and when the package manager is left alone. The package manager here is a
+# stand-in that writes down how it was called.
+
+. "$(dirname "$0")/lib.sh"
+tools=$(cd "$(dirname "$0")/../../tools" && pwd)
+
+# stand_ins ABSENT APT_STATUS ID: everything is installed but the package ABSENT.
+stand_ins() {
+    mkdir "$folder/bin"
+    printf '#!/bin/sh\necho "$*" >>"%s"\nexit %s\n' "$folder/calls" "$2" >"$folder/bin/apt-get"
+    printf '#!/bin/bash\nshift 2\nfor p; do [[ $p == "%s" ]] || echo "$p installed"; done\n' "$1" >"$folder/bin/dpkg-query"
+    # shellcheck disable=SC2016
+    printf '#!/bin/sh\ncase " $ABSENT_LIBRARIES " in *" $2 "*) exit 1;; esac\n' >"$folder/bin/pkg-config"
+    printf '#!/bin/sh\nexec "$@"\n' >"$folder/bin/sudo"
+    chmod +x "$folder"/bin/*
+    printf 'ID=%s\nVERSION_ID="12"\n' "$3" >"$folder/os-release"
+    : >"$folder/calls"
+}
+
+# set_up run|test: ends with the status of the set-up; "went on" if the tool would go on.
+set_up() {
+    OS_RELEASE=$folder/os-release PATH=$folder/bin:$PATH \
+        bash -c '. "$1/setup.sh"; setup_packages "$2"; echo "went on"' tools "$tools" "$1"
+}
+
+test_with_everything_there_the_package_manager_is_not_called() {
+    stand_ins none 0 debian
+    exits 0 set_up test
+    same "went on" "$said" "stdout"
+    same "" "$(<"$folder/calls")" "calls of apt-get"
+}
+
+test_only_what_is_missing_is_installed() {
+    stand_ins socat 0 debian
+    exits 0 set_up test
+    holds "$(<"$folder/calls")" "install socat" "calls of apt-get"
+    same 2 "$(wc -l <"$folder/calls")" "calls of apt-get: update and install"
+}
+
+test_running_does_not_need_what_only_tests_need() {
+    stand_ins socat 0 debian
+    exits 0 set_up run
+    same "" "$(<"$folder/calls")" "calls of apt-get"
+}
+
+test_without_network_it_goes_on_if_the_tools_are_found_all_the_same() {
+    stand_ins check 100 debian
+    exits 0 set_up test
+    same "went on" "$said" "stdout"
+    holds "$complained" check "the message names the package"
+}
+
+test_without_network_and_without_the_tools_it_gives_up() {
+    stand_ins check 100 debian
+    export ABSENT_LIBRARIES=check
+    exits 1 set_up test
+    holds "$complained" check "the message names what is missing"
+}
+
+test_another_system_is_told_what_is_needed() {
+    stand_ins none 0 fedora
+    exits 0 set_up run
+    same "went on" "$said" "stdout"
+    holds "$complained" "libuv1-dev libjansson-dev" "the message names the packages"
+    export ABSENT_LIBRARIES=jansson
+    exits 1 set_up run
+    holds "$complained" jansson "the message names what is missing"
+    same "" "$(<"$folder/calls")" "calls of apt-get"
+}
+
+test_the_tools_explain_themselves_and_refuse_what_they_do_not_know() {
+    exits 0 "$tools/run" --help
+    holds "$said" "Usage: tools/run" "stdout"
+    exits 0 "$tools/test" --help
+    holds "$said" "Usage: tools/test" "stdout"
+    exits 2 "$tools/test" --frobnicate
+    holds "$complained" --frobnicate "the message names the option"
+}
+
+run_cases "$@"
