@@ -1,0 +1,220 @@
+#include "client_link.h"
+
+#include <err.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "client_port.h"
+
+#define NUMBER_UNKNOWN 255  /* message number of "unknown message" */
+#define PROGRESS_MS 100
+#define CLOSE_GRACE_US 20000 /* a line that is closed at once may lose what is still in a buffer */
+
+/* Time that so many bytes take on the line, us. */
+static uint64_t line_time(size_t bytes)
+{
+    return (uint64_t)bytes * 10u * RKM04_TICKS_PER_SECOND / CLIENT_BAUD;
+}
+
+static size_t encode(struct client *client, const uint8_t *message, size_t length)
+{
+    struct rkm04_sender sender = {0};
+    size_t n = client->framing->begin(&sender, client->node, 0, length, false, client->wire);
+    for (size_t i = 0; i < length; i++)
+        n += client->framing->put(&sender, message[i], client->wire + n);
+    return n + client->framing->end(&sender, client->wire + n);
+}
+
+/* One dialogue in progress. */
+struct dialogue {
+    struct client *client;
+    const uint8_t *request;
+    size_t length; /* of the request */
+    size_t frame;  /* bytes of it on the line */
+    uint64_t begun, deadline, last_moment;
+};
+
+/* ---- Waiting ------------------------------------------------------------------------------------------------------ */
+
+static void show_progress(const struct dialogue *d)
+{
+    if (d->client->progress == NULL)
+        return;
+    uint64_t gone = (client_now() - d->begun) * CLIENT_BAUD / 10u / RKM04_TICKS_PER_SECOND;
+    d->client->progress(d->client->context, gone < d->frame ? (size_t)gone : d->frame);
+}
+
+/* Wait for an event on the line. Returns true if there is one, false at the deadline. */
+static bool wait_for(const struct dialogue *d, short events)
+{
+    struct pollfd line = {.fd = d->client->fd, .events = events};
+    for (;;) {
+        uint64_t now = client_now();
+        if (now >= d->deadline)
+            return false;
+        uint64_t left = (d->deadline - now + 999u) / 1000u;
+        int ready = poll(&line, 1, left < PROGRESS_MS ? (int)left : PROGRESS_MS);
+        show_progress(d);
+        if (ready > 0)
+            return true;
+    }
+}
+
+static enum client_outcome lost(const struct client *client)
+{
+    warnx("%s: the line was closed at its other end (%s)", client->port, errno != 0 ? strerror(errno) : "end of file");
+    return CLIENT_LOST;
+}
+
+/* ---- Sending ------------------------------------------------------------------------------------------------------ */
+
+/* Forget what has come so far. Returns false if the line is gone. */
+static bool forget(struct client *client)
+{
+    uint8_t bytes[512];
+    ssize_t n;
+    while ((n = read(client->fd, bytes, sizeof bytes)) > 0)
+        ;
+    memset(&client->receiver, 0, sizeof client->receiver);
+    if (n == 0)
+        errno = 0;
+    return n < 0 && (errno == EAGAIN || errno == EINTR);
+}
+
+static enum client_outcome send_frame(const struct dialogue *d)
+{
+    struct client *client = d->client;
+    for (size_t sent = 0; sent < d->frame;) {
+        ssize_t n = write(client->fd, client->wire + sent, d->frame - sent);
+        if (n > 0) {
+            sent += (size_t)n;
+        } else if (n < 0 && errno != EAGAIN && errno != EINTR) {
+            return lost(client);
+        } else {
+            if (!wait_for(d, POLLOUT | POLLIN)) {
+                warnx("%s takes no bytes: is the program or the device at its other end stuck?", client->port);
+                return CLIENT_SILENT;
+            }
+            if (!forget(client)) /* no answer yet; but who sends us something must not wait for us to read it */
+                return lost(client);
+        }
+    }
+    return CLIENT_SENT;
+}
+
+/* To all units: nobody says when it has arrived. */
+static void let_it_go_out(const struct dialogue *d)
+{
+    uint64_t end = d->begun + line_time(d->frame) + CLOSE_GRACE_US;
+    tcdrain(d->client->fd);
+    for (uint64_t now = client_now(); now < end; now = client_now()) {
+        uint64_t left = (end - now + 999u) / 1000u;
+        poll(NULL, 0, left < PROGRESS_MS ? (int)left : PROGRESS_MS);
+        show_progress(d);
+    }
+}
+
+/* ---- Receiving ---------------------------------------------------------------------------------------------------- */
+
+/* Messages 2 to 7 repeat the motor. */
+static bool is_for_motor(const struct dialogue *d)
+{
+    bool named = d->request[0] >= 2 && d->request[0] <= 7 && d->length >= 2 && d->request[1] >= '0' &&
+                 d->request[1] <= '0' + RKM04_MOTORS;
+    return !named || (d->client->receiver.length >= 2 && d->client->answer[1] == d->request[1]);
+}
+
+/* Is the message in the buffer the answer? */
+static bool is_answer(const struct dialogue *d)
+{
+    const struct client *client = d->client;
+    const struct rkm04_receiver *r = &client->receiver;
+    if (client->framing->answer_names_sender ? r->dnode != 0 || r->snode != client->node : r->dnode != client->node)
+        return false;
+    if (client->answer[0] == NUMBER_UNKNOWN && r->length >= 2 && client->answer[1] == d->request[0])
+        return true;
+    return client->answer[0] == d->request[0] && is_for_motor(d);
+}
+
+/* Take what came. Returns true when the answer stands in the buffer. */
+static bool take(struct dialogue *d, const uint8_t *bytes, size_t length)
+{
+    struct client *client = d->client;
+    uint64_t now = client_now();
+    client->heard += (uint32_t)length;
+    for (size_t i = 0; i < length; i++) {
+        if (!client->framing->receive(&client->receiver, bytes[i], now, client->answer, sizeof client->answer))
+            continue;
+        if (is_answer(d)) {
+            client->length = client->receiver.length;
+            return true;
+        }
+        client->strange++;
+    }
+    uint64_t limit = now + (uint64_t)client->timeout_ms * 1000u;
+    d->deadline = limit < d->last_moment ? limit : d->last_moment;
+    return false;
+}
+
+static void advise(const struct dialogue *d)
+{
+    const struct client *client = d->client;
+    const char *other = client->framing == &rkm04_hdlc ? "plain" : "hdlc";
+    warnx("no answer from unit %u within %u ms", client->node, client->timeout_ms);
+    fputs("Please check:\n", stderr);
+    if (client->strange > 0)
+        fprintf(stderr, "  - %" PRIu32 " messages came that are not the answer: is another program or unit on this address?\n",
+                client->strange);
+    else if (client->heard > 0)
+        fprintf(stderr, "  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right (see below)?\n",
+                client->heard);
+    fprintf(stderr,
+            "  - has the unit power, and is its line (A, B) connected to %s?\n"
+            "  - is its address %u (switch S1; rkm04 serve --node %u)? Another one is chosen with -n.\n"
+            "  - does it use the framing %s? The other one is --framing %s.\n"
+            "  - is it slow, or the line long? --timeout MS waits longer.\n",
+            client->port, client->node, client->node, client->framing->name, other);
+}
+
+static enum client_outcome await_answer(struct dialogue *d)
+{
+    uint8_t bytes[512];
+    while (wait_for(d, POLLIN)) {
+        ssize_t n = read(d->client->fd, bytes, sizeof bytes);
+        if (n == 0) {
+            errno = 0;
+            return lost(d->client);
+        }
+        if (n < 0 && errno != EAGAIN && errno != EINTR)
+            return lost(d->client);
+        if (n > 0 && take(d, bytes, (size_t)n))
+            return CLIENT_ANSWERED;
+    }
+    advise(d);
+    return CLIENT_SILENT;
+}
+
+enum client_outcome client_exchange(struct client *client, const uint8_t *request, size_t length)
+{
+    struct dialogue d = {.client = client, .request = request, .length = length, .frame = encode(client, request, length)};
+    client->heard = 0;
+    client->strange = 0;
+    d.begun = client_now();
+    d.deadline = d.begun + line_time(d.frame) + (uint64_t)client->timeout_ms * 1000u;
+    d.last_moment = d.deadline + line_time(sizeof client->wire);
+    if (!forget(client))
+        return lost(client);
+    enum client_outcome outcome = send_frame(&d);
+    if (outcome != CLIENT_SENT)
+        return outcome;
+    if (client->node == 0) {
+        let_it_go_out(&d);
+        return CLIENT_SENT;
+    }
+    return await_answer(&d);
+}
