@@ -129,9 +129,12 @@ static void parse_options(int argc, char **argv, struct options *options)
 /* ---- Texts -------------------------------------------------------------------------------------------------------- */
 
 struct inputs {
-    struct exec_program *program;
+    struct program {
+        char motor; /* '0'..'4' */
+        struct exec_file file;
+    } *program;
     size_t programs;
-    struct exec_text stimulus_text;
+    struct exec_file stimulus_file;
     struct stimuli stimuli;
 };
 
@@ -139,11 +142,12 @@ static bool read_programs(struct inputs *inputs, const struct options *options)
 {
     bool well = true;
     for (size_t i = 0; i < options->arguments; i++) {
-        struct exec_program *program = &inputs->program[inputs->programs++];
+        struct program *program = &inputs->program[inputs->programs++];
+        struct exec_file *file = &program->file;
         program->motor = options->argument[i].motor;
-        if (!exec_text_read(&program->text, options->argument[i].path))
+        if (!exec_file_read(file, options->argument[i].path))
             well = false;
-        else if (diagnose_text(program->text.name, program->text.text, program->text.length, stderr) > 0)
+        else if (diagnose_text(file->name, file->text.text, file->text.length, stderr) > 0)
             well = false;
     }
     return well;
@@ -178,16 +182,16 @@ static bool is_refused(const struct stimulus *s)
 
 static bool read_stimuli(struct inputs *inputs, const char *path)
 {
-    struct exec_text *text = &inputs->stimulus_text;
-    if (!exec_text_read(text, path))
+    struct exec_file *file = &inputs->stimulus_file;
+    if (!exec_file_read(file, path))
         return false;
-    int errors = stimuli_read(&inputs->stimuli, text->name, text->text, text->length, stderr);
+    int errors = stimuli_read(&inputs->stimuli, file->name, file->text.text, file->text.length, stderr);
     if (errors < 0)
         fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
     bool well = errors == 0;
     for (size_t i = 0; i < inputs->stimuli.count; i++) {
         const struct stimulus *s = &inputs->stimuli.list[i];
-        if (s->kind == STIMULUS_SET && is_refused(s) && !check_set(s, text->name))
+        if (s->kind == STIMULUS_SET && is_refused(s) && !check_set(s, file->name))
             well = false;
     }
     return well;
@@ -196,9 +200,9 @@ static bool read_stimuli(struct inputs *inputs, const char *path)
 static void free_inputs(struct inputs *inputs)
 {
     for (size_t i = 0; i < inputs->programs; i++)
-        exec_text_free(&inputs->program[i].text);
+        program_text_free(&inputs->program[i].file.text);
     free(inputs->program);
-    exec_text_free(&inputs->stimulus_text);
+    program_text_free(&inputs->stimulus_file.text);
     stimuli_free(&inputs->stimuli);
 }
 
@@ -207,10 +211,10 @@ static void free_inputs(struct inputs *inputs)
 static void store_programs(struct exec_run *run, const struct inputs *inputs)
 {
     for (size_t i = 0; i < inputs->programs; i++) {
-        const struct exec_program *program = &inputs->program[i];
-        if (exec_run_set(run, program->motor, program->text.text, program->text.length) == 3)
-            fprintf(stderr, "%s: warning: more commands than the %d a motor has room for\n", program->text.name,
-                    RKM04_PROGRAM_MAX);
+        const struct program *program = &inputs->program[i];
+        const struct exec_file *file = &program->file;
+        if (exec_run_set(run, program->motor, file->text.text, file->text.length) == 3)
+            fprintf(stderr, "%s: warning: more commands than the %d a motor has room for\n", file->name, RKM04_PROGRAM_MAX);
     }
 }
 
@@ -255,7 +259,7 @@ static int run_programs(const struct options *options, const struct inputs *inpu
 
     report_begin(&report, options->json);
     run.stimuli = &inputs->stimuli;
-    run.stimulus_name = inputs->stimulus_text.name;
+    run.stimulus_name = inputs->stimulus_file.name;
     run.trace = trace_file != NULL ? &trace : NULL;
     run.until = options->until;
     run.progress = isatty(STDERR_FILENO) != 0;
