@@ -277,6 +277,13 @@ void profile_plan(struct rkm04_motion *motion)
 
 /* ---- Planning anew while moving -------------------------------------------------------------------------------------- */
 
+/* w^2, the places behind the point counted in as far as they matter. */
+static struct wide square_of(struct rkm04_fixed w)
+{
+    struct wide square = wide_product((uint64_t)w.whole, (uint64_t)w.whole);
+    return wide_sum(square, (struct wide){0, wide_high(w.part, (uint64_t)w.whole * 2)});
+}
+
 /* The place and speed at `tick`, from the pulse generator. */
 static struct state present(const struct rkm04_motion *motion, uint64_t tick)
 {
@@ -289,9 +296,7 @@ static struct state present(const struct rkm04_motion *motion, uint64_t tick)
     uint64_t low = wide_divide((struct wide){rest, 0}, RAMP_STEP, &rest);
     struct state state = {.moving = true};
     state.at = (struct rkm04_place){(uint64_t)motion->done << 32 | high >> 32, high << 32 | low >> 32};
-    struct wide square = wide_product((uint64_t)w.whole, (uint64_t)w.whole);
-    square = wide_sum(square, (struct wide){0, wide_high(w.part, (uint64_t)w.whole * 2)});
-    state.q = wide_divide(wide_shifted(square, RAMP_SPEED2_BITS), RAMP_STEP, &rest);
+    state.q = wide_divide(wide_shifted(square_of(w), RAMP_SPEED2_BITS), RAMP_STEP, &rest);
     state.segment = segment_at(motion, state.at);
     return state;
 }
@@ -347,8 +352,7 @@ static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, stru
 {
     const int64_t w_end = RAMP_SPEED * motion->start_speed;
     struct stop stop = {.step = motion->done + 1};
-    stop.energy = wide_difference(wide_product((uint64_t)w.whole, (uint64_t)w.whole), wide_product((uint64_t)w_end, (uint64_t)w_end));
-    stop.energy = wide_sum(stop.energy, (struct wide){0, wide_high(w.part, (uint64_t)w.whole * 2)});
+    stop.energy = wide_difference(square_of(w), wide_product((uint64_t)w_end, (uint64_t)w_end));
     for (;; state->segment++) {
         uint16_t acceleration = motion->segment[state->segment].acceleration;
         uint64_t factor = (uint64_t)4 * acceleration;
@@ -363,7 +367,8 @@ static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, stru
         if (state->segment + 1u == motion->segments)
             return motion->total;
         struct wide lost = wide_product(factor * (uint64_t)RAMP_STEP, ramp_step_of(end) - stop.step);
-        stop.energy = wide_difference(stop.energy, wide_difference(lost, (struct wide){stop.offset < 0 ? UINT64_MAX : 0, (uint64_t)stop.offset}));
+        lost = wide_sum(lost, (struct wide){0, (uint64_t)-stop.offset});
+        stop.energy = wide_difference(stop.energy, lost);
         state->q -= lower(state->q, energy(acceleration, state->at, end));
         state->at = end;
         stop.step = ramp_step_of(end);
@@ -415,6 +420,6 @@ bool profile_point(const struct rkm04_motion *motion, unsigned i, struct profile
     point->step = ramp_step_of(at->at) + !last;
     if (!profile->endless && point->step > end)
         point->step = end;
-    point->speed = last ? 0 : wide_root_of(at->speed2 >> (RAMP_SPEED2_BITS + 1));
+    point->speed = last ? 0 : wide_root_of((uint32_t)(at->speed2 >> (RAMP_SPEED2_BITS + 1)));
     return true;
 }

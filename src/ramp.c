@@ -79,7 +79,7 @@ static struct rkm04_instant after_way(struct rkm04_instant start, struct rkm04_p
 struct rkm04_fixed ramp_w(uint64_t speed2, bool *exact)
 {
     uint64_t square = speed2 >> (RAMP_SPEED2_BITS + 1);
-    uint32_t speed = wide_root_of(square);
+    uint32_t speed = wide_root_of((uint32_t)square);
     if (square << (RAMP_SPEED2_BITS + 1) == speed2 && (uint64_t)speed * speed == square)
         return (struct rkm04_fixed){RAMP_SPEED * (int64_t)speed, 0};
     /* w = sqrt(2e12 * speed2 / 2^34), with 64 places: sqrt(2e12 * speed2 * 4^47). */
@@ -245,7 +245,8 @@ static void begin_pulses(struct rkm04_ramp *ramp, const struct rkm04_profile *pr
 }
 
 /* How long the leg takes from `start`, where it has speed w. */
-static void set_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_instant start, struct rkm04_fixed w)
+static void set_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_instant start,
+                    struct rkm04_fixed w)
 {
     const struct rkm04_break *from = &profile->point[profile->leg], *to = from + 1;
     if (leg_is_open(profile)) {

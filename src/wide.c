@@ -44,8 +44,16 @@ struct wide wide_root(struct wide radicand, unsigned places, bool *inexact)
     return root;
 }
 
-uint32_t wide_root_of(uint64_t number)
+uint32_t wide_root_of(uint32_t number)
 {
-    bool inexact;
-    return (uint32_t)wide_root((struct wide){0, number}, 0, &inexact).low;
+    uint32_t root = 0;
+    for (uint32_t digit = UINT32_C(1) << 30; digit != 0; digit >>= 2) {
+        uint32_t trial = root + digit;
+        root >>= 1;
+        if (number >= trial) {
+            number -= trial;
+            root += digit;
+        }
+    }
+    return root;
 }

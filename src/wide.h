@@ -62,6 +62,6 @@ struct wide wide_fraction(uint64_t rest, uint64_t divisor, bool *inexact);
 struct wide wide_root(struct wide radicand, unsigned places, bool *inexact);
 
 /* Square root of a whole number, rounded down. */
-uint32_t wide_root_of(uint64_t number);
+uint32_t wide_root_of(uint32_t number);
 
 #endif

@@ -53,8 +53,8 @@ enum rkm04_event {
     RKM04_EVENT_FAULT     /* value: enum rkm04_fault */
 };
 
-/* What a unit asks of its surroundings. All are called from within rkm04_init, _receive, _send or _advance, in the order of
- * the happenings of one motor; between motors the order holds within one tick of a slot only: sort by tick to merge. A pointer may be
+/* What a unit asks of its surroundings. All are called from within rkm04_init, _receive, _send or _advance. The calls about one
+ * motor come in the order of time; those about two motors only from slot to slot: sort by tick to merge them. A pointer may be
  * NULL: then nobody is told (flash: stores fail, slots are empty). `motor` is 1..4, `tick` the tick of the happening.
  * None may call back into the unit. */
 struct rkm04_port {
