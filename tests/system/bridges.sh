@@ -59,19 +59,28 @@ listening_port() {
 }
 
 bridge() {
-    start bridge socat TCP-LISTEN:0,bind=127.0.0.1,reuseaddr,fork "FILE:$folder/bus,raw,echo=0"
+    start bridge socat -t0 TCP-LISTEN:0,bind=127.0.0.1,reuseaddr,fork "FILE:$folder/bus,raw,echo=0"
     soon "the bridge listens" listening_port "$started"
+}
+
+# by_tcp NUMBER HOST ARGUMENTS...: the client through the bridge, once for the NUMBERth time; each connection opens the pty
+# anew, so wait until the one before has let go of it.
+by_tcp() {
+    exits 0 "$RKMCTL" -p "tcp:$2:$port" "${@:3}"
+    soon "the bridge has closed the pty" closed "$1"
+}
+
+closed() {
+    [[ $(grep -c 'has closed the line' "$folder/bus.err") == "$1" ]]
 }
 
 test_the_client_reaches_a_unit_over_tcp() {
     serve bus --clock max
     bridge
-    exits 0 "$RKMCTL" -p "tcp:127.0.0.1:$port" version
+    by_tcp 1 127.0.0.1 version
     holds "$said" "$version" "over TCP"
-    exits 0 "$RKMCTL" -p "tcp:127.0.0.1:$port" -m 4 set 'B321 R'
+    by_tcp 2 localhost -m 4 set 'B321 R'
     soon "motor 4 has arrived" position_is bus 4 -321
-    exits 0 "$RKMCTL" -p "tcp:localhost:$port" version
-    holds "$said" "$version" "by name"
 }
 
 test_a_tcp_port_where_nobody_listens_is_an_error() {

@@ -66,7 +66,7 @@ test_L3_a_broadcast_is_obeyed_and_not_waited_for() {
     soon "the broadcast was obeyed" position_of_node_9
 }
 
-position_of_node_9() { [[ $(ctl bus -n 9 -m 4 position | tr -dc '0-9-') == 77 ]]; }
+position_of_node_9() { [[ $(ctl bus -n 9 -m 4 position) == "motor 4: 77" ]]; }
 
 test_raw_shows_the_bytes_of_the_answer() {
     serve bus

@@ -14,7 +14,7 @@ fail() {
     local file
     printf '  failed: %s\n' "$*"
     for file in "$folder"/*.err; do
-        [[ -s $file ]] && printf '  %s said:\n' "${file##*/}" && sed 's/^/    /' "$file"
+        [[ -s $file ]] && printf '  %s said:\n' "${file##*/}" && tail -n 15 "$file" | sed 's/^/    /'
     done
     exit 1
 }
@@ -81,7 +81,7 @@ serve() {
 }
 
 ready() {
-    grep -q '^READY ' "$folder/$1.out" && return
+    grep -qs '^READY ' "$folder/$1.out" && return
     ended "$started" && fail "unit $1 ended before it was ready"
     return 1
 }
@@ -93,7 +93,7 @@ ctl() {
 
 # position_is NAME MOTOR STEPS
 position_is() {
-    [[ $(ctl "$1" -m "$2" position 2>>"$folder/ctl.err" | tr -dc '0-9-') == "$3" ]]
+    [[ $(ctl "$1" -m "$2" position 2>"$folder/ctl.err") == "motor $2: $3" ]]
 }
 
 # say_bytes FD HEX: bytes as they are.

@@ -79,7 +79,7 @@ test_values_out_of_range_are_usage_errors_of_the_client() {
     exits 2 "$RKMCTL" "${port[@]}" raw 0g
     exits 2 "$RKMCTL" "${port[@]}" raw 012
     exits 2 "$RKMCTL" "${port[@]}" version of what
-    exits 2 "$RKMCTL" -p tcp:localhost:notaport version
+    exits 2 "$RKMCTL" "${port[@]}" -m 0 table
     exits 2 "$RKMCTL" -p tcp:localhost version
 }
 
