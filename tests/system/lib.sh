@@ -53,6 +53,7 @@ soon() {
 start() {
     local name=$1
     shift
+    rm -f "$folder/$name.out" "$folder/$name.err" # of a process of the same name before
     "$@" >"$folder/$name.out" 2>"$folder/$name.err" </dev/null &
     started=$!
     processes+=("$started")
