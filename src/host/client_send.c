@@ -101,10 +101,8 @@ static void report_refusal(const struct sending *s)
         return;
     struct text_place place = text_place_begin(s->text, s->length);
     text_place_move(&place, command->start);
-    fprintf(stderr, "%s:%zu:%zu: error: refused by the unit", s->name, place.line, place.column);
-    if (candidates > 1)
-        fprintf(stderr, ", or one of the %u like it that follow in the same message", candidates - 1);
-    fputc('\n', stderr);
+    fprintf(stderr, "%s:%zu:%zu: error: refused by the unit%s\n", s->name, place.line, place.column,
+            candidates > 1 ? ", or a later one like it in the same message" : "");
 }
 
 /* Take the answer to one piece. Returns false if it is none. */
