@@ -3,12 +3,13 @@
 #define PARTS 6u         /* of a tick */
 #define BYTE_PARTS 3125u /* 10 bits at 19200 baud = 520 5/6 us */
 
-/* A byte sets out at `tick` or when the line is free. Returns the tick at which it has passed. */
+/* A byte sets out at `tick` or when the line is free; within the tick in which the line gets free it follows without a gap, so
+ * that no rounding adds up. Returns the tick at which it has passed. */
 static uint64_t pass(const struct paced_unit *paced, uint64_t *free_at, uint64_t tick)
 {
     if (!paced->paced)
         return tick;
-    if (*free_at < tick * PARTS)
+    if (*free_at + PARTS <= tick * PARTS)
         *free_at = tick * PARTS;
     *free_at += BYTE_PARTS;
     return (*free_at + PARTS - 1) / PARTS;

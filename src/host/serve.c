@@ -277,8 +277,9 @@ static void on_readable(uv_poll_t *handle, int status, int events)
     if (serve->line.notices >= 0)
         line_pty_notice(&serve->line);
     if (!read_line(serve)) {
-        log_error("%s is gone: %s; start again when it is back", serve->options.port ? serve->options.port : serve->line.path,
-                  errno ? strerror(errno) : "hung up");
+        const char *why = errno ? strerror(errno) : "hung up";
+        log_at(present(serve), "%s is gone: %s; start again when it is back",
+               serve->options.port ? serve->options.port : serve->line.path, why);
         fail(serve);
         return;
     }
