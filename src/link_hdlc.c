@@ -58,7 +58,7 @@ static bool finish(struct rkm04_receiver *r)
 {
     if (r->phase == HUNT || r->phase == DNODE)
         return false;
-    if ((r->phase & ESCAPED) != 0 || r->phase != KEPT_TWO || r->length == 0) {
+    if (r->phase != KEPT_TWO || r->length == 0) { /* too short, or an escape came last: aborted */
         r->malformed++;
         return false;
     }
