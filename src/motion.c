@@ -201,21 +201,27 @@ void motion_resume(struct rkm04_unit *unit, struct rkm04_motor *motor)
 
 /* ---- Pulses ----------------------------------------------------------------------------------------------------------- */
 
-static void send_pulses(struct rkm04_unit *unit, struct rkm04_motor *motor, const uint64_t *tick, size_t count)
+/* Is there anybody to see single pulses? */
+static bool pulses_are_seen(const struct rkm04_unit *unit)
 {
-    void (*step)(void *, uint64_t, unsigned, int32_t) = unit->simulation ? NULL : unit->port->step;
+    return unit->port->step && !unit->simulation;
+}
+
+static void count_pulses(struct rkm04_motor *motor, uint32_t count)
+{
     uint32_t position = (uint32_t)motor->position;
-    uint32_t way = motor->motion.forward ? 1 : UINT32_MAX;
-    if (step) {
-        unsigned number = motor_number(unit, motor);
-        void *context = unit->context;
-        for (const uint64_t *end = tick + count; tick < end; tick++)
-            step(context, *tick, number, (int32_t)(position += way));
-    } else {
-        position += way * (uint32_t)count;
-    }
-    motor->position = (int32_t)position;
-    motor->motion.done += (uint32_t)count;
+    motor->position = (int32_t)(motor->motion.forward ? position + count : position - count);
+    motor->motion.done += count;
+}
+
+static void send_pulses(struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count)
+{
+    void (*step)(void *, uint64_t, unsigned, int32_t) = unit->port->step;
+    void *context = unit->context;
+    uint32_t position = (uint32_t)motor->position, way = motor->motion.forward ? 1 : UINT32_MAX;
+    unsigned number = motor_number(unit, motor);
+    for (const uint64_t *end = tick + count; tick < end; tick++)
+        step(context, *tick, number, (int32_t)(position += way));
 }
 
 void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit)
@@ -224,13 +230,18 @@ void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t lim
     uint64_t tick[64];
     while (motion->ramp.next <= limit) {
         size_t room = sizeof tick / sizeof *tick;
+        uint32_t to_mark = motion->done < motion->mark ? motion->mark - motion->done : UINT32_MAX;
+        if (!pulses_are_seen(unit))
+            count_pulses(motor, ramp_skip(&motion->ramp, &motion->profile, limit, to_mark - 1));
         bool marking = motion->done < motion->mark && motion->mark - motion->done <= room;
         if (marking)
             room = motion->mark - motion->done;
         size_t count = ramp_pulses(&motion->ramp, &motion->profile, limit, tick, room);
         if (count > 0) {
             motor->last_pulse = tick[count - 1];
-            send_pulses(unit, motor, tick, count);
+            if (pulses_are_seen(unit))
+                send_pulses(unit, motor, tick, count);
+            count_pulses(motor, (uint32_t)count);
         }
         if (marking && motion->done == motion->mark)
             write_outputs(unit, motor->last_pulse, unit->outputs | motion->marks);

@@ -429,3 +429,33 @@ size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint6
     }
     return n;
 }
+
+uint32_t ramp_skip(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t limit, uint32_t most)
+{
+    const uint32_t worth = 64;
+    if (ramp->left < worth || most < worth || ramp->next > limit)
+        return 0;
+    bool exact = true; /* not asked for here */
+    int64_t slowest = ramp->w.whole;
+    if (ramp->slope < 0)
+        slowest = ramp_w(profile->point[profile->leg + 1].speed2, &exact).whole;
+    uint64_t longest = (uint64_t)(RAMP_STEP / slowest) + 1, stop = ramp->end.tick < limit ? ramp->end.tick : limit;
+    if (stop < ramp->at + 4 * longest)
+        return 0;
+    stop -= 2 * longest;
+    /* As moved(), for a way of up to 2^32 steps. */
+    uint64_t ticks = stop - ramp->at;
+    int64_t half = ramp->slope * (int64_t)ticks;
+    struct wide part = wide_product(ramp->w.part, ticks);
+    struct rkm04_fixed rest = sum(ramp->y, (struct rkm04_fixed){(int64_t)part.high, part.low});
+    struct wide way = wide_sum(wide_product((uint64_t)(ramp->w.whole + half), ticks), (struct wide){0, (uint64_t)rest.whole});
+    uint64_t y, steps = wide_divide(way, RAMP_STEP, &y);
+    if (steps + 1 >= ramp->left || steps + 1 > most)
+        return 0;
+    ramp->y = (struct rkm04_fixed){(int64_t)y - RAMP_STEP, rest.part};
+    ramp->w.whole += 2 * half;
+    ramp->at = stop;
+    ramp->left -= (uint32_t)steps + 1;
+    find_first(ramp);
+    return (uint32_t)steps + 1;
+}

@@ -54,6 +54,7 @@ bool flash_file_open(struct flash_file *flash, const char *path)
     flash->path = path;
     flash->fd = -1;
     flash->unsynced = false;
+    flash->end = 0;
     if (!path) {
         memset(flash->memory, ERASED, sizeof flash->memory);
         return true;
@@ -77,21 +78,6 @@ static bool within(unsigned block, unsigned offset, unsigned length)
     return block < RKM04_FLASH_BLOCKS && offset <= RKM04_FLASH_BLOCK_SIZE && length <= RKM04_FLASH_BLOCK_SIZE - offset;
 }
 
-static int write_at(struct flash_file *flash, unsigned block, unsigned offset, const void *data, unsigned length)
-{
-    unsigned at = block * RKM04_FLASH_BLOCK_SIZE + offset;
-    if (flash->fd < 0) {
-        memcpy(flash->memory + at, data, length);
-        return 0;
-    }
-    flash->unsynced = true;
-    ssize_t written = pwrite(flash->fd, data, length, at);
-    if (written == (ssize_t)length)
-        return 0;
-    log_error("cannot write the flash image %s: %s", flash->path, written >= 0 ? "the disk is full" : strerror(errno));
-    return 1;
-}
-
 bool flash_file_sync(struct flash_file *flash)
 {
     if (flash->fd < 0 || !flash->unsynced)
@@ -102,6 +88,24 @@ bool flash_file_sync(struct flash_file *flash)
     }
     flash->unsynced = false;
     return true;
+}
+
+static int write_at(struct flash_file *flash, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    unsigned at = block * RKM04_FLASH_BLOCK_SIZE + offset;
+    if (flash->fd < 0) {
+        memcpy(flash->memory + at, data, length);
+        return 0;
+    }
+    if (at != flash->end && !flash_file_sync(flash))
+        return 1;
+    flash->unsynced = true;
+    flash->end = at + length;
+    ssize_t written = pwrite(flash->fd, data, length, at);
+    if (written == (ssize_t)length)
+        return 0;
+    log_error("cannot write the flash image %s: %s", flash->path, written >= 0 ? "the disk is full" : strerror(errno));
+    return 1;
 }
 
 int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, void *data, unsigned length)

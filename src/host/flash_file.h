@@ -1,9 +1,9 @@
 /* flash_file.h: the unit's flash: an image file that survives, or memory that lives as long as the process.
  *
  * The image is the blocks of the flash one after the other, RKM04_FLASH_BLOCKS x RKM04_FLASH_BLOCK_SIZE bytes, and nothing
- * else. Every operation reaches the file when it is asked for, in order; what has been read back, as the unit does with each
- * part of a record before it goes on, is on the disk. So the record's own rules hold for a killed emulator and for a machine
- * that lost its power. */
+ * else. Every operation reaches the file when it is asked for, so a killed emulator loses nothing of what it has done. For a
+ * machine that loses its power: operations become lasting in the order in which they were asked for, but for programs that
+ * follow one another without a gap, which count as one; what has been read back is on the disk. */
 #ifndef RKM04_HOST_FLASH_FILE_H
 #define RKM04_HOST_FLASH_FILE_H
 
@@ -18,6 +18,7 @@ struct flash_file {
     const char *path; /* NULL: memory only */
     int fd;           /* -1: memory only */
     bool unsynced;
+    unsigned end;     /* where the operation before ended */
     uint8_t memory[FLASH_FILE_SIZE]; /* without a file */
 };
 

@@ -1,0 +1,128 @@
+/* Pulses that nobody sees one by one are passed over (K3: the same positions at the same ticks, motions that end at the same
+ * tick), at a cost that does not depend on their number. */
+#include <check.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <rkm04/unit.h>
+
+static struct rkm04_unit seen, unseen;
+static uint64_t pulses;
+
+static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
+{
+    (void)context, (void)tick, (void)motor, (void)position;
+    pulses++;
+}
+
+static const struct rkm04_port with_sink = {.step = on_step}, without_sink = {.step = NULL};
+
+static uint32_t seed;
+
+static uint32_t any(uint32_t low, uint32_t high)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return low + (uint32_t)((uint64_t)(seed >> 8) * (high - low + 1) >> 24);
+}
+
+static void power_up(void)
+{
+    const struct rkm04_config config = {.node = 1};
+    rkm04_init(&seen, &config, &with_sink, NULL);
+    rkm04_init(&unseen, &config, &without_sink, NULL);
+    pulses = 0;
+}
+
+static void both_set(const char *text)
+{
+    ck_assert_int_eq(rkm04_set_command(&seen, '1', text, strlen(text), NULL), 0);
+    ck_assert_int_eq(rkm04_set_command(&unseen, '1', text, strlen(text), NULL), 0);
+}
+
+static void both_are_equal(void)
+{
+    struct rkm04_motor_state a, b;
+    rkm04_motor_state(&seen, 1, &a);
+    rkm04_motor_state(&unseen, 1, &b);
+    ck_assert_int_eq(a.position, b.position);
+    ck_assert_uint_eq(a.steps, b.steps);
+    ck_assert_uint_eq(a.speed, b.speed);
+    ck_assert_int_eq(a.state, b.state);
+    ck_assert_uint_eq(a.index, b.index);
+    ck_assert_uint_eq(rkm04_next_event(&seen), rkm04_next_event(&unseen));
+    ck_assert_uint_eq(rkm04_outputs(&seen), rkm04_outputs(&unseen));
+}
+
+static void both_advance(uint64_t ticks)
+{
+    rkm04_advance(&seen, ticks);
+    rkm04_advance(&unseen, ticks);
+    both_are_equal();
+}
+
+/* A program of one motion: single, compound with an output at its last segment, or endless. */
+static void set_random_motion(void)
+{
+    char text[600];
+    int length = sprintf(text, "\\ T53 S%u ", any(1, 2000));
+    unsigned kind = any(0, 3), segments = kind == 1 ? any(2, 10) : 1;
+    for (unsigned i = 0; i < segments; i++)
+        length += sprintf(text + length, "V%u A%u F%u %s", any(1, 16000), any(1, any(0, 1) ? 60000 : 200), any(1, 60000),
+                          kind == 1 ? "Y " : "");
+    strcpy(text + length, kind == 2 ? "G-" : "R");
+    both_set(text);
+}
+
+START_TEST(K3_pulses_nobody_sees_lead_to_the_same_positions_at_the_same_ticks)
+{
+    seed = (uint32_t)_i + 1;
+    power_up();
+    for (unsigned n = 0; n < 10; n++) {
+        set_random_motion();
+        for (unsigned i = 0; i < 12; i++) {
+            both_advance(any(0, 1) ? any(1, 3000) : any(1, 4000000));
+            if (any(0, 5) == 0)
+                both_set(any(0, 1) ? "K" : "C75");
+            char speed[16];
+            sprintf(speed, "V%u", any(1, 16000));
+            if (any(0, 5) == 0)
+                both_set(speed);
+        }
+    }
+    ck_assert_uint_gt(pulses, 0);
+}
+END_TEST
+
+START_TEST(U3_the_longest_motion_ends_at_the_tick_of_its_closed_form_without_a_sink)
+{
+    /* 4 000 000 000 steps of one second each: 126 years. G is the fourth command: it begins at tick 4000. */
+    const uint64_t steps = UINT64_C(4000000000);
+    struct rkm04_motor_state state;
+    power_up();
+    rkm04_set_command(&unseen, '1', "S1 V1 =-2000000000 G2000000000", 30, NULL);
+    rkm04_advance(&unseen, 4001 + steps * 1000000 - 1);
+    rkm04_motor_state(&unseen, 1, &state);
+    ck_assert_int_eq(state.position, 1999999999); /* the last pulse is due at the tick that comes now */
+    ck_assert_int_eq(state.state, RKM04_MOVING);
+    rkm04_advance(&unseen, 1);
+    rkm04_motor_state(&unseen, 1, &state);
+    ck_assert_int_eq(state.position, 2000000000);
+    ck_assert_int_ne(state.state, RKM04_MOVING);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("unit_skip");
+    TCase *one = tcase_create("pulses that nobody sees");
+    tcase_set_timeout(one, 200);
+    tcase_add_loop_test(one, K3_pulses_nobody_sees_lead_to_the_same_positions_at_the_same_ticks, 0, 40);
+    tcase_add_test(one, U3_the_longest_motion_ends_at_the_tick_of_its_closed_form_without_a_sink);
+    suite_add_tcase(suite, one);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed != 0;
+}
