@@ -1,0 +1,88 @@
+/* coverage.h: what a client has exercised out of all that there is: messages, motors, commands, flags, faults. Pure but for
+ * coverage_write().
+ *
+ * The list of things is derived from the core's own tables, so a new command is in it by itself. Messages are handed over
+ * without their framing, in the order in which they pass on the line. One coverage serves any number of units. */
+#ifndef RKM04_HOST_COVERAGE_H
+#define RKM04_HOST_COVERAGE_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <rkm04/unit.h>
+
+#define COVERAGE_ITEMS_MAX 192
+#define COVERAGE_NAME_MAX 48
+
+enum coverage_group {
+    COVERAGE_MESSAGES, /* 1..7 and an unknown one, of each the motors; broadcast */
+    COVERAGE_MOTORS,   /* 1..4, in whatever message */
+    COVERAGE_COMMANDS, /* each in each of its forms, in a text that the unit took */
+    COVERAGE_FLAGS,    /* of answers to Set Command (P1) */
+    COVERAGE_ERRORS,   /* what answers tell about errors: Store Flash, ERROR COMMAND! */
+    COVERAGE_FAULTS,   /* enum rkm04_fault */
+    COVERAGE_GROUPS
+};
+
+/* How a command has to stand for an item to count. */
+enum coverage_place { COVERAGE_ANYWHERE, COVERAGE_ALONE, COVERAGE_INSIDE };
+
+struct coverage_item {
+    uint8_t group; /* enum coverage_group */
+    uint8_t place; /* commands: enum coverage_place */
+    uint8_t level; /* I: 0 = L, 1 = H */
+    uint32_t key;  /* commands: the character; others: what tells the items of the group apart */
+    int64_t low, high; /* commands: of the argument; I: of the bit */
+    uint64_t count; /* how often */
+    char name[COVERAGE_NAME_MAX];
+};
+
+struct coverage {
+    size_t items;
+    struct coverage_item item[COVERAGE_ITEMS_MAX];
+};
+
+/* Make the list; nothing has been exercised. */
+void coverage_begin(struct coverage *coverage);
+
+/* The client has sent a whole, well-framed message to `dnode`: 0 or the address of a unit that is there. Commands count if
+ * the unit takes the text, that is if nothing in it is wrong (P2). */
+void coverage_request(struct coverage *coverage, uint8_t dnode, const uint8_t *message, size_t length);
+
+/* A unit answers with this message. */
+void coverage_answer(struct coverage *coverage, const uint8_t *message, size_t length);
+
+/* The program of a motor has stopped with a fault (RKM04_EVENT_FAULT). RKM04_FAULT_NONE is passed over. */
+void coverage_fault(struct coverage *coverage, enum rkm04_fault fault);
+
+/* Items of a group that have been exercised, and all of it; group COVERAGE_GROUPS: of everything. */
+struct coverage_sum {
+    unsigned covered, total;
+};
+struct coverage_sum coverage_sum(const struct coverage *coverage, enum coverage_group group);
+
+/* Per cent of all items, 0.0..100.0 in tenths, rounded down, as the report shows it: 100 only if nothing is missing. */
+double coverage_percent(const struct coverage *coverage);
+
+/* "messages", "motors", … */
+const char *coverage_group_name(enum coverage_group group);
+
+/* The report for people. */
+void coverage_print(const struct coverage *coverage, FILE *out);
+
+/* The report as an object: covered, total, percent, and groups, a list of {group, covered, total, items}; items is a list of
+ * {name, count}. Returns a new reference, or NULL if memory is short. */
+json_t *coverage_json(const struct coverage *coverage);
+
+/* Write the text to `file` and the JSON to `file` + ".json"; if `file` ends in ".json" only the JSON, to `file`.
+ * Failures are reported (log.h). Returns false if anything could not be written. */
+bool coverage_write(const struct coverage *coverage, const char *file);
+
+/* Can coverage_write() write there? To be asked at the start, when it can still be mended. Files that are not there are
+ * made, empty; others are left as they are. Failures are reported. */
+bool coverage_try(const char *file);
+
+#endif

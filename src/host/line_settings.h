@@ -1,0 +1,76 @@
+/* line_settings.h: speed and form of characters a client has opened the line with, and what is heard where the two ends do
+ * not agree (U7).
+ *
+ * A pty stores the speed and does not obey it, so bytes come through whatever the client has set. The line tells the user
+ * (line_settings_news()) and, if it is to be strict, puts every byte through an ear: struct line_ear draws the bits as the
+ * sender sends them and samples them as the receiver does. */
+#ifndef RKM04_HOST_LINE_SETTINGS_H
+#define RKM04_HOST_LINE_SETTINGS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct line_settings {
+    uint32_t baud;       /* 0: hung up, nothing is sent or heard */
+    uint8_t data_bits;   /* 5..8 */
+    char parity;         /* 'N', 'E', 'O', 'M' (mark), 'S' (space) */
+    uint8_t stop_halves; /* 2, 3 (one and a half), 4 */
+};
+
+#define LINE_SETTINGS_TEXT_MAX 24
+#define LINE_NEWS_MAX 80
+
+extern const struct line_settings line_settings_unit; /* 19200 8N1 */
+
+/* Read the settings of a terminal. With the master of a pty they are the client's. Speeds of any number are taken. Linux gives
+ * a pty 8 data bits and no parity, whatever the client asks for. Returns false if `fd` is no terminal. */
+bool line_settings_read(int fd, struct line_settings *settings);
+
+/* The settings in the numbers of RFC 2217: parity 1..5 = none, odd, even, mark, space; stop size 1, 2, 3 = 1, 2, 1.5. What is
+ * none of these is taken as 8N1 has it. */
+struct line_settings line_settings_rfc2217(uint32_t baud, unsigned data_bits, unsigned parity, unsigned stop_size);
+
+bool line_settings_equal(struct line_settings a, struct line_settings b);
+
+/* "19200 8N1", "9600 7E1.5". Returns `text`. */
+char *line_settings_text(struct line_settings settings, char text[LINE_SETTINGS_TEXT_MAX]);
+
+/* Is there something to tell? `known`: what was told last, or line_settings_unit when a client comes; it becomes `now`.
+ * Returns true on a change; `news` is then "client is 9600 8N1, unit is 19200 8N1", or "client is 19200 8N1, as the unit is".
+ * A client sets the line up after it has opened it: look again whenever bytes come. */
+bool line_settings_news(struct line_settings *known, struct line_settings now, char news[LINE_NEWS_MAX]);
+
+/* ---- What is heard -------------------------------------------------------------------------------------------------- */
+
+#define LINE_EAR_MAX 8 /* bytes heard out of one byte sent, at most */
+
+struct line_heard {
+    uint64_t tick; /* at which its start bit began */
+    uint8_t byte;
+};
+
+/* A receiver that listens to a sender. Plain data. Who may read it: `lost`. */
+struct line_ear {
+    struct line_settings from, to;
+    bool keeps_bad;     /* bytes with a wrong stop bit are heard too, not lost */
+    uint8_t phase;      /* waits for the line to be 1, for a start bit, or is within a character */
+    uint8_t bit;        /* number of the sample */
+    uint16_t bits;      /* sampled so far */
+    uint64_t time;      /* up to which the line has been heard, in units of the ear (line_settings.c) */
+    uint64_t start, sample; /* of the character under way: its edge, its next sample */
+    uint64_t lost;      /* characters with a wrong stop bit */
+};
+
+/* Begin to listen, the line idle at tick 0. `keeps_bad`: false for the unit, which drops such a character; true for a client
+ * on Linux, whose tty hands it on unless told otherwise (INPCK). Parity is not checked, for the same reason. */
+void line_ear_begin(struct line_ear *ear, struct line_settings from, struct line_settings to, bool keeps_bad);
+
+/* The sender sends `byte` at `tick`, or as soon as the one before is out. Returns the number of bytes heard by the end of it. */
+size_t line_ear_byte(struct line_ear *ear, uint8_t byte, uint64_t tick, struct line_heard heard[LINE_EAR_MAX]);
+
+/* The sender is silent for now: what is under way is heard to its end, as if the line stayed idle as long as it takes. To be
+ * called when the sender has no more to send. Returns the number of bytes heard, 0 or 1. */
+size_t line_ear_silence(struct line_ear *ear, struct line_heard heard[LINE_EAR_MAX]);
+
+#endif
