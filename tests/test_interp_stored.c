@@ -178,6 +178,71 @@ START_TEST(C3_guards_parameters_and_table_stay)
 }
 END_TEST
 
+START_TEST(C3_C75_behind_new_commands_during_the_ramp_is_nothing)
+{
+    rig_accept(&rig, '1', "F5000 R T01");
+    rig_accept_at(&rig, 1002 * MS, "K");
+    rig_accept_at(&rig, 1202 * MS, "T02"); /* ends the hold */
+    rig_accept_at(&rig, 1302 * MS, "C75");
+    rig_to(&rig, 20 * SECOND);
+    ck_assert_uint_eq(rig_motions(&rig, 1), 1);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 2, 1), 1453 * MS);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 2);
+}
+END_TEST
+
+START_TEST(C3_C75_behind_new_commands_in_the_same_slot_is_nothing)
+{
+    rig_accept(&rig, '1', "W1000 T01");
+    rig_accept_at(&rig, 100 * MS, "K");
+    rig_accept_at(&rig, 200 * MS + 1, "T02");
+    rig_accept(&rig, '1', "C75");
+    rig_to(&rig, 20 * SECOND);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 2);
+}
+END_TEST
+
+START_TEST(C3_new_commands_behind_C75_follow_the_old_program)
+{
+    rig_accept(&rig, '1', "W1000 T01");
+    rig_accept_at(&rig, 101 * MS, "K"); /* 900 slots left */
+    rig_accept_at(&rig, 200 * MS + 1, "C75");
+    rig_accept(&rig, '1', "T02");
+    rig_to(&rig, 20 * SECOND);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 1101 * MS);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 3, 1), 1102 * MS);
+}
+END_TEST
+
+/* A K always stops what has arrived before it. */
+START_TEST(C3_a_K_behind_new_commands_holds_before_them)
+{
+    static const char *const old[] = {"", "W1000 T01", "O01 T01", "[ T01"};
+    for (size_t i = 0; i < sizeof old / sizeof *old; i++) {
+        rig_power_up(&rig, NULL);
+        rig_accept(&rig, '1', old[i]);
+        rig_accept_at(&rig, 100 * MS, "K");
+        rig_accept_at(&rig, 200 * MS + 1, "T02");
+        rig_accept(&rig, '1', "K");
+        rig_to(&rig, 5 * SECOND);
+        expect_state(RKM04_HELD);
+        ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
+    }
+}
+END_TEST
+
+START_TEST(C3_a_K_behind_new_commands_during_the_ramp_holds_before_them)
+{
+    rig_accept(&rig, '1', "F5000 R T01");
+    rig_accept_at(&rig, 1002 * MS, "K");
+    rig_accept_at(&rig, 1202 * MS, "F700 R");
+    rig_accept_at(&rig, 1302 * MS, "K");
+    rig_to(&rig, 20 * SECOND);
+    ck_assert_uint_eq(rig_motions(&rig, 1), 1);
+    expect_state(RKM04_HELD);
+}
+END_TEST
+
 
 START_TEST(C3_new_commands_run_after_a_total_stop)
 {
@@ -282,6 +347,11 @@ static Suite *interp_stored_suite(void)
     tcase_add_test(hold, C3_an_open_block_of_the_old_program_is_dropped);
     tcase_add_test(hold, C3_labels_stay);
     tcase_add_test(hold, C3_guards_parameters_and_table_stay);
+    tcase_add_test(hold, C3_C75_behind_new_commands_during_the_ramp_is_nothing);
+    tcase_add_test(hold, C3_C75_behind_new_commands_in_the_same_slot_is_nothing);
+    tcase_add_test(hold, C3_new_commands_behind_C75_follow_the_old_program);
+    tcase_add_test(hold, C3_a_K_behind_new_commands_holds_before_them);
+    tcase_add_test(hold, C3_a_K_behind_new_commands_during_the_ramp_holds_before_them);
     suite_add_tcase(suite, hold);
 
     TCase *ended = tcase_create("ended");
