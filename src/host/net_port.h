@@ -1,0 +1,115 @@
+/* net_port.h: a line over TCP: raw, or a serial port by RFC 2217. It listens; one client at a time has the line, a further one is
+ * told so and sent away. All calls back come from the loop, or from within net_port_wake(), never from net_port_send(). */
+#ifndef RKM04_HOST_NET_PORT_H
+#define RKM04_HOST_NET_PORT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <uv.h>
+
+#include "rfc2217.h"
+
+#define NET_ADDRESS_EXPECTED "HOST:PORT, [IPV6]:PORT or PORT with PORT from 0 to 65535 (0: a free one)"
+
+#define NET_TO_LINE 4096u    /* bytes of a client that wait for room() */
+#define NET_TO_CLIENT 20480u /* bytes that wait for a client to read; as many as with a pty */
+#define NET_REPLIES 1024u    /* bytes of RFC 2217 that wait likewise; when they are many, the client is not heard */
+#define NET_WIRE 2048u       /* bytes that have been given to the system */
+#define NET_PEERS 4u         /* connections at a time: the client, those that are being sent away */
+#define NET_NAME_SIZE 80u
+
+enum net_kind {
+    NET_RAW,
+    NET_RFC2217
+};
+
+enum net_news {
+    NET_DETACHED, /* the client has closed the line */
+    NET_ATTACHED, /* a client has opened it */
+    NET_REFUSED   /* a further client came and was sent away */
+};
+
+/* What the owner of the line is told. All but `bytes` and `news` may be NULL. */
+struct net_port_calls {
+    /* Data for the units, at most room() bytes; all of them are taken. */
+    void (*bytes)(void *context, const uint8_t *data, size_t length);
+    /* How many bytes can be taken now; NULL: any number. See net_port_wake(). */
+    size_t (*room)(void *context);
+    /* `peer`: "127.0.0.1:40123". */
+    void (*news)(void *context, enum net_news news, const char *peer);
+    /* RFC 2217: the client has set its port. A client that attaches has 19200 8N1 and sets one thing after the other: what
+     * counts is what stands when bytes come. parity: N O E M S; stop_bits: 1, 2, or 3 for 1.5. */
+    void (*settings)(void *context, uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits);
+    /* RFC 2217: a break begins or ends; a telnet break is both at once. It ends with the client at the latest. */
+    void (*line_break)(void *context, bool on);
+    /* RFC 2217: the client has set DTR or RTS; both are on when it attaches. */
+    void (*lines)(void *context, bool dtr, bool rts);
+    /* RFC 2217: bytes that have been handed to bytes() and are not on the wire yet are to be forgotten. */
+    void (*purge)(void *context);
+};
+
+struct net_port;
+
+/* A connection. */
+struct net_peer {
+    struct net_port *port;
+    uint8_t state;
+    uint8_t open_handles;
+    bool writing;
+    bool failed;      /* bytes for it go nowhere */
+    uint64_t heard;   /* ms of the loop at which bytes last passed */
+    uv_tcp_t tcp;
+    uv_timer_t timer;
+    uv_write_t write;
+    uv_shutdown_t shutdown;
+    char name[NET_NAME_SIZE];
+    size_t wire_length;
+    uint8_t wire[NET_WIRE];
+};
+
+struct net_port {
+    char address[NET_NAME_SIZE]; /* where it listens, with the real port: "127.0.0.1:40123", "[::1]:40123" */
+    bool attached;               /* a client has the line */
+    uint64_t dropped;            /* bytes that nobody was there for, or that a client did not read in time */
+    struct rfc2217 rfc2217;      /* of the client; read only */
+
+    /* Inside. */
+    enum net_kind kind;
+    const struct net_port_calls *calls;
+    void *context;
+    uv_loop_t *loop;
+    uv_tcp_t listener;
+    bool open, waiting; /* a connection waits to be accepted */
+    bool delivering;
+    bool reading;
+    struct net_peer *client; /* NULL: none */
+    struct net_peer peers[NET_PEERS];
+    size_t to_line_head, to_line_count;
+    uint8_t to_line[NET_TO_LINE];
+    size_t to_client_head, to_client_count;
+    uint8_t to_client[NET_TO_CLIENT];
+    size_t replies_length;
+    uint8_t replies[NET_REPLIES];
+};
+
+/* Has the text the form HOST:PORT, :PORT, PORT or [IPV6]:PORT? */
+bool net_address_valid(const char *address);
+
+/* Listen at `address`, which has to be valid; without a host at 127.0.0.1. calls and context must stay; *port must be zero, and
+ * must stay until it is closed and the loop has run out. Failures are reported. Returns false if it did not work. */
+bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, enum net_kind kind,
+                   const struct net_port_calls *calls, void *context);
+
+/* There may be room() again. Not needed after bytes(). */
+void net_port_wake(struct net_port *port);
+
+/* Send to the client. Bytes for nobody and bytes that do not fit are dropped and counted: a line has no memory. Never blocks.
+ * Returns the number of dropped ones. */
+size_t net_port_send(struct net_port *port, const uint8_t *bytes, size_t length);
+
+/* Stop listening and let go of the client, without news. The handles are closed when the loop has run out. A port that was
+ * never opened, or is closed, is left alone. */
+void net_port_close(struct net_port *port);
+
+#endif
