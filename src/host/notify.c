@@ -1,0 +1,121 @@
+#include "notify.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "log.h"
+
+#define FD_FIRST 3 /* those below are stdin, stdout (which has the line anyway) and stderr */
+#define FD_LAST 1048575
+
+/* ---- The service manager -------------------------------------------------------------------------------------------- */
+
+/* Turn the value of $NOTIFY_SOCKET into an address: a path, or "@name" for one without a file. Returns its length, 0: none. */
+static socklen_t read_address(struct sockaddr_un *address, const char *text)
+{
+    size_t length = strlen(text);
+    *address = (struct sockaddr_un){.sun_family = AF_UNIX};
+    if ((text[0] != '/' && text[0] != '@') || length < 2 || length >= sizeof address->sun_path)
+        return 0;
+    memcpy(address->sun_path, text, length);
+    if (text[0] == '@') {
+        address->sun_path[0] = '\0';
+        return (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length);
+    }
+    return (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length + 1);
+}
+
+/* Send one datagram. Returns false with errno. */
+static bool send_to(const struct sockaddr_un *address, socklen_t length, const char *text)
+{
+    int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (fd < 0)
+        return false;
+    bool sent = sendto(fd, text, strlen(text), MSG_NOSIGNAL, (const struct sockaddr *)address, length) >= 0;
+    int why = errno;
+    close(fd);
+    errno = why;
+    return sent;
+}
+
+static void tell_manager(const char *state)
+{
+    struct sockaddr_un address;
+    const char *text = getenv("NOTIFY_SOCKET");
+    if (!text || !*text)
+        return;
+    socklen_t length = read_address(&address, text);
+    if (length == 0)
+        log_error("cannot tell the service manager: NOTIFY_SOCKET is `%s': expected a path from / or a name after @", text);
+    else if (!send_to(&address, length, state))
+        log_error("cannot tell the service manager at NOTIFY_SOCKET=%s: %s", text, strerror(errno));
+}
+
+/* ---- A file descriptor ---------------------------------------------------------------------------------------------- */
+
+int notify_fd_read(const char *text)
+{
+    char *end;
+    if (*text < '0' || *text > '9')
+        return -1;
+    errno = 0;
+    long fd = strtol(text, &end, 10);
+    if (*end || errno || fd < FD_FIRST || fd > FD_LAST)
+        return -1;
+    int flags = fcntl((int)fd, F_GETFL), more = fcntl((int)fd, F_GETFD);
+    if (flags < 0 || more < 0 || (flags & O_ACCMODE) == O_RDONLY || (flags & O_PATH))
+        return -1;
+    fcntl((int)fd, F_SETFD, more | FD_CLOEXEC);
+    return (int)fd;
+}
+
+/* Write all of the text. Returns false with errno. */
+static bool write_all(int fd, const char *text, size_t length)
+{
+    while (length > 0) {
+        ssize_t written = write(fd, text, length);
+        if (written < 0 && errno != EINTR)
+            return false;
+        if (written > 0) {
+            text += written;
+            length -= (size_t)written;
+        }
+    }
+    return true;
+}
+
+static bool tell_fd(int fd, const char *line)
+{
+    bool done = write_all(fd, line, strlen(line)) && write_all(fd, "\n", 1);
+    int why = errno;
+    if (close(fd) != 0 && done) {
+        done = false;
+        why = errno;
+    }
+    if (!done)
+        log_error("--ready-fd: cannot write the READY line to %d: %s", fd, strerror(why));
+    return done;
+}
+
+/* ---- Both ----------------------------------------------------------------------------------------------------------- */
+
+bool notify_ready(int fd, const char *line, const char *status)
+{
+    char state[1024] = "READY=1";
+    if (status)
+        snprintf(state, sizeof state, "READY=1\nSTATUS=%.*s", (int)strcspn(status, "\n"), status);
+    tell_manager(state);
+    return fd < 0 || tell_fd(fd, line);
+}
+
+void notify_stopping(void)
+{
+    tell_manager("STOPPING=1");
+}
