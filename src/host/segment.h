@@ -1,0 +1,164 @@
+/* segment.h: one RS485 line in virtual time: a master and up to sixteen units on one pair of wires. Pure: no file, no clock.
+ *
+ *     static struct segment segment;                              // large, zero-initialised
+ *     segment_begin(&segment, &config);
+ *     number = segment_add_unit(&segment, &unit_config, &port, context);  // power-up; 1, 2, …
+ *     segment_take(&segment, bytes, length, tick);                // the master sends, length <= segment_room()
+ *     segment_advance(&segment, segment_due(&segment));           // config.out gets what the master hears
+ *
+ * With `timed`, bytes take the time they take at 19200 baud (U7): ten bits, 3125/6 us, in either direction. One of the master
+ * sets out when it is handed over or when the one before has passed; every unit gets it at the tick at which its stop bit ends
+ * (K4), so byte k of a burst has arrived at ceil(k * 3125 / 6) after its beginning. Gaps stay. The first start bit of an answer
+ * follows the end of the request after the turnaround; the bytes of an answer follow one another without a gap.
+ *   Every station hears every other one: units hear the answers of other units too, and leave them alone (L1). Nobody hears while
+ * it sends itself. Nobody waits for a free line either: who begins while another is sending collides with it, and what is heard
+ * comes out of the levels, bit by bit (wire.h). So two units of the same address answer at once; where their answers are the same
+ * nobody can tell, otherwise the check sum fails at the master.
+ *   P10: a request heard during a unit's turnaround is taken when the last byte of the answer before has set out. What else comes
+ * in until then is lost, as it is on a line where nobody can be made to wait; see segment_counters.overruns.
+ *
+ * Without `timed`, bytes take no time: a byte of the master reaches all units at the tick at which it is handed over, an answer
+ * goes out in the tick of its request, whole, and the next byte of the master comes after it (P10). No turnaround, no
+ * collisions: of several answers at once the lower number's comes first, and those who answer do not hear one another.
+ *
+ * Order within a tick: bytes, then what the units do (K2). What a segment does depends on the bytes handed over and their ticks
+ * alone, not on how segment_advance cuts the time. */
+#ifndef RKM04_HOST_SEGMENT_H
+#define RKM04_HOST_SEGMENT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <rkm04/unit.h>
+
+#include "wire.h"
+
+#define SEGMENT_UNITS RKM04_NODE_MAX    /* on one line (U4) */
+#define SEGMENT_ROOM 4096u              /* bytes of the master that may be under way */
+#define SEGMENT_TURNAROUND 521u         /* ticks, the default: one character */
+#define SEGMENT_TURNAROUND_MAX 1000000u /* ticks */
+
+/* A byte on the line, for a monitor that hears everything. */
+struct segment_byte {
+    uint64_t start;   /* tick at which its start bit began, rounded down */
+    uint64_t tick;    /* at which it had passed, rounded up: the present one */
+    uint32_t senders; /* bit 0: the master; bit n: unit n; several bits: a collision */
+    uint8_t byte;     /* as heard by someone who sends nothing */
+    bool lost;        /* framing error: nobody has got it */
+};
+
+/* Gets the bytes that reach the master, at the tick segment_now(). Must not call back into the segment, but for reading. */
+typedef void segment_out(void *context, const uint8_t *bytes, size_t length);
+
+/* Gets every byte on the line when it has passed, after the stations. The same restriction. */
+typedef void segment_monitor(void *context, const struct segment_byte *byte);
+
+struct segment_config {
+    bool timed;             /* false: bytes take no time (--baud 0) */
+    bool echo;              /* the master hears its own bytes, too (a two-wire adapter with local echo) */
+    uint32_t turnaround;    /* ticks, 0..SEGMENT_TURNAROUND_MAX, from the end of a request to the start bit of the answer */
+    segment_out *out;       /* NULL: nobody */
+    segment_monitor *monitor; /* NULL: nobody */
+    void *context;          /* of both */
+};
+
+/* A unit on the line. Who may read it: all. */
+struct segment_unit {
+    struct rkm04_unit unit; /* its tick 0 is `since`; without power: as it stood when it lost it */
+    uint64_t since;         /* tick of the segment at which it was powered up */
+    bool powered;
+    bool in_frame;          /* what it has heard so far does not end with a whole frame */
+    uint32_t frames;        /* seen by the unit */
+    uint64_t next;          /* parts (wire.h): start bit of the next byte of its answer; RKM04_NEVER: no answer goes out */
+};
+
+struct segment_counters {
+    uint64_t bytes;          /* sent by anyone */
+    uint64_t collisions;     /* of these, bytes during which another station was sending, too */
+    uint64_t framing_errors; /* bytes lost to everybody: the stop bit was 0 */
+    uint64_t overruns;       /* bytes lost to a unit that had a request waiting (P10) */
+};
+
+struct segment {
+    struct segment_config config;
+    uint64_t now;            /* first tick that is not yet done */
+    unsigned units;
+    struct segment_unit unit[SEGMENT_UNITS]; /* unit n is unit[n - 1] */
+
+    /* Inside. */
+    struct wire wire;
+    uint64_t quiet_bytes;    /* sent, without time */
+    uint64_t overruns;
+    uint64_t again;          /* without time: tick at which units go on answering one another; RKM04_NEVER: they do not */
+    uint64_t master_free;    /* parts: when the master's last byte will have passed */
+    size_t head, count;      /* of the queue */
+    struct {
+        uint64_t start;      /* parts */
+        uint8_t byte;
+    } queue[SEGMENT_ROOM];   /* bytes of the master that have not set out */
+};
+
+/* ---- Begin ------------------------------------------------------------------------------------------------------------ */
+
+/* A line without units at tick 0. Memory that a unit does not use is not touched. */
+void segment_begin(struct segment *segment, const struct segment_config *config);
+
+/* Add a unit and power it up at the present tick. config, port, context: as for rkm04_init(); all units of a line should have the
+ * same framing. The ticks that the port is told are the unit's own: add segment_since(). Several units may have the same
+ * address. Returns its number on the line, 1..16 in the order of adding; 0: no place is left. */
+unsigned segment_add_unit(struct segment *segment, const struct rkm04_config *config, const struct rkm04_port *port,
+                          void *context);
+
+/* ---- Units: `number` is 1..segment->units ------------------------------------------------------------------------------ */
+
+/* The unit, at the present tick. For inputs (which count from the present tick on), states and counters; no bytes. */
+struct rkm04_unit *segment_unit(struct segment *segment, unsigned number);
+
+/* The tick of the segment at which this unit's time began. */
+uint64_t segment_since(const struct segment *segment, unsigned number);
+
+/* Switch a unit off at the present tick: it stops in the middle of everything, also of a byte. Or on: power-up (U5, U8); one that
+ * is on is switched off and on again. */
+void segment_power(struct segment *segment, unsigned number, bool on);
+
+/* ---- The master ------------------------------------------------------------------------------------------------------- */
+
+/* Bytes that can be handed over now. */
+size_t segment_room(const struct segment *segment);
+
+/* The master hands over `length` <= segment_room() bytes at `tick` >= segment_now(); ticks must not decrease from call to call. */
+void segment_take(struct segment *segment, const uint8_t *bytes, size_t length, uint64_t tick);
+
+/* Forget the bytes handed over that have not set out at the present tick (purge of RFC 2217). Returns their number. */
+size_t segment_purge(struct segment *segment);
+
+/* The master holds the line at 0 from the present tick on, or lets it go (break). Nothing without `timed`. */
+void segment_break(struct segment *segment, bool on);
+
+/* ---- Time ------------------------------------------------------------------------------------------------------------- */
+
+/* The first tick that is not yet done. */
+uint64_t segment_now(const struct segment *segment);
+
+/* Do all ticks before `tick`, and move every byte that is due by `tick`. Does nothing if `tick` < segment_now(), apart from
+ * moving what is due. */
+void segment_advance(struct segment *segment, uint64_t tick);
+
+/* A tick before which no byte reaches anybody if the master hands over nothing more: advancing in one go up to it changes nothing
+ * that can be seen on the line. Mostly the tick of the next byte; RKM04_NEVER: nothing is under way. May lie before
+ * segment_now(): then there is something to do at once. */
+uint64_t segment_due(const struct segment *segment);
+
+/* The earliest tick at which a unit does something of itself (rkm04_next_event); RKM04_NEVER if none ever does. */
+uint64_t segment_next_event(const struct segment *segment);
+
+/* Has the master left a frame unfinished: did the bytes passed so far end in the middle of one, as the units see it? */
+bool segment_in_frame(const struct segment *segment);
+
+/* Is the line at rest: no byte under way, no answer to come? (Motors may run: segment_next_event().) */
+bool segment_idle(const struct segment *segment);
+
+struct segment_counters segment_counters(const struct segment *segment);
+
+#endif
