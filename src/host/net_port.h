@@ -12,6 +12,7 @@
 
 #define NET_ADDRESS_EXPECTED "HOST:PORT, [IPV6]:PORT or PORT with PORT from 0 to 65535 (0: a free one)"
 
+#define NET_IN 1024u         /* bytes read from a client at once */
 #define NET_TO_LINE 4096u    /* bytes of a client that wait for room() */
 #define NET_TO_CLIENT 20480u /* bytes that wait for a client to read; as many as with a pty */
 #define NET_REPLIES 1024u    /* bytes of RFC 2217 that wait likewise; when they are many, the client is not heard */
@@ -57,8 +58,7 @@ struct net_peer {
     uint8_t state;
     uint8_t open_handles;
     bool writing;
-    bool failed;      /* bytes for it go nowhere */
-    uint64_t heard;   /* ms of the loop at which bytes last passed */
+    bool failed; /* bytes for it go nowhere */
     uv_tcp_t tcp;
     uv_timer_t timer;
     uv_write_t write;
@@ -78,13 +78,16 @@ struct net_port {
     enum net_kind kind;
     const struct net_port_calls *calls;
     void *context;
-    uv_loop_t *loop;
     uv_tcp_t listener;
-    bool open, waiting; /* a connection waits to be accepted */
-    bool delivering;
+    bool open;
+    bool waiting;            /* a connection is to be accepted when another one has gone */
+    bool moving;             /* in move() */
     bool reading;
+    uint64_t moved;          /* ms of the loop: when bytes last passed */
     struct net_peer *client; /* NULL: none */
     struct net_peer peers[NET_PEERS];
+    size_t in_at, in_length; /* what has been read of a client's bytes, and not been looked at */
+    uint8_t in[NET_IN];
     size_t to_line_head, to_line_count;
     uint8_t to_line[NET_TO_LINE];
     size_t to_client_head, to_client_count;
@@ -104,8 +107,8 @@ bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, 
 /* There may be room() again. Not needed after bytes(). */
 void net_port_wake(struct net_port *port);
 
-/* Send to the client. Bytes for nobody and bytes that do not fit are dropped and counted: a line has no memory. Never blocks.
- * Returns the number of dropped ones. */
+/* Send to the client; one that has closed its own side only still gets what follows within a second. Bytes for nobody and bytes
+ * that do not fit are dropped and counted: a line has no memory. Never blocks. Returns the number of dropped ones. */
 size_t net_port_send(struct net_port *port, const uint8_t *bytes, size_t length);
 
 /* Stop listening and let go of the client, without news. The handles are closed when the loop has run out. A port that was

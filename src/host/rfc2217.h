@@ -1,8 +1,8 @@
-/* rfc2217.h: a serial port over telnet (RFC 2217, 854, 856, 858), the access server's side: what it makes of a client's bytes, and
- * what it answers. Pure: bytes in, bytes out.
+/* rfc2217.h: a serial port over telnet (RFC 2217, 854), the access server's side: what the bytes of a client mean, and what is
+ * answered. Pure: bytes in, bytes out.
  *
- * Only the port is a make-believe: it takes every setting that it can name, so that a client gets what it asks for, and says
- * that CTS, DSR and carrier are there, so that none waits for them. */
+ * There is no port behind it: every setting that has a name is taken and acknowledged, so that a client gets what it asks for,
+ * and CTS, DSR and carrier are always there, so that none waits for them. */
 #ifndef RKM04_HOST_RFC2217_H
 #define RKM04_HOST_RFC2217_H
 
@@ -11,12 +11,12 @@
 #include <stdint.h>
 
 #define RFC2217_REPLY_MAX 64   /* bytes of the longest reply */
-#define RFC2217_COMMAND_MAX 16 /* bytes of a command that are looked at; none but a signature is longer */
+#define RFC2217_COMMAND_MAX 16 /* bytes of a command that are looked at; only signatures are longer */
 
 /* What a byte of the client meant, besides the reply it may have caused. */
 enum rfc2217_event {
     RFC2217_NOTHING,
-    RFC2217_DATA,        /* it is data; or `data` is, which it completes */
+    RFC2217_DATA,        /* `data` is data */
     RFC2217_SETTINGS,    /* baud, data_bits, parity or stop_bits has been set */
     RFC2217_LINES,       /* dtr or rts has been set */
     RFC2217_BREAK,       /* `breaking` has been set */
@@ -50,9 +50,9 @@ struct rfc2217 {
     uint8_t line_mask, modem_mask;
     uint8_t state, verb;
     uint8_t ours[3], theirs[3]; /* telnet options: how far they are agreed */
-    bool told_lines;
+    bool told_lines;         /* the client knows of CTS, DSR and carrier */
     uint8_t command[RFC2217_COMMAND_MAX];
-    size_t command_length; /* may exceed the array: so long was it */
+    size_t command_length;
 };
 
 /* A client has connected: 19200 baud, 8N1 (U7), DTR and RTS on. The first bytes for it stand in `reply`. */

@@ -1,0 +1,530 @@
+/* A line over TCP.
+ *
+ *     client --on_read--> in --digest--> to_line --deliver--> bytes()
+ *                              |
+ *                              v
+ *                           replies --+
+ *     net_port_send() --> to_client --+--pump--> wire --> client
+ *
+ * move() does all of it until nothing moves any more. Commands of RFC 2217 overtake data that wait for room, as they do on a
+ * serial port; replies that the client does not read stop it from being heard, so that none is lost. */
+#include "net_port.h"
+
+#include <netdb.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "log.h"
+
+#define DEFAULT_HOST "127.0.0.1"
+#define HOST_SIZE 256
+#define BACKLOG 8
+#define KEEPALIVE_S 30  /* a client that has vanished gives the line free */
+#define LINGER_MS 1000  /* how long one that only sends no more is kept without a byte, and one that is sent away at most */
+
+enum peer_state {
+    PEER_FREE,
+    PEER_CLIENT,  /* has the line */
+    PEER_LEAVING, /* has closed its side, and may wait for an answer; gives way to a new client */
+    PEER_REFUSED, /* is being sent away */
+    PEER_CLOSING
+};
+
+static void move(struct net_port *port);
+static void on_linger(uv_timer_t *timer);
+static void accept_next(struct net_port *port);
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* ---- Addresses ------------------------------------------------------------------------------------------------------ */
+
+struct address {
+    char host[HOST_SIZE];
+    const char *port; /* digits */
+    bool ipv6;
+};
+
+static bool read_port(const char *text)
+{
+    unsigned value = 0;
+    size_t length = strlen(text);
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] < '0' || text[i] > '9' || i >= 5)
+            return false;
+        value = value * 10 + (unsigned)(text[i] - '0');
+    }
+    return length > 0 && value <= UINT16_MAX;
+}
+
+static bool read_address(struct address *address, const char *text)
+{
+    const char *colon = strrchr(text, ':'), *host = text;
+    size_t length = colon ? (size_t)(colon - text) : 0;
+    address->port = colon ? colon + 1 : text;
+    address->ipv6 = length > 2 && host[0] == '[' && host[length - 1] == ']';
+    if (address->ipv6) {
+        host++;
+        length -= 2;
+    }
+    if (length >= HOST_SIZE || (!address->ipv6 && memchr(host, ':', length)) || !read_port(address->port))
+        return false;
+    snprintf(address->host, sizeof address->host, "%.*s", length > 0 ? (int)length : HOST_SIZE, length > 0 ? host : DEFAULT_HOST);
+    return true;
+}
+
+bool net_address_valid(const char *address)
+{
+    struct address parts;
+    return read_address(&parts, address);
+}
+
+static void write_name(char name[NET_NAME_SIZE], const struct sockaddr_storage *from)
+{
+    char host[NET_NAME_SIZE - 10] = "?";
+    const struct sockaddr_in *four = (const void *)from;
+    const struct sockaddr_in6 *six = (const void *)from;
+    if (from->ss_family == AF_INET6) {
+        uv_ip6_name(six, host, sizeof host);
+        snprintf(name, NET_NAME_SIZE, "[%s]:%u", host, (unsigned)ntohs(six->sin6_port));
+    } else {
+        uv_ip4_name(four, host, sizeof host);
+        snprintf(name, NET_NAME_SIZE, "%s:%u", host, (unsigned)ntohs(four->sin_port));
+    }
+}
+
+/* ---- Peers ---------------------------------------------------------------------------------------------------------- */
+
+static void on_peer_closed(uv_handle_t *handle)
+{
+    struct net_peer *peer = handle->data;
+    if (--peer->open_handles > 0)
+        return;
+    peer->state = PEER_FREE;
+    if (peer->port->waiting)
+        accept_next(peer->port);
+}
+
+static void close_peer(struct net_peer *peer)
+{
+    peer->state = PEER_CLOSING;
+    uv_close((uv_handle_t *)&peer->tcp, on_peer_closed);
+    uv_close((uv_handle_t *)&peer->timer, on_peer_closed);
+}
+
+/* The client no longer has the line. What it has written stays and goes to the units. */
+static void detach(struct net_port *port)
+{
+    struct net_peer *peer = port->client;
+    port->client = NULL;
+    port->attached = port->reading = false;
+    port->dropped += port->to_client_count;
+    port->to_client_count = port->replies_length = port->in_at = port->in_length = 0;
+    close_peer(peer);
+    if (port->rfc2217.breaking && port->calls->line_break)
+        port->calls->line_break(port->context, false);
+    port->calls->news(port->context, NET_DETACHED, peer->name);
+}
+
+/* ---- To the client -------------------------------------------------------------------------------------------------- */
+
+static void fail(struct net_peer *peer)
+{
+    peer->failed = true; /* reading will tell, too, unless it has ended */
+    if (peer->state == PEER_LEAVING)
+        uv_timer_start(&peer->timer, on_linger, 0, 0);
+}
+
+static void on_written(uv_write_t *write, int status)
+{
+    struct net_peer *peer = write->data;
+    peer->writing = false;
+    if (peer->port->client != peer)
+        return;
+    if (status < 0)
+        fail(peer);
+    move(peer->port);
+}
+
+/* Data as they go over the connection. `out` takes 2 * length bytes with RFC 2217. Returns their number there. */
+static size_t encode(const struct net_port *port, const uint8_t *data, size_t length, uint8_t *out)
+{
+    if (port->kind == NET_RFC2217)
+        return rfc2217_escape(data, length, out);
+    memcpy(out, data, length);
+    return length;
+}
+
+/* Fill the wire of a client with replies and data. A reply is never cut, for data must not get into it. */
+static void fill_wire(struct net_port *port, struct net_peer *peer)
+{
+    memcpy(peer->wire, port->replies, port->replies_length);
+    peer->wire_length = port->replies_length;
+    port->replies_length = 0;
+    while (port->to_client_count > 0 && !port->rfc2217.suspended) {
+        const uint8_t *from = port->to_client + port->to_client_head;
+        size_t room = NET_WIRE - peer->wire_length;
+        size_t length = smaller(port->to_client_count, NET_TO_CLIENT - port->to_client_head);
+        length = smaller(length, port->kind == NET_RFC2217 ? room / 2 : room);
+        if (length == 0)
+            return;
+        peer->wire_length += encode(port, from, length, peer->wire + peer->wire_length);
+        port->to_client_head = (port->to_client_head + length) % NET_TO_CLIENT;
+        port->to_client_count -= length;
+    }
+}
+
+/* Write what waits until the system takes no more. */
+static void pump(struct net_port *port)
+{
+    struct net_peer *peer = port->client;
+    while (peer && !peer->writing) {
+        fill_wire(port, peer);
+        if (peer->wire_length == 0)
+            return;
+        port->moved = uv_now(peer->tcp.loop);
+        uv_buf_t rest = uv_buf_init((char *)peer->wire, (unsigned)peer->wire_length);
+        int written = peer->failed ? (int)peer->wire_length : uv_try_write((uv_stream_t *)&peer->tcp, &rest, 1);
+        if (written < 0 && written != UV_EAGAIN) {
+            fail(peer);
+        } else if (written < (int)peer->wire_length) {
+            size_t done = written < 0 ? 0 : (size_t)written;
+            rest = uv_buf_init((char *)peer->wire + done, (unsigned)(peer->wire_length - done));
+            peer->writing = uv_write(&peer->write, (uv_stream_t *)&peer->tcp, &rest, 1, on_written) == 0;
+            if (!peer->writing)
+                fail(peer);
+        }
+    }
+}
+
+size_t net_port_send(struct net_port *port, const uint8_t *bytes, size_t length)
+{
+    size_t taken = port->client && !port->client->failed ? smaller(length, NET_TO_CLIENT - port->to_client_count) : 0;
+    for (size_t i = 0; i < taken; i++)
+        port->to_client[(port->to_client_head + port->to_client_count++) % NET_TO_CLIENT] = bytes[i];
+    port->dropped += length - taken;
+    pump(port);
+    return length - taken;
+}
+
+/* ---- From the client ------------------------------------------------------------------------------------------------ */
+
+/* Hand over what there is room for. */
+static void deliver(struct net_port *port)
+{
+    while (port->to_line_count > 0) {
+        size_t room = port->calls->room ? port->calls->room(port->context) : SIZE_MAX;
+        size_t length = smaller(smaller(port->to_line_count, NET_TO_LINE - port->to_line_head), room);
+        if (length == 0)
+            return;
+        const uint8_t *bytes = port->to_line + port->to_line_head;
+        port->to_line_head = (port->to_line_head + length) % NET_TO_LINE;
+        port->to_line_count -= length;
+        port->moved = uv_now(port->listener.loop);
+        port->calls->bytes(port->context, bytes, length);
+    }
+}
+
+static void purge(struct net_port *port)
+{
+    if (port->rfc2217.purge & RFC2217_PURGE_TO_CLIENT)
+        port->to_client_count = 0;
+    if (port->rfc2217.purge & RFC2217_PURGE_TO_LINE) {
+        port->to_line_count = 0;
+        if (port->calls->purge)
+            port->calls->purge(port->context);
+    }
+}
+
+static void set_break(struct net_port *port, bool on)
+{
+    if (port->calls->line_break)
+        port->calls->line_break(port->context, on);
+}
+
+/* Follow what the client has commanded, behind the data it sent before. */
+static void obey(struct net_port *port, enum rfc2217_event event)
+{
+    const struct rfc2217 *set = &port->rfc2217;
+    if (event == RFC2217_PURGE) {
+        purge(port);
+        return;
+    }
+    deliver(port);
+    if (event == RFC2217_SETTINGS && port->calls->settings)
+        port->calls->settings(port->context, set->baud, set->data_bits, set->parity, set->stop_bits);
+    else if (event == RFC2217_LINES && port->calls->lines)
+        port->calls->lines(port->context, set->dtr, set->rts);
+    if (event == RFC2217_BREAK_PULSE)
+        set_break(port, true);
+    if (event == RFC2217_BREAK || event == RFC2217_BREAK_PULSE)
+        set_break(port, set->breaking);
+}
+
+static void queue_data(struct net_port *port, uint8_t byte)
+{
+    port->to_line[(port->to_line_head + port->to_line_count++) % NET_TO_LINE] = byte;
+}
+
+static void queue_reply(struct net_port *port)
+{
+    memcpy(port->replies + port->replies_length, port->rfc2217.reply, port->rfc2217.reply_length);
+    port->replies_length += port->rfc2217.reply_length;
+}
+
+/* Look at the bytes read while there is room for what they bring. Returns true if there were any. */
+static bool digest(struct net_port *port)
+{
+    size_t before = port->in_at;
+    while (port->in_at < port->in_length && port->to_line_count < NET_TO_LINE &&
+           port->replies_length + RFC2217_REPLY_MAX <= NET_REPLIES) {
+        uint8_t byte = port->in[port->in_at++];
+        if (port->kind == NET_RAW) {
+            queue_data(port, byte);
+            continue;
+        }
+        enum rfc2217_event event = rfc2217_receive(&port->rfc2217, byte);
+        queue_reply(port);
+        if (event == RFC2217_DATA)
+            queue_data(port, port->rfc2217.data);
+        else if (event != RFC2217_NOTHING)
+            obey(port, event);
+    }
+    return port->in_at > before;
+}
+
+static void on_linger(uv_timer_t *timer)
+{
+    struct net_peer *peer = timer->data;
+    struct net_port *port = peer->port;
+    if (peer->state == PEER_REFUSED)
+        close_peer(peer);
+    else if (!peer->failed && (port->to_line_count > 0 || uv_now(timer->loop) - port->moved < LINGER_MS))
+        uv_timer_start(timer, on_linger, LINGER_MS, 0);
+    else
+        detach(port);
+}
+
+/* The client sends no more. It may have closed its sending side alone, as nc and socat do at the end of their input. */
+static void leave(struct net_peer *peer)
+{
+    struct net_port *port = peer->port;
+    uv_read_stop((uv_stream_t *)&peer->tcp);
+    port->reading = false;
+    peer->state = PEER_LEAVING;
+    port->moved = uv_now(peer->tcp.loop);
+    uv_timer_start(&peer->timer, on_linger, peer->failed ? 0 : LINGER_MS, 0);
+}
+
+static void on_room(uv_handle_t *handle, size_t suggested, uv_buf_t *buffer)
+{
+    static uint8_t refused[256];
+    struct net_peer *peer = handle->data;
+    (void)suggested;
+    if (peer->state == PEER_REFUSED)
+        *buffer = uv_buf_init((char *)refused, sizeof refused);
+    else
+        *buffer = uv_buf_init((char *)peer->port->in, NET_IN);
+}
+
+static void on_read(uv_stream_t *stream, ssize_t length, const uv_buf_t *buffer)
+{
+    struct net_peer *peer = stream->data;
+    struct net_port *port = peer->port;
+    (void)buffer;
+    if (length == 0)
+        return;
+    if (peer->state == PEER_REFUSED) {
+        if (length < 0)
+            close_peer(peer);
+    } else if (length == UV_EOF) {
+        leave(peer);
+    } else if (length < 0) {
+        detach(port);
+    } else {
+        port->in_at = 0;
+        port->in_length = (size_t)length;
+        move(port);
+    }
+}
+
+/* Read on when all that has been read is on its way. */
+static void set_reading(struct net_port *port)
+{
+    struct net_peer *peer = port->client;
+    bool wanted = peer && peer->state == PEER_CLIENT && port->in_at == port->in_length;
+    if (wanted == port->reading)
+        return;
+    if (wanted)
+        wanted = uv_read_start((uv_stream_t *)&peer->tcp, on_room, on_read) == 0;
+    else if (peer)
+        uv_read_stop((uv_stream_t *)&peer->tcp);
+    port->reading = wanted;
+}
+
+static void move(struct net_port *port)
+{
+    if (port->moving)
+        return;
+    port->moving = true;
+    bool on;
+    do {
+        on = digest(port);
+        deliver(port);
+        pump(port);
+    } while (on);
+    port->moving = false;
+    set_reading(port);
+}
+
+void net_port_wake(struct net_port *port)
+{
+    if (port->open && port->to_line_count > 0)
+        move(port);
+}
+
+/* ---- Who comes ------------------------------------------------------------------------------------------------------ */
+
+static void attach(struct net_port *port, struct net_peer *peer)
+{
+    peer->state = PEER_CLIENT;
+    port->client = peer;
+    port->attached = true;
+    if (port->kind == NET_RFC2217) {
+        rfc2217_begin(&port->rfc2217);
+        queue_reply(port);
+    }
+    port->calls->news(port->context, NET_ATTACHED, peer->name);
+    move(port);
+}
+
+/* The text of the refusal has to arrive, so what the peer sends is read until it has closed its side, or for a while. */
+static void refuse(struct net_port *port, struct net_peer *peer)
+{
+    peer->state = PEER_REFUSED;
+    int length = snprintf((char *)peer->wire, NET_WIRE, "rkm04: refused: the line is in use by %s\r\n", port->client->name);
+    uv_buf_t text = uv_buf_init((char *)peer->wire, (unsigned)length);
+    if (uv_try_write((uv_stream_t *)&peer->tcp, &text, 1) != length ||
+        uv_shutdown(&peer->shutdown, (uv_stream_t *)&peer->tcp, NULL) != 0 ||
+        uv_read_start((uv_stream_t *)&peer->tcp, on_room, on_read) != 0)
+        close_peer(peer);
+    else
+        uv_timer_start(&peer->timer, on_linger, LINGER_MS, 0);
+    port->calls->news(port->context, NET_REFUSED, peer->name);
+}
+
+static struct net_peer *free_peer(struct net_port *port)
+{
+    for (size_t i = 0; i < NET_PEERS; i++)
+        if (port->peers[i].state == PEER_FREE)
+            return &port->peers[i];
+    return NULL;
+}
+
+static void name_peer(struct net_peer *peer)
+{
+    struct sockaddr_storage from = {0};
+    int size = sizeof from;
+    uv_tcp_getpeername(&peer->tcp, (struct sockaddr *)&from, &size);
+    write_name(peer->name, &from);
+}
+
+/* Take the connection that waits, if there is room to remember it; otherwise it waits on. */
+static void accept_next(struct net_port *port)
+{
+    struct net_peer *peer = port->open ? free_peer(port) : NULL;
+    uv_loop_t *loop = port->listener.loop;
+    port->waiting = port->open && !peer;
+    if (!peer)
+        return;
+    *peer = (struct net_peer){.port = port, .open_handles = 2};
+    uv_tcp_init(loop, &peer->tcp);
+    uv_timer_init(loop, &peer->timer);
+    peer->tcp.data = peer->timer.data = peer->write.data = peer;
+    if (uv_accept((uv_stream_t *)&port->listener, (uv_stream_t *)&peer->tcp) != 0) {
+        close_peer(peer);
+        return;
+    }
+    uv_tcp_nodelay(&peer->tcp, 1);
+    uv_tcp_keepalive(&peer->tcp, 1, KEEPALIVE_S);
+    name_peer(peer);
+    if (port->client && port->client->state == PEER_LEAVING)
+        detach(port);
+    if (port->client)
+        refuse(port, peer);
+    else
+        attach(port, peer);
+}
+
+static void on_connection(uv_stream_t *listener, int status)
+{
+    if (status == 0)
+        accept_next(listener->data);
+}
+
+/* ---- Begin and end -------------------------------------------------------------------------------------------------- */
+
+static bool cannot_listen(const char *address, const char *why)
+{
+    log_error("cannot listen at %s: %s", address, why);
+    return false;
+}
+
+/* Find the address, and listen there. The listener has been initialised. */
+static bool listen_at(struct net_port *port, const char *text)
+{
+    struct address address;
+    struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE}, *found = NULL;
+    struct sockaddr_storage real = {0};
+    int size = sizeof real;
+    if (!read_address(&address, text))
+        return cannot_listen(text, "expected " NET_ADDRESS_EXPECTED);
+    hints.ai_family = address.ipv6 ? AF_INET6 : AF_INET;
+    int error = getaddrinfo(address.host, address.port, &hints, &found);
+    if (error != 0)
+        return cannot_listen(text, gai_strerror(error));
+    error = uv_tcp_bind(&port->listener, found->ai_addr, 0);
+    freeaddrinfo(found);
+    if (error == 0)
+        error = uv_listen((uv_stream_t *)&port->listener, BACKLOG, on_connection);
+    if (error == 0)
+        error = uv_tcp_getsockname(&port->listener, (struct sockaddr *)&real, &size);
+    if (error == UV_EADDRINUSE)
+        return cannot_listen(text, "another program listens there; port 0 takes a free one");
+    if (error != 0)
+        return cannot_listen(text, uv_strerror(error));
+    write_name(port->address, &real);
+    return true;
+}
+
+bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, enum net_kind kind,
+                   const struct net_port_calls *calls, void *context)
+{
+    port->kind = kind;
+    port->calls = calls;
+    port->context = context;
+    port->listener.data = port;
+    int error = uv_tcp_init(loop, &port->listener);
+    if (error != 0)
+        return cannot_listen(address, uv_strerror(error));
+    port->open = true;
+    if (listen_at(port, address))
+        return true;
+    net_port_close(port);
+    return false;
+}
+
+void net_port_close(struct net_port *port)
+{
+    if (!port->open)
+        return;
+    port->open = port->attached = port->reading = port->waiting = false;
+    port->client = NULL;
+    port->to_line_count = port->in_at = port->in_length = 0;
+    uv_close((uv_handle_t *)&port->listener, NULL);
+    for (size_t i = 0; i < NET_PEERS; i++)
+        if (port->peers[i].state != PEER_FREE && port->peers[i].state != PEER_CLOSING)
+            close_peer(&port->peers[i]);
+}
