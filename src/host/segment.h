@@ -127,7 +127,8 @@ void segment_power(struct segment *segment, unsigned number, bool on);
 /* Bytes that can be handed over now. */
 size_t segment_room(const struct segment *segment);
 
-/* The master hands over `length` <= segment_room() bytes at `tick` >= segment_now(); ticks must not decrease from call to call. */
+/* The master hands over `length` <= segment_room() bytes at `tick` >= segment_now(); ticks must not decrease from call to
+ * call. */
 void segment_take(struct segment *segment, const uint8_t *bytes, size_t length, uint64_t tick);
 
 /* Forget the bytes handed over that have not set out at the present tick (purge of RFC 2217). Returns their number. */

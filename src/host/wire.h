@@ -77,7 +77,8 @@ void wire_hold(struct wire *wire, unsigned station, bool on, uint64_t time);
 /* When the next byte will have been heard if nobody sends anything more; RKM04_NEVER: never. */
 uint64_t wire_due(const struct wire *wire);
 
-/* Fetch the next byte heard by `until`; those of the same time come in the order of their ears. Returns false if there is none. */
+/* Fetch the next byte heard by `until`; those of the same time come in the order of their ears. Returns false if there is
+ * none. */
 bool wire_hear(struct wire *wire, uint64_t until, struct wire_byte *byte);
 
 #endif
