@@ -27,9 +27,8 @@ extern const struct line_settings line_settings_unit; /* 19200 8N1 */
  * a pty 8 data bits and no parity, whatever the client asks for. Returns false if `fd` is no terminal. */
 bool line_settings_read(int fd, struct line_settings *settings);
 
-/* The settings in the numbers of RFC 2217: parity 1..5 = none, odd, even, mark, space; stop size 1, 2, 3 = 1, 2, 1.5. What is
- * none of these is taken as 8N1 has it. */
-struct line_settings line_settings_rfc2217(uint32_t baud, unsigned data_bits, unsigned parity, unsigned stop_size);
+/* The settings as RFC 2217 brings them (net_port.h): stop_bits 1, 2; 3 stands for 1.5. */
+struct line_settings line_settings_of(uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits);
 
 bool line_settings_equal(struct line_settings a, struct line_settings b);
 
@@ -43,34 +42,38 @@ bool line_settings_news(struct line_settings *known, struct line_settings now, c
 
 /* ---- What is heard -------------------------------------------------------------------------------------------------- */
 
-#define LINE_EAR_MAX 8 /* bytes heard out of one byte sent, at most */
+#define LINE_EAR_MAX 8           /* bytes heard out of one byte sent, at most */
+#define LINE_EAR_BAUD_MAX 2000000 /* faster ends are taken to be as fast as this: nothing of them is heard anyway */
 
 struct line_heard {
-    uint64_t tick; /* at which its start bit began */
+    uint64_t tick; /* in which its start bit began */
     uint8_t byte;
 };
 
-/* A receiver that listens to a sender. Plain data. Who may read it: `lost`. */
+/* A receiver that listens to a sender. Plain data. Who may read it: framing_errors. */
 struct line_ear {
     struct line_settings from, to;
-    bool keeps_bad;     /* bytes with a wrong stop bit are heard too, not lost */
-    uint8_t phase;      /* waits for the line to be 1, for a start bit, or is within a character */
-    uint8_t bit;        /* number of the sample */
-    uint16_t bits;      /* sampled so far */
-    uint64_t time;      /* up to which the line has been heard, in units of the ear (line_settings.c) */
-    uint64_t start, sample; /* of the character under way: its edge, its next sample */
-    uint64_t lost;      /* characters with a wrong stop bit */
+    bool keeps_bad;  /* characters with a wrong stop bit are heard too, not lost */
+    uint8_t phase;   /* waits for the line to be 1, for a start bit, or is within a character */
+    uint8_t bit;     /* number of the next sample: 0 in the start bit */
+    uint8_t bits;    /* of the character, as far as sampled */
+    uint64_t time;   /* up to which the line has been drawn; units of 1 / (2 * from.baud * to.baud) s, as the next two */
+    uint64_t start;  /* when the character under way began */
+    uint64_t sample; /* when the next sample is taken */
+    uint64_t framing_errors; /* characters with a wrong stop bit */
 };
 
-/* Begin to listen, the line idle at tick 0. `keeps_bad`: false for the unit, which drops such a character; true for a client
- * on Linux, whose tty hands it on unless told otherwise (INPCK). Parity is not checked, for the same reason. */
+/* Begin to listen at tick 0, the line idle. `keeps_bad`: false for the unit, which drops such a character; true for a client on
+ * Linux, whose tty hands it on unless told otherwise (INPCK). Parity is not checked, for the same reason. */
 void line_ear_begin(struct line_ear *ear, struct line_settings from, struct line_settings to, bool keeps_bad);
 
-/* The sender sends `byte` at `tick`, or as soon as the one before is out. Returns the number of bytes heard by the end of it. */
+/* The sender sends `byte` at `tick`, or as soon as the one before is out; until then the line is idle. Returns the number of
+ * bytes heard by the end of it: what is under way then ends with the next byte or in silence. A byte heard may have begun
+ * before `tick`, and after it if bytes before are still going out. */
 size_t line_ear_byte(struct line_ear *ear, uint8_t byte, uint64_t tick, struct line_heard heard[LINE_EAR_MAX]);
 
-/* The sender is silent for now: what is under way is heard to its end, as if the line stayed idle as long as it takes. To be
- * called when the sender has no more to send. Returns the number of bytes heard, 0 or 1. */
+/* The sender has no more to send for now: what is under way is heard to its end, the line being idle. Returns the number of
+ * bytes heard, 0 or 1. */
 size_t line_ear_silence(struct line_ear *ear, struct line_heard heard[LINE_EAR_MAX]);
 
 #endif
