@@ -1,0 +1,40 @@
+# The Debian package (docs/INSTALL.md) and what else a system wants beside programs and library: units of systemd, documents.
+#
+# It is one package: the library is static and small, nothing on the system loads it, and who writes a test bench with it wants
+# the emulator and the client at hand. A -dev package would be a second thing to install and save nobody anything.
+
+# Paths below the prefix, as systemd looks for them in /usr and in /usr/local.
+if(RKM04_HOST)
+  install(FILES packaging/systemd/system/rkm04@.service DESTINATION lib/systemd/system)
+  install(FILES packaging/systemd/user/rkm04@.service DESTINATION lib/systemd/user)
+endif()
+install(FILES docs/SPEC.md packaging/debian/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(RKM04_MAINTAINER "rkm04 maintainers <rkm04@example.invalid>" CACHE STRING "Whom the Debian package names as its maintainer")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME rkm04)
+set(CPACK_PACKAGE_CONTACT ${RKM04_MAINTAINER})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "virtual RKM04, a unit for four stepper motors on RS485")
+set(CPACK_PACKAGE_DESCRIPTION
+"rkm04 takes the place of SofCon's RKM04 on a serial line: the same messages,
+the same answers, the same pulses at the same microsecond. Host software is
+tested with it without motors, on a pseudo terminal, a serial device or over
+TCP; programs are tried out in virtual time.
+.
+The package holds the emulator rkm04, the client rkmctl, units for systemd,
+and the emulator's core as a C library.")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/DebianFiles.cmake)
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_SECTION electronics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/prerm ${PROJECT_SOURCE_DIR}/packaging/debian/postrm)
+set(CPACK_RKM04_CHANGELOG ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
+set(CPACK_RKM04_STRIP ${CMAKE_STRIP})
+include(CPack)
