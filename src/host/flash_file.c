@@ -11,14 +11,22 @@
 
 #define ERASED 0xff
 
+/* The memory holds every byte inverted: what has not been written is 0 and costs nothing until it is touched. */
+static void invert(uint8_t *to, const uint8_t *from, unsigned length)
+{
+    for (unsigned i = 0; i < length; i++)
+        to[i] = (uint8_t)~from[i];
+}
+
 /* ---- Opening -------------------------------------------------------------------------------------------------------- */
 
 /* Write an erased flash to the new, empty file. */
 static bool make_image(struct flash_file *flash)
 {
-    memset(flash->memory, ERASED, sizeof flash->memory);
-    ssize_t written = pwrite(flash->fd, flash->memory, sizeof flash->memory, 0);
-    if (written == (ssize_t)sizeof flash->memory && fsync(flash->fd) == 0)
+    uint8_t bytes[FLASH_FILE_SIZE];
+    memset(bytes, ERASED, sizeof bytes);
+    ssize_t written = pwrite(flash->fd, bytes, sizeof bytes, 0);
+    if (written == (ssize_t)sizeof bytes && fsync(flash->fd) == 0)
         return true;
     log_error("cannot write the flash image %s: %s", flash->path, written >= 0 ? "the disk is full" : strerror(errno));
     if (ftruncate(flash->fd, 0) != 0)
@@ -55,10 +63,8 @@ bool flash_file_open(struct flash_file *flash, const char *path)
     flash->fd = -1;
     flash->unsynced = false;
     flash->end = 0;
-    if (!path) {
-        memset(flash->memory, ERASED, sizeof flash->memory);
+    if (!path)
         return true;
-    }
     flash->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, 0666);
     if (flash->fd < 0) {
         log_error("cannot open the flash image %s: %s", path, strerror(errno));
@@ -94,7 +100,7 @@ static int write_at(struct flash_file *flash, unsigned block, unsigned offset, c
 {
     unsigned at = block * RKM04_FLASH_BLOCK_SIZE + offset;
     if (flash->fd < 0) {
-        memcpy(flash->memory + at, data, length);
+        invert(flash->memory + at, data, length);
         return 0;
     }
     if (at != flash->end && !flash_file_sync(flash))
@@ -114,7 +120,7 @@ int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, v
         return 1;
     unsigned at = block * RKM04_FLASH_BLOCK_SIZE + offset;
     if (flash->fd < 0) {
-        memcpy(data, flash->memory + at, length);
+        invert(data, flash->memory + at, length);
         return 0;
     }
     if (!flash_file_sync(flash))

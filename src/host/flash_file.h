@@ -19,11 +19,11 @@ struct flash_file {
     int fd;           /* -1: memory only */
     bool unsynced;
     unsigned end;     /* where the operation before ended */
-    uint8_t memory[FLASH_FILE_SIZE]; /* without a file */
+    uint8_t memory[FLASH_FILE_SIZE]; /* without a file; inverted */
 };
 
-/* Open the image `path`, making an erased one if there is none, for this process alone; NULL: memory only. `path` must stay.
- * Failures are reported. Returns false if it did not work. */
+/* Open the image `path`, making an erased one if there is none, for this process alone; NULL: memory only. `path` must stay,
+ * `memory` must be zero. Failures are reported. Returns false if it did not work. */
 bool flash_file_open(struct flash_file *flash, const char *path);
 
 /* See that all is on the disk. Failures are reported. Returns false if it did not work. */

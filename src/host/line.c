@@ -1,6 +1,7 @@
 #include "line.h"
 
 #include <errno.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #define INPUT_OFF (IGNBRK | BRKINT | PARMRK | INPCK | ISTRIP | INLCR | IGNCR | ICRNL | IXON | IXOFF | IXANY)
@@ -31,6 +32,8 @@ ssize_t line_read(struct line *line, uint8_t *bytes, size_t room)
 size_t line_write(struct line *line, const uint8_t *bytes, size_t length)
 {
     size_t done = 0;
+    if (line->toggles && !line->raised && length > 0)
+        line->raised = ioctl(line->fd, TIOCMBIS, &(int){TIOCM_RTS}) == 0;
     while (line->clients > 0 && done < length) {
         ssize_t sent = write(line->fd, bytes + done, length - done);
         if (sent > 0)
@@ -42,9 +45,22 @@ size_t line_write(struct line *line, const uint8_t *bytes, size_t length)
     return length - done;
 }
 
+void line_none(struct line *line)
+{
+    *line = (struct line){.fd = -1, .slave = -1, .mark = -1};
+}
+
 void line_close(struct line *line)
 {
-    int *fds[] = {&line->notices, &line->slave, &line->fd};
+    line_serial_restore(line);
+    int *fds[] = {&line->slave, &line->fd};
+    for (struct line **at = line->watch ? &line->watch->lines : NULL; at && *at; at = &(*at)->next) {
+        if (*at == line) {
+            *at = line->next;
+            break;
+        }
+    }
+    line->watch = NULL;
     for (size_t i = 0; i < sizeof fds / sizeof fds[0]; i++) {
         if (*fds[i] >= 0)
             close(*fds[i]);

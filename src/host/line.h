@@ -2,6 +2,7 @@
 #ifndef RKM04_HOST_LINE_H
 #define RKM04_HOST_LINE_H
 
+#include <linux/serial.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -17,28 +18,63 @@ enum line_news {
 };
 typedef void line_tell(void *context, enum line_news news);
 
+/* Who opens and closes ptys, for all of a process: the system gives a user few such watches. */
+struct line_watch {
+    int fd;             /* inotify; -1: not open */
+    struct line *lines; /* those being watched */
+};
+
+/* Who turns the driver of an RS485 device on while units send. */
+enum line_rts {
+    LINE_RTS_DRIVER, /* the kernel's driver if it can (TIOCSRS485), else the adapter itself */
+    LINE_RTS_TOGGLES /* we do: RTS is on while bytes go out */
+};
+
 struct line {
-    int fd;           /* for bytes: master of the pty, or the device; non-blocking */
-    int notices;      /* inotify: clients open and close the pty; -1: a device */
+    int fd;           /* for bytes: master of the pty, or the device; non-blocking; -1: neither */
     int slave;        /* held open, so that the master never sees a hang-up; -1: a device */
+    struct line_watch *watch; /* NULL: a device */
+    struct line *next; /* being watched */
+    int mark;         /* the watch's, for this pty */
+    bool doubtful;    /* notices were lost: `clients` may be wrong */
+    bool closings;    /* somebody has closed it: `clients` may be wrong if anybody is left */
     unsigned clients; /* have the line open; a device counts as one */
     uint64_t dropped; /* bytes that nobody was there for, or that a client did not read in time */
     char path[64];    /* of the pty's slave; "" for a device */
+    bool is_wire;     /* a device with a real line: bytes take their time there */
+    bool rs485_set;   /* the driver's RS485 mode is ours, `rs485` is what it was */
+    struct serial_rs485 rs485;
+    bool toggles, raised; /* LINE_RTS_TOGGLES, and RTS is on */
     line_tell *tell;
     void *context;
 };
 
-/* Make a pty, raw from the start. Failures are reported. Returns false if it did not work. */
-bool line_pty_open(struct line *line, line_tell *tell, void *context);
+/* Begin to watch; end it. Failures are reported. Returns false if it did not work. */
+bool line_watch_open(struct line_watch *watch);
+void line_watch_close(struct line_watch *watch);
 
-/* Follow what clients did since the last call: count them, make the line raw again, forget what the last one left unread. */
-void line_pty_notice(struct line *line);
+/* Follow what clients of any line did since the last call: count them, make the line raw again, forget what the last one left
+ * unread. */
+void line_watch_follow(struct line_watch *watch);
+
+/* A line that is not open. */
+void line_none(struct line *line);
+
+/* Make a pty, raw from the start, and watch it. Failures are reported. Returns false if it did not work. */
+bool line_pty_open(struct line *line, struct line_watch *watch, line_tell *tell, void *context);
 
 /* Bytes came although no client is known: look who is there. */
 void line_pty_count_again(struct line *line);
 
 /* Use the serial device or pty `path`: raw, 19200 baud, 8N1 (U7). Failures are reported. Returns false if it did not work. */
-bool line_serial_open(struct line *line, const char *path);
+bool line_serial_open(struct line *line, const char *path, enum line_rts rts);
+
+/* RTS is on and everything has gone out by now, as far as the caller knows: turn it off. Returns false if the device is still
+ * sending: try again a little later. */
+bool line_serial_lower(struct line *line);
+
+/* Give the driver's own settings back. */
+void line_serial_restore(struct line *line);
 
 /* Read up to `room` bytes. Returns their number; 0: none now; -1: the line is gone (errno says why; 0: hung up). */
 ssize_t line_read(struct line *line, uint8_t *bytes, size_t room);

@@ -34,23 +34,43 @@ static void fresh_settings(struct termios *settings)
     settings->c_cc[VTIME] = 0;
 }
 
-bool line_pty_open(struct line *line, line_tell *tell, void *context)
+bool line_watch_open(struct line_watch *watch)
 {
-    *line = (struct line){.fd = -1, .notices = -1, .slave = -1, .tell = tell, .context = context};
+    watch->lines = NULL;
+    watch->fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (watch->fd < 0)
+        log_error("cannot watch who opens the line: %s; too many inotify instances in use?", strerror(errno));
+    return watch->fd >= 0;
+}
+
+void line_watch_close(struct line_watch *watch)
+{
+    if (watch->fd >= 0)
+        close(watch->fd);
+    watch->fd = -1;
+}
+
+bool line_pty_open(struct line *line, struct line_watch *watch, line_tell *tell, void *context)
+{
+    line_none(line);
+    line->tell = tell;
+    line->context = context;
     struct termios settings = {0};
     fresh_settings(&settings);
     if (openpty(&line->fd, &line->slave, NULL, &settings, NULL) != 0) {
         log_error("cannot make a pty: %s; is /dev/pts mounted?", strerror(errno));
         return false;
     }
-    line->notices = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     int failed = ptsname_r(line->fd, line->path, sizeof line->path);
-    if (failed != 0 || line->notices < 0 || !set_flags(line->fd) || !set_flags(line->slave) ||
-        inotify_add_watch(line->notices, line->path, IN_OPEN | IN_CLOSE) < 0) {
+    if (failed != 0 || !set_flags(line->fd) || !set_flags(line->slave) ||
+        (line->mark = inotify_add_watch(watch->fd, line->path, IN_OPEN | IN_CLOSE)) < 0) {
         log_error("cannot use the pty %s: %s", line->path, strerror(failed ? failed : errno));
         line_close(line);
         return false;
     }
+    line->watch = watch;
+    line->next = watch->lines;
+    watch->lines = line;
     return true;
 }
 
@@ -96,26 +116,44 @@ static void closed(struct line *line)
     line->tell(line->context, LINE_DETACHED);
 }
 
-/* Read the notices that are waiting, and follow them unless `ignored`. Returns their masks, or-ed; *number: how many. */
-static uint32_t read_notices(struct line *line, bool ignored, unsigned *number)
+static void follow(struct line *line, uint32_t mask)
+{
+    if (mask & IN_OPEN)
+        opened(line);
+    if (mask & IN_CLOSE)
+        closed(line);
+    line->closings |= (mask & IN_CLOSE) != 0;
+}
+
+static struct line *marked(const struct line_watch *watch, int mark)
+{
+    struct line *line = watch->lines;
+    while (line && line->mark != mark)
+        line = line->next;
+    return line;
+}
+
+/* Read the notices that are waiting, and follow them, but not those of line `ignored`. Returns the number of the latter. */
+static unsigned read_notices(struct line_watch *watch, const struct line *ignored)
 {
     _Alignas(struct inotify_event) char buffer[4096];
-    uint32_t masks = 0;
+    unsigned number = 0;
     ssize_t length;
-    *number = 0;
-    while ((length = read(line->notices, buffer, sizeof buffer)) > 0) {
+    while ((length = read(watch->fd, buffer, sizeof buffer)) > 0) {
         for (ssize_t at = 0; at < length;) {
             const struct inotify_event *event = (const void *)(buffer + at);
-            masks |= event->mask;
-            *number += 1;
-            if (!ignored && (event->mask & IN_OPEN))
-                opened(line);
-            if (!ignored && (event->mask & IN_CLOSE))
-                closed(line);
+            struct line *line = marked(watch, event->wd);
+            if (event->mask & IN_Q_OVERFLOW)
+                for (line = watch->lines; line; line = line->next)
+                    line->doubtful = true;
+            else if (line && line == ignored)
+                number++;
+            else if (line)
+                follow(line, event->mask);
             at += (ssize_t)(sizeof *event + event->len);
         }
     }
-    return masks;
+    return number;
 }
 
 /* Does anybody else have the slave open? Returns 1 or 0; -1: the slave is lost (reported). */
@@ -144,8 +182,9 @@ void line_pty_count_again(struct line *line)
     /* Our own close and open give two notices; if there are more, somebody came or went meanwhile. */
     for (unsigned tries = 0, notices = 0; tries < COUNT_TRIES && notices != 2; tries++) {
         others = anybody_else(line);
-        read_notices(line, true, &notices);
+        notices = read_notices(line->watch, line);
     }
+    line->doubtful = line->closings = false;
     if (others < 0)
         line->tell(line->context, LINE_FAILED);
     else if (others && line->clients == 0)
@@ -156,10 +195,13 @@ void line_pty_count_again(struct line *line)
     }
 }
 
-void line_pty_notice(struct line *line)
+void line_watch_follow(struct line_watch *watch)
 {
-    unsigned number;
-    uint32_t masks = read_notices(line, false, &number);
-    if ((masks & IN_Q_OVERFLOW) || ((masks & IN_CLOSE) && line->clients > 0))
-        line_pty_count_again(line);
+    read_notices(watch, NULL);
+    for (struct line *line = watch->lines; line; line = line->next) {
+        if (line->doubtful || (line->closings && line->clients > 0))
+            line_pty_count_again(line);
+        else
+            line->closings = false;
+    }
 }

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "log.h"
@@ -27,9 +28,61 @@ static bool set_up(int fd, const char *path)
     return true;
 }
 
-bool line_serial_open(struct line *line, const char *path)
+/* Let the driver turn the line round. Returns false if it cannot. */
+static bool set_driver(struct line *line)
 {
-    *line = (struct line){.fd = -1, .notices = -1, .slave = -1, .clients = 1};
+    if (ioctl(line->fd, TIOCGRS485, &line->rs485) != 0)
+        return false;
+    struct serial_rs485 ours = line->rs485;
+    ours.flags = (ours.flags & ~(__u32)(SER_RS485_RTS_AFTER_SEND | SER_RS485_RX_DURING_TX)) | SER_RS485_ENABLED |
+                 SER_RS485_RTS_ON_SEND;
+    ours.delay_rts_before_send = ours.delay_rts_after_send = 0;
+    line->rs485_set = ioctl(line->fd, TIOCSRS485, &ours) == 0;
+    return line->rs485_set;
+}
+
+/* See that somebody turns the line round. A pty has nothing to turn. */
+static bool set_rts(struct line *line, const char *path, enum line_rts rts)
+{
+    int modem;
+    line->is_wire = ioctl(line->fd, TIOCMGET, &modem) == 0;
+    if (rts == LINE_RTS_TOGGLES) {
+        line->toggles = ioctl(line->fd, TIOCMBIC, &(int){TIOCM_RTS}) == 0;
+        if (!line->toggles)
+            log_error("--rts toggles: %s has no RTS: %s", path, strerror(errno));
+        return line->toggles;
+    }
+    if (line->is_wire && !set_driver(line))
+        log_at(0, "the driver of %s has no RS485 mode: its adapter has to turn the line round; if it wants RTS for that, give "
+                  "--rts toggles", path);
+    return true;
+}
+
+bool line_serial_lower(struct line *line)
+{
+    int left, state;
+    if (ioctl(line->fd, TIOCOUTQ, &left) == 0 && left > 0)
+        return false;
+    if (ioctl(line->fd, TIOCSERGETLSR, &state) == 0 && !(state & TIOCSER_TEMT))
+        return false;
+    ioctl(line->fd, TIOCMBIC, &(int){TIOCM_RTS});
+    line->raised = false;
+    return true;
+}
+
+void line_serial_restore(struct line *line)
+{
+    if (line->raised)
+        ioctl(line->fd, TIOCMBIC, &(int){TIOCM_RTS});
+    if (line->rs485_set)
+        ioctl(line->fd, TIOCSRS485, &line->rs485);
+    line->raised = line->rs485_set = false;
+}
+
+bool line_serial_open(struct line *line, const char *path, enum line_rts rts)
+{
+    line_none(line);
+    line->clients = 1;
     int fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) {
         log_error("cannot open %s: %s%s", path, strerror(errno),
@@ -48,5 +101,8 @@ bool line_serial_open(struct line *line, const char *path)
         return false;
     }
     line->fd = fd;
-    return true;
+    if (set_rts(line, path, rts))
+        return true;
+    line_close(line);
+    return false;
 }

@@ -31,13 +31,13 @@ static bool private_folder(const char *path)
     return (found.st_mode & 077) == 0 || chmod(path, 0700) == 0;
 }
 
-static bool default_path(char path[PATH_MAX])
+static bool default_path(char path[PATH_MAX], unsigned number)
 {
-    char folder[PATH_MAX - 16];
+    char folder[PATH_MAX - 24];
     const char *base = getenv("XDG_RUNTIME_DIR");
     if (base && base[0] == '/' && snprintf(folder, sizeof folder, "%s/rkm04", base) < (int)sizeof folder &&
         private_folder(folder)) {
-        snprintf(path, PATH_MAX, "%s/bus0", folder);
+        snprintf(path, PATH_MAX, "%s/bus%u", folder, number);
         return true;
     }
     base = getenv("TMPDIR");
@@ -52,7 +52,7 @@ static bool default_path(char path[PATH_MAX])
                   errno == EPERM ? "it is not a folder of yours" : strerror(errno));
         return false;
     }
-    snprintf(path, PATH_MAX, "%s/bus0", folder);
+    snprintf(path, PATH_MAX, "%s/bus%u", folder, number);
     return true;
 }
 
@@ -133,11 +133,11 @@ static bool clear_stale(const struct link_path *link, const char *target)
     return false;
 }
 
-bool link_path_claim(struct link_path *link, const char *path)
+bool link_path_claim(struct link_path *link, const char *path, unsigned number)
 {
     char record[RECORD_MAX], target[64];
     *link = (struct link_path){.lock = -1};
-    if (!path && !default_path(link->path))
+    if (!path && !default_path(link->path, number))
         return false;
     if (path && snprintf(link->path, sizeof link->path, "%s", path) >= (int)sizeof link->path) {
         log_error("--link: the path is too long");

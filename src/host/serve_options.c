@@ -7,9 +7,15 @@
 
 #include <rkm04/link.h>
 
+#include "net_port.h"
+#include "notify.h"
+#include "segment.h"
+
 #define LATENCY_MAX 2000 /* ms (C4) */
 #define VERSION_TEXT_MAX 255
-#define NODE_EXPECTED "a number from 1 to 16, as set with switch S1"
+#define IDLE_DEFAULT 10u /* s */
+#define IDLE_MAX 86400   /* s */
+#define NO_TURNAROUND UINT32_MAX /* not given */
 
 enum key {
     KEY_NODE = 'n',
@@ -20,44 +26,81 @@ enum key {
     KEY_BAUD,
     KEY_CLOCK,
     KEY_VERSION_TEXT,
-    KEY_LATENCY
+    KEY_LATENCY,
+    KEY_LINES,
+    KEY_TCP,
+    KEY_RFC2217,
+    KEY_RTS,
+    KEY_TURNAROUND,
+    KEY_STRICT_LINE,
+    KEY_EXIT_WHEN_IDLE,
+    KEY_READY_FD,
+    KEY_COVERAGE,
+    KEY_MIN_COVERAGE
 };
 
 static const struct argp_option table[] = {
-    {NULL, 0, NULL, 0, "The unit:", 1},
-    {"node", KEY_NODE, "N", 0, "Address of the unit (DNode), 1 to 16; default 1", 0},
+    {NULL, 0, NULL, 0, "The units:", 1},
+    {"node", KEY_NODE, "LIST", 0,
+     "Addresses (DNode) of the units on the line, 1 to 16, as in 3 or 1,2,5-8; default 1. The same address may be given twice", 0},
     {"flash", KEY_FLASH, "FILE", 0,
-     "Flash image; made if it is not there. Without it stored programs live as long as the emulator", 0},
+     "Flash image of a unit; made if it is not there. %n in it stands for the unit's address, %l for the number of the line. "
+     "Without it stored programs live as long as the emulator", 0},
     {"version-text", KEY_VERSION_TEXT, "TEXT", 0,
-     "What the unit answers to Version, up to 255 characters; default " RKM04_VERSION_TEXT, 0},
+     "What the units answer to Version, up to 255 characters; default " RKM04_VERSION_TEXT, 0},
     {"speed-change-latency", KEY_LATENCY, "MS", 0,
-     "How long the unit takes to obey a V during a motion, 0 to 2000 ms; default 0", 0},
+     "How long a unit takes to obey a V during a motion, 0 to 2000 ms; default 0", 0},
     {NULL, 0, NULL, 0, "The line:", 2},
     {"link", KEY_LINK, "PATH", 0,
      "Name of the symbolic link to the pty; default $XDG_RUNTIME_DIR/rkm04/bus0, else rkm04-UID/bus0 in the temporary "
-     "directory", 0},
+     "directory. %l in it stands for the number of the line", 0},
     {"port", KEY_PORT, "DEVICE", 0, "Use this serial device or pty instead of a pty of our own", 0},
+    {"rts", KEY_RTS, "WHO", 0,
+     "Who turns the driver of an RS485 device on while units send: driver (default), the kernel's if it can, else the adapter; "
+     "toggles: RTS is on while bytes go out", 0},
+    {"tcp", KEY_TCP, "HOST:PORT", 0,
+     "Offer the line over TCP, raw; default host 127.0.0.1, port 0 for a free one. Then there is no pty unless --link is given", 0},
+    {"rfc2217", KEY_RFC2217, "HOST:PORT", 0, "The same with settings, purge, break and modem lines by RFC 2217", 0},
     {"framing", KEY_FRAMING, "NAME", 0, "hdlc (default) or plain", 0},
     {"baud", KEY_BAUD, "RATE", 0, "19200 (default): each byte takes its 520.8 us, both ways; 0: bytes take no time", 0},
+    {"turnaround", KEY_TURNAROUND, "US", 0,
+     "From the end of a request to the beginning of the answer, 0 to 1000000 us; default 521, one character", 0},
+    {"strict-line", KEY_STRICT_LINE, NULL, 0,
+     "A client that has set another speed or form of characters than 19200 8N1 gets what it would get: silence and garbage", 0},
+    {"lines", KEY_LINES, "N", 0,
+     "So many lines, 1 to 256, each with all these units and a pty (bus0, bus1, ...) or TCP port (PORT, PORT+1, ...) of its "
+     "own; default 1", 0},
     {NULL, 0, NULL, 0, "Time:", 3},
     {"clock", KEY_CLOCK, "CLOCK", 0,
      "real (default); xN: N times as fast, 0.001 to 10000; max: as real, but what is due comes at once, bytes first, without "
      "waiting for its time", 0},
+    {NULL, 0, NULL, 0, "Begin, end and report:", 4},
+    {"ready-fd", KEY_READY_FD, "FD", 0, "Write the READY line to this file descriptor, too, and close it", 0},
+    {"exit-when-idle", KEY_EXIT_WHEN_IDLE, "SECONDS", OPTION_ARG_OPTIONAL,
+     "End when nobody has had the line open for so many seconds of real time, 0 to 86400; default 10. With --port: when "
+     "nothing has come in", 0},
+    {"coverage", KEY_COVERAGE, "FILE", 0,
+     "At the end write what clients have exercised out of all messages, commands, flags and faults, as text, and to FILE.json",
+     0},
+    {"min-coverage", KEY_MIN_COVERAGE, "PERCENT", 0, "Exit status 4 if they have exercised less, 0 to 100, as in 72.5", 0},
     {0},
 };
 
 static const char doc[] =
-    "Serve one virtual RKM04 on a serial line until SIGINT or SIGTERM.\v"
+    "Serve virtual RKM04 units on a serial line until SIGINT or SIGTERM.\v"
     "When everything is ready one line appears on stdout: READY {\"pty\":...,\"link\":...,\"node\":...}. Logs go to stderr, "
-    "with the unit's own time in seconds.\n"
+    "with the units' own time in seconds.\n"
     "\n"
     "Examples:\n"
     "  rkm04 serve\n"
     "  rkm04 serve --node 3 --flash unit3.flash --link ~/rkm04-3\n"
+    "  rkm04 serve --node 1,2,5-8 --flash unit%n.flash\n"
+    "  rkm04 serve --tcp 4000 --rfc2217 4001\n"
     "  rkm04 serve --port /dev/ttyUSB0 --framing plain\n"
     "  rkm04 serve --clock x20 --baud 0\n"
+    "  rkm04 serve --exit-when-idle=2 --coverage covered.txt --min-coverage 80\n"
     "\n"
-    "Exit status: 0 ended by a signal, 1 failure at run time, 2 usage.";
+    "Exit status: 0 ended by a signal or --exit-when-idle, 1 failure at run time, 2 usage, 4 less than --min-coverage.";
 
 /* A whole number up to `high`, digits only. Returns -1 if it is none. */
 static long read_number(const char *text, long high)
@@ -89,28 +132,55 @@ static void set_framing(struct serve_options *options, const char *text, struct 
     argp_error(state, "--framing: `%s' is unknown: expected %s", text, names);
 }
 
-static void set_number(struct serve_options *options, int key, const char *text, struct argp_state *state)
+/* A number from 0 to `high`, or a usage error that says what was expected. */
+static unsigned number(const char *name, const char *text, unsigned low, unsigned high, const char *unit,
+                       struct argp_state *state)
 {
-    long value;
-    switch (key) {
-    case KEY_NODE:
-        value = read_number(text, RKM04_NODE_MAX);
-        if (value < 1)
-            argp_error(state, "--node: `%s' is not a node: expected " NODE_EXPECTED, text);
-        options->config.node = (uint8_t)value;
-        break;
-    case KEY_LATENCY:
-        value = read_number(text, LATENCY_MAX);
-        if (value < 0)
-            argp_error(state, "--speed-change-latency: `%s' is wrong: expected a number of ms from 0 to %d", text, LATENCY_MAX);
-        options->config.speed_change_latency = (uint16_t)value;
-        break;
-    default:
-        value = read_number(text, 19200);
-        if (value != 0 && value != 19200)
-            argp_error(state, "--baud: `%s' is wrong: expected 19200, the rate of the unit, or 0 for no pacing", text);
-        options->baud = (unsigned)value;
+    long value = read_number(text, high);
+    if (value < (long)low)
+        argp_error(state, "--%s: `%s' is wrong: expected a number%s from %u to %u", name, text, unit, low, high);
+    return (unsigned)value;
+}
+
+static unsigned read_baud(const char *text, struct argp_state *state)
+{
+    long value = read_number(text, 19200);
+    if (value != 0 && value != 19200)
+        argp_error(state, "--baud: `%s' is wrong: expected 19200, the rate of the unit, or 0 for no pacing", text);
+    return (unsigned)value;
+}
+
+/* Per cent with at most one decimal, in tenths. */
+static int read_percent(const char *text, struct argp_state *state)
+{
+    char whole[4] = "";
+    size_t digits = strspn(text, "0123456789");
+    long value = -1, tenths = 0;
+    if (digits > 0 && digits < sizeof whole) {
+        memcpy(whole, text, digits);
+        value = read_number(whole, 100);
+        if (text[digits] == '.')
+            tenths = read_number(text + digits + 1, 9);
+        else if (text[digits])
+            value = -1;
     }
+    if (value < 0 || tenths < 0 || (text[digits] && strlen(text + digits) != 2) || value * 10 + tenths > 1000)
+        argp_error(state, "--min-coverage: `%s' is wrong: expected per cent from 0 to 100, with at most one decimal", text);
+    return (int)(value * 10 + tenths);
+}
+
+static enum line_rts read_rts(const char *text, struct argp_state *state)
+{
+    if (strcmp(text, "driver") != 0 && strcmp(text, "toggles") != 0)
+        argp_error(state, "--rts: `%s' is unknown: expected driver or toggles", text);
+    return strcmp(text, "toggles") == 0 ? LINE_RTS_TOGGLES : LINE_RTS_DRIVER;
+}
+
+static const char *read_address(const char *name, const char *text, struct argp_state *state)
+{
+    if (!net_address_valid(text))
+        argp_error(state, "--%s: `%s' is wrong: expected " NET_ADDRESS_EXPECTED, name, text);
+    return text;
 }
 
 /* A path, which has to fit the READY line. */
@@ -125,26 +195,62 @@ static const char *read_path(const char *name, const char *text, struct argp_sta
     return text;
 }
 
-static error_t read_option(int key, char *text, struct argp_state *state)
+/* A path in which %n and %l may stand. */
+static const char *read_pattern(const char *name, const char *text, struct argp_state *state)
+{
+    read_path(name, text, state);
+    if (!name_pattern_valid(text))
+        argp_error(state, "--%s: `%s' has a %% without meaning: expected %%n (address), %%l (number of the line) or %%%%", name,
+                   text);
+    return text;
+}
+
+/* What does not go together. */
+static void check_together(struct serve_options *options, struct argp_state *state)
+{
+    bool net = options->tcp || options->rfc2217;
+    if (options->port && options->link)
+        argp_error(state, "--link names the emulator's own pty: expected either --link or --port");
+    if (options->port && options->lines > 1)
+        argp_error(state, "--port is one line: expected either --port or --lines");
+    if (options->rts == LINE_RTS_TOGGLES && !options->port)
+        argp_error(state, "--rts is about a serial device: expected --port with it");
+    if (options->link && name_pattern_has(options->link, 'n'))
+        argp_error(state, "--link: %%n names a unit, but a line has one link: expected %%l for the number of the line");
+    if (options->link && options->lines > 1 && !name_pattern_has(options->link, 'l'))
+        argp_error(state, "--link: expected %%l in the name, for the number of the line, with --lines");
+    if (options->flash && options->lines > 1 && !name_pattern_has(options->flash, 'l'))
+        argp_error(state, "--flash: expected %%l in the name, for the number of the line, with --lines");
+    if (options->flash && options->nodes.count > 1 && !name_pattern_has(options->flash, 'n'))
+        argp_error(state, "--flash: expected %%n in the name, for the address, with several units");
+    if (options->baud == 0 && options->strict_line)
+        argp_error(state, "--strict-line is about bytes on a line: expected it without --baud 0");
+    if (options->baud == 0 && options->turnaround != NO_TURNAROUND)
+        argp_error(state, "--turnaround is a time on the line: expected it without --baud 0");
+    if (options->turnaround == NO_TURNAROUND)
+        options->turnaround = options->baud != 0 ? SEGMENT_TURNAROUND : 0;
+    options->pty = !options->port && (!net || options->link);
+    options->config.node = options->nodes.node[0];
+}
+
+/* Options of the units and of time. */
+static error_t read_unit_option(int key, char *text, struct argp_state *state)
 {
     struct serve_options *options = state->input;
     switch (key) {
     case KEY_NODE:
+        if (!node_list_read(&options->nodes, text))
+            argp_error(state, "--node: `%s' is wrong: expected " NODE_LIST_EXPECTED, text);
+        return 0;
     case KEY_LATENCY:
-    case KEY_BAUD:
-        set_number(options, key, text, state);
+        options->config.speed_change_latency =
+            (uint16_t)number("speed-change-latency", text, 0, LATENCY_MAX, " of ms", state);
         return 0;
     case KEY_FRAMING:
         set_framing(options, text, state);
         return 0;
-    case KEY_LINK:
-        options->link = read_path("link", text, state);
-        return 0;
-    case KEY_PORT:
-        options->port = read_path("port", text, state);
-        return 0;
     case KEY_FLASH:
-        options->flash = read_path("flash", text, state);
+        options->flash = read_pattern("flash", text, state);
         return 0;
     case KEY_CLOCK:
         options->clock_text = text;
@@ -156,15 +262,75 @@ static error_t read_option(int key, char *text, struct argp_state *state)
         if (strlen(text) > VERSION_TEXT_MAX)
             argp_error(state, "--version-text: %zu characters: expected at most %d", strlen(text), VERSION_TEXT_MAX);
         return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* Options of the line. */
+static error_t read_line_option(int key, char *text, struct argp_state *state)
+{
+    struct serve_options *options = state->input;
+    switch (key) {
+    case KEY_BAUD:
+        options->baud = read_baud(text, state);
+        return 0;
+    case KEY_TURNAROUND:
+        options->turnaround = number("turnaround", text, 0, SEGMENT_TURNAROUND_MAX, " of us", state);
+        return 0;
+    case KEY_LINES:
+        options->lines = number("lines", text, 1, SERVE_LINES_MAX, "", state);
+        return 0;
+    case KEY_LINK:
+        options->link = read_pattern("link", text, state);
+        return 0;
+    case KEY_PORT:
+        options->port = read_path("port", text, state);
+        return 0;
+    case KEY_RTS:
+        options->rts = read_rts(text, state);
+        return 0;
+    case KEY_TCP:
+        options->tcp = read_address("tcp", text, state);
+        return 0;
+    case KEY_RFC2217:
+        options->rfc2217 = read_address("rfc2217", text, state);
+        return 0;
+    case KEY_STRICT_LINE:
+        options->strict_line = true;
+        return 0;
+    default:
+        return read_unit_option(key, text, state);
+    }
+}
+
+static error_t read_option(int key, char *text, struct argp_state *state)
+{
+    struct serve_options *options = state->input;
+    switch (key) {
+    case KEY_READY_FD:
+        options->ready_fd = notify_fd_read(text);
+        if (options->ready_fd < 0)
+            argp_error(state, "--ready-fd: `%s' is wrong: expected " NOTIFY_FD_EXPECTED, text);
+        return 0;
+    case KEY_EXIT_WHEN_IDLE:
+        options->exit_when_idle = true;
+        options->idle_seconds = text ? number("exit-when-idle", text, 0, IDLE_MAX, " of seconds", state) : IDLE_DEFAULT;
+        return 0;
+    case KEY_COVERAGE:
+        options->coverage = read_path("coverage", text, state);
+        return 0;
+    case KEY_MIN_COVERAGE:
+        options->min_coverage = read_percent(text, state);
+        return 0;
     case ARGP_KEY_ARG:
         argp_error(state, "`%s': expected options only", text);
         return 0;
     case ARGP_KEY_END:
-        if (options->port && options->link)
-            argp_error(state, "--link names the emulator's own pty: expected either --link or --port");
+        check_together(options, state);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return read_line_option(key, text, state);
     }
 }
 
@@ -172,9 +338,14 @@ void serve_options_read(struct serve_options *options, int argc, char **argv)
 {
     static const struct argp argp = {.options = table, .parser = read_option, .doc = doc};
     *options = (struct serve_options){
-        .config = {.node = 1, .framing = &rkm04_hdlc, .version_text = RKM04_VERSION_TEXT},
+        .config = {.framing = &rkm04_hdlc, .version_text = RKM04_VERSION_TEXT},
+        .nodes = {.count = 1, .node = {1}},
+        .lines = 1,
         .clock_text = "real",
         .baud = 19200,
+        .turnaround = NO_TURNAROUND,
+        .min_coverage = -1,
+        .ready_fd = -1,
     };
     virtual_clock_read(&options->clock, "real");
     argp_parse(&argp, argc, argv, 0, NULL, options);

@@ -6,16 +6,33 @@
 
 #include <rkm04/unit.h>
 
+#include "line.h"
+#include "serve_names.h"
 #include "virtual_clock.h"
 
+#define SERVE_LINES_MAX 256u
+
 struct serve_options {
-    struct rkm04_config config; /* --node, --framing, --version-text, --speed-change-latency */
+    struct rkm04_config config; /* --framing, --version-text, --speed-change-latency; node: of the first unit */
+    struct node_list nodes;     /* --node */
+    unsigned lines;             /* --lines */
+    bool pty;                   /* lines have a pty of their own */
     const char *link;           /* NULL: the default */
-    const char *port;           /* NULL: a pty of our own */
+    const char *port;           /* NULL: none */
+    const char *tcp;            /* NULL: none */
+    const char *rfc2217;        /* NULL: none */
     const char *flash;          /* NULL: memory only */
+    const char *coverage;       /* NULL: no report */
+    int min_coverage;           /* tenths of a per cent; -1: not asked for */
     const char *clock_text;     /* as given: "real", "x10", "max" */
     struct virtual_clock clock;
-    unsigned baud;              /* 19200, or 0: no pacing */
+    unsigned baud;              /* 19200, or 0: bytes take no time */
+    uint32_t turnaround;        /* us */
+    enum line_rts rts;
+    bool strict_line;
+    bool exit_when_idle;
+    unsigned idle_seconds;      /* of --exit-when-idle */
+    int ready_fd;               /* -1: none */
 };
 
 /* Read the command line. The strings of *options point into argv. Ends the program itself after --help, --version (status 0)

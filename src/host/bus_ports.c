@@ -1,0 +1,406 @@
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/timerfd.h>
+
+#include "bus.h"
+#include "log.h"
+
+#define NS_PER_SECOND 1000000000u
+#define NS_PER_BYTE 520834u       /* 10 bits at 19200 baud */
+#define NS_PER_LOOK 200000u       /* between two looks whether a device has sent all */
+
+unsigned bus_ports_clients(const struct bus *bus)
+{
+    const struct bus_ports *ports = &bus->ports;
+    return (bus->options->pty ? ports->line.clients : 0) + (ports->tcp && ports->tcp->attached) +
+           (ports->rfc2217 && ports->rfc2217->attached);
+}
+
+uint64_t bus_ports_dropped(const struct bus *bus)
+{
+    const struct bus_ports *ports = &bus->ports;
+    return ports->line.dropped + (ports->tcp ? ports->tcp->dropped : 0) + (ports->rfc2217 ? ports->rfc2217->dropped : 0);
+}
+
+/* ---- What the client has set ---------------------------------------------------------------------------------------- */
+
+static bool strict(const struct bus *bus)
+{
+    return bus->options->strict_line && !line_settings_equal(bus->ports.known, line_settings_unit);
+}
+
+/* The settings of the client who is there. Raw TCP has none. */
+static struct line_settings present_settings(const struct bus *bus)
+{
+    const struct bus_ports *ports = &bus->ports;
+    struct line_settings settings = line_settings_unit;
+    if (ports->rfc2217 && ports->rfc2217->attached)
+        return ports->net;
+    if (bus->options->pty && ports->line.clients > 0)
+        line_settings_read(ports->line.fd, &settings);
+    return settings;
+}
+
+/* Look what the client has set, and tell what is new. */
+static void look(struct bus *bus)
+{
+    struct bus_ports *ports = &bus->ports;
+    char news[LINE_NEWS_MAX];
+    if (!line_settings_news(&ports->known, present_settings(bus), news))
+        return;
+    bus_log(bus, "%s", news);
+    line_ear_begin(&ports->to_units, ports->known, line_settings_unit, false);
+    line_ear_begin(&ports->to_client, line_settings_unit, ports->known, true);
+}
+
+/* ---- To the units --------------------------------------------------------------------------------------------------- */
+
+static size_t room(const struct bus *bus)
+{
+    return strict(bus) ? bus_room(bus) / LINE_EAR_MAX : bus_room(bus);
+}
+
+static void take_heard(struct bus *bus, const struct line_heard *heard, size_t number)
+{
+    for (size_t i = 0; i < number; i++)
+        bus_take(bus, &heard[i].byte, 1, heard[i].tick);
+}
+
+/* The client has sent something; `length` <= room(). */
+static void take(struct bus *bus, const uint8_t *bytes, size_t length)
+{
+    struct line_heard heard[LINE_EAR_MAX];
+    if (!strict(bus)) {
+        bus_take(bus, bytes, length, 0);
+        return;
+    }
+    uint64_t tick = bus_present(bus);
+    for (size_t i = 0; i < length; i++)
+        take_heard(bus, heard, line_ear_byte(&bus->ports.to_units, bytes[i], tick, heard));
+    take_heard(bus, heard, line_ear_silence(&bus->ports.to_units, heard));
+}
+
+/* ---- To the clients ------------------------------------------------------------------------------------------------- */
+
+static void set_lower(struct bus *bus, uint64_t when)
+{
+    struct itimerspec spec = {
+        .it_value = {.tv_sec = (time_t)(when / NS_PER_SECOND), .tv_nsec = (long)(when % NS_PER_SECOND)},
+    };
+    timerfd_settime(bus->ports.lower_fd, TFD_TIMER_ABSTIME, &spec, NULL);
+}
+
+static void on_lower(uv_poll_t *handle, int status, int events)
+{
+    struct bus *bus = handle->data;
+    uint64_t expired;
+    (void)status;
+    (void)events;
+    if (read(bus->ports.lower_fd, &expired, sizeof expired) < 0 && errno == EAGAIN)
+        return;
+    if (bus->ports.line.raised && !line_serial_lower(&bus->ports.line))
+        set_lower(bus, uv_hrtime() + NS_PER_LOOK);
+}
+
+/* RTS has gone on: see that it goes off when the bytes are out. */
+static void expect_lower(struct bus *bus, size_t length)
+{
+    struct bus_ports *ports = &bus->ports;
+    uint64_t now = uv_hrtime();
+    if (ports->sent_until < now)
+        ports->sent_until = now;
+    ports->sent_until += length * NS_PER_BYTE;
+    set_lower(bus, ports->sent_until);
+}
+
+static void send_now(struct bus *bus, const uint8_t *bytes, size_t length)
+{
+    struct bus_ports *ports = &bus->ports;
+    struct line *line = &ports->line;
+    bool nobody = bus_ports_clients(bus) == 0;
+    if (ports->tcp && (ports->tcp->attached || (nobody && line->fd < 0)))
+        net_port_send(ports->tcp, bytes, length);
+    if (ports->rfc2217 && (ports->rfc2217->attached || (nobody && line->fd < 0 && !ports->tcp)))
+        net_port_send(ports->rfc2217, bytes, length);
+    if (line->fd < 0 || (line->clients == 0 && !nobody))
+        return;
+    size_t dropped = line_write(line, bytes, length);
+    if (line->raised)
+        expect_lower(bus, length);
+    if (dropped > 0 && line->clients > 0 && ports->told == line->dropped - dropped) {
+        bus_log(bus, "the client does not read: bytes are being dropped");
+        ports->told = line->dropped;
+    }
+}
+
+static void send_heard(struct bus *bus, const struct line_heard *heard, size_t number)
+{
+    for (size_t i = 0; i < number; i++)
+        send_now(bus, &heard[i].byte, 1);
+}
+
+void bus_ports_send(struct bus *bus, const uint8_t *bytes, size_t length)
+{
+    struct line_heard heard[LINE_EAR_MAX];
+    if (bus->options->strict_line)
+        look(bus);
+    if (!strict(bus)) {
+        send_now(bus, bytes, length);
+        return;
+    }
+    for (size_t i = 0; i < length; i++)
+        send_heard(bus, heard, line_ear_byte(&bus->ports.to_client, bytes[i], segment_now(&bus->segment), heard));
+}
+
+void bus_ports_silence(struct bus *bus)
+{
+    struct line_heard heard[LINE_EAR_MAX];
+    if (strict(bus))
+        send_heard(bus, heard, line_ear_silence(&bus->ports.to_client, heard));
+}
+
+/* ---- The pty or device ---------------------------------------------------------------------------------------------- */
+
+static void on_news(void *context, enum line_news news)
+{
+    struct bus *bus = context;
+    struct bus_ports *ports = &bus->ports;
+    uint64_t dropped = ports->line.dropped - ports->told;
+    switch (news) {
+    case LINE_DETACHED:
+        bus_log(bus, "the client has closed the line");
+        break;
+    case LINE_ATTACHED:
+        if (dropped > 0)
+            bus_log(bus, "a client has opened the line; %" PRIu64 " bytes for nobody were dropped before", dropped);
+        else
+            bus_log(bus, "a client has opened the line");
+        ports->told = ports->line.dropped;
+        ports->known = line_settings_unit;
+        break;
+    case LINE_SHARED:
+        bus_log(bus, "one more client has opened the line: they will take each other's answers (%u now)", ports->line.clients);
+        break;
+    case LINE_FAILED:
+        bus->calls->failed(bus->context);
+        return;
+    }
+    bus->calls->presence(bus->context);
+}
+
+/* Read all there is room for. Returns false if the line is gone. */
+static bool read_line(struct bus *bus)
+{
+    uint8_t bytes[1024];
+    size_t most;
+    look(bus);
+    while ((most = room(bus)) > 0) {
+        ssize_t length = line_read(&bus->ports.line, bytes, most < sizeof bytes ? most : sizeof bytes);
+        if (length < 0)
+            return false;
+        if (length == 0)
+            return true;
+        take(bus, bytes, (size_t)length);
+        if (bus->ports.line.clients == 0)
+            line_pty_count_again(&bus->ports.line);
+    }
+    return true;
+}
+
+static void on_readable(uv_poll_t *handle, int status, int events)
+{
+    struct bus *bus = handle->data;
+    struct line *line = &bus->ports.line;
+    (void)status; /* a hang-up shows when reading */
+    (void)events;
+    if (line->watch)
+        line_watch_follow(line->watch);
+    if (!read_line(bus)) {
+        bus_log(bus, "%s is gone: %s; start again when it is back", bus->options->port ? bus->options->port : line->path,
+                errno ? strerror(errno) : "hung up");
+        bus->calls->failed(bus->context);
+        return;
+    }
+    bus_catch_up(bus);
+    if (bus->options->port)
+        bus->calls->presence(bus->context);
+}
+
+void bus_ports_listen(struct bus *bus)
+{
+    struct bus_ports *ports = &bus->ports;
+    size_t most = bus_room(bus);
+    if (ports->reading && room(bus) == 0) {
+        uv_poll_stop(&ports->readable);
+        ports->reading = false;
+    } else if (!ports->reading && ports->line.fd >= 0 && most >= SEGMENT_ROOM / 2) {
+        ports->reading = uv_poll_start(&ports->readable, UV_READABLE, on_readable) == 0;
+    }
+    if (most >= SEGMENT_ROOM / 2 && ports->tcp)
+        net_port_wake(ports->tcp);
+    if (most >= SEGMENT_ROOM / 2 && ports->rfc2217)
+        net_port_wake(ports->rfc2217);
+}
+
+/* ---- TCP ------------------------------------------------------------------------------------------------------------ */
+
+static size_t net_room(void *context)
+{
+    return room(context);
+}
+
+static void net_bytes(void *context, const uint8_t *bytes, size_t length)
+{
+    struct bus *bus = context;
+    look(bus);
+    while (length > 0) {
+        size_t most = room(bus), part = length < most ? length : most;
+        if (part == 0)
+            return; /* look() has found a strict line, which has less room than it seemed: the rest is lost */
+        take(bus, bytes, part);
+        bytes += part;
+        length -= part;
+    }
+    if (!bus->busy)
+        bus_catch_up(bus);
+}
+
+static void net_told(void *context, enum net_news news, const char *peer)
+{
+    struct bus *bus = context;
+    switch (news) {
+    case NET_DETACHED:
+        bus_log(bus, "the client %s has closed the line", peer);
+        break;
+    case NET_ATTACHED:
+        bus_log(bus, "the client %s has opened the line", peer);
+        bus->ports.known = bus->ports.net = line_settings_unit;
+        break;
+    case NET_REFUSED:
+        bus_log(bus, "the client %s was sent away: another one has the line", peer);
+        break;
+    }
+    bus->calls->presence(bus->context);
+}
+
+static void net_settings(void *context, uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits)
+{
+    struct bus *bus = context;
+    bus->ports.net = (struct line_settings){
+        .baud = baud,
+        .data_bits = (uint8_t)data_bits,
+        .parity = parity,
+        .stop_halves = (uint8_t)(stop_bits == 3 ? 3 : 2 * stop_bits),
+    };
+}
+
+static void net_break(void *context, bool on)
+{
+    struct bus *bus = context;
+    bus_catch_up(bus);
+    segment_break(&bus->segment, on);
+    bus_catch_up(bus);
+}
+
+static void net_purge(void *context)
+{
+    struct bus *bus = context;
+    bus_catch_up(bus);
+    segment_purge(&bus->segment);
+    bus_catch_up(bus);
+}
+
+static const struct net_port_calls net_calls = {
+    .bytes = net_bytes,
+    .room = net_room,
+    .news = net_told,
+    .settings = net_settings,
+    .line_break = net_break,
+    .purge = net_purge,
+};
+
+/* Returns NULL if it did not work (reported). */
+static struct net_port *open_net(struct bus *bus, uv_loop_t *loop, const char *address, enum net_kind kind)
+{
+    char own[NET_NAME_SIZE];
+    struct net_port *port = calloc(1, sizeof *port);
+    if (!port)
+        log_error("out of memory");
+    else if (!name_address(address, bus->number, own, sizeof own))
+        log_error("%s: there is no port for line %u: expected one up to 65535 less the number of lines", address, bus->number);
+    else if (net_port_open(port, loop, own, kind, &net_calls, bus))
+        return port;
+    free(port);
+    return NULL;
+}
+
+/* ---- Begin and end -------------------------------------------------------------------------------------------------- */
+
+static bool poll_fd(struct bus *bus, uv_loop_t *loop, uv_poll_t *poll, int fd, uv_poll_cb callback)
+{
+    poll->data = bus;
+    int error = uv_poll_init(loop, poll, fd);
+    if (error == 0)
+        error = uv_poll_start(poll, UV_READABLE, callback);
+    if (error != 0)
+        log_error("cannot watch the line: %s", uv_strerror(error));
+    return error == 0;
+}
+
+static bool open_line(struct bus *bus, uv_loop_t *loop, struct line_watch *watch)
+{
+    const struct serve_options *options = bus->options;
+    struct bus_ports *ports = &bus->ports;
+    char path[PATH_MAX];
+    if (options->port) {
+        if (!line_serial_open(&ports->line, options->port, options->rts))
+            return false;
+        if (options->rts == LINE_RTS_TOGGLES) {
+            ports->lower_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+            if (!poll_fd(bus, loop, &ports->lower, ports->lower_fd, on_lower))
+                return false;
+        }
+    } else if (options->pty) {
+        if (options->link && !name_expand(options->link, NULL, bus->number, path)) {
+            log_error("--link: the path is too long");
+            return false;
+        }
+        if (!link_path_claim(&ports->link, options->link ? path : NULL, bus->number) ||
+            !line_pty_open(&ports->line, watch, on_news, bus))
+            return false;
+    } else {
+        return true;
+    }
+    ports->reading = poll_fd(bus, loop, &ports->readable, ports->line.fd, on_readable);
+    return ports->reading;
+}
+
+bool bus_ports_open(struct bus *bus, uv_loop_t *loop, struct line_watch *watch)
+{
+    const struct serve_options *options = bus->options;
+    struct bus_ports *ports = &bus->ports;
+    ports->known = ports->net = line_settings_unit;
+    if (!open_line(bus, loop, watch))
+        return false;
+    if (options->tcp && !(ports->tcp = open_net(bus, loop, options->tcp, NET_RAW)))
+        return false;
+    if (options->rfc2217 && !(ports->rfc2217 = open_net(bus, loop, options->rfc2217, NET_RFC2217)))
+        return false;
+    return true;
+}
+
+bool bus_ports_publish(struct bus *bus)
+{
+    return !bus->options->pty || link_path_make(&bus->ports.link, bus->ports.line.path);
+}
+
+void bus_ports_close(struct bus *bus)
+{
+    link_path_release(&bus->ports.link);
+    if (bus->ports.tcp)
+        net_port_close(bus->ports.tcp);
+    if (bus->ports.rfc2217)
+        net_port_close(bus->ports.rfc2217);
+}

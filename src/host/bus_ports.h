@@ -1,0 +1,55 @@
+/* bus_ports.h: the ways in for clients of a line: a pty of its own or a serial device, TCP, RFC 2217; and what they have set their
+ * ports to. All who are there stand at the same two wires: each gets what the units say. */
+#ifndef RKM04_HOST_BUS_PORTS_H
+#define RKM04_HOST_BUS_PORTS_H
+
+#include <uv.h>
+
+#include "line.h"
+#include "line_settings.h"
+#include "link_path.h"
+#include "net_port.h"
+
+struct bus;
+
+struct bus_ports {
+    struct line line;           /* the pty or device */
+    struct link_path link;      /* to the pty */
+    uv_poll_t readable;
+    bool reading;               /* it is being polled */
+    struct net_port *tcp, *rfc2217; /* NULL: none */
+    uint64_t told;              /* of line.dropped, those in the log already */
+
+    struct line_settings known; /* of the client, as told last */
+    struct line_settings net;   /* of the RFC 2217 client */
+    struct line_ear to_units, to_client; /* --strict-line and known is not as the unit has it */
+
+    int lower_fd;               /* timer: when RTS may be off again */
+    uv_poll_t lower;
+    uint64_t sent_until;        /* ns at which the device will have sent all */
+};
+
+/* Open what the options ask for. Failures are reported. Returns false if it did not work. */
+bool bus_ports_open(struct bus *bus, uv_loop_t *loop, struct line_watch *watch);
+
+/* Make the link to the pty. Failures are reported. Returns false if it did not work. */
+bool bus_ports_publish(struct bus *bus);
+
+void bus_ports_close(struct bus *bus);
+
+/* How many clients are there; a device counts as none. */
+unsigned bus_ports_clients(const struct bus *bus);
+
+/* Send to everybody who is there. */
+void bus_ports_send(struct bus *bus, const uint8_t *bytes, size_t length);
+
+/* The units are silent: what a strict line has heard in part is heard to its end. */
+void bus_ports_silence(struct bus *bus);
+
+/* Listen while there is room for what comes. */
+void bus_ports_listen(struct bus *bus);
+
+/* Bytes for nobody, and bytes that a client did not read. */
+uint64_t bus_ports_dropped(const struct bus *bus);
+
+#endif

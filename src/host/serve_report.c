@@ -1,0 +1,156 @@
+#include "serve_report.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "log.h"
+#include "notify.h"
+
+#define NODES_TEXT_SIZE (NODE_LIST_MAX * NODE_NAME_SIZE)
+
+/* ---- The start ------------------------------------------------------------------------------------------------------ */
+
+/* "unit 3", "units 1, 2, 5". Returns `text`. */
+static const char *units_text(const struct node_list *nodes, char text[NODES_TEXT_SIZE])
+{
+    size_t length = (size_t)snprintf(text, NODES_TEXT_SIZE, nodes->count > 1 ? "units" : "unit");
+    for (unsigned i = 0; i < nodes->count && length < NODES_TEXT_SIZE; i++)
+        length += (size_t)snprintf(text + length, NODES_TEXT_SIZE - length, "%s %u", i > 0 ? "," : "", nodes->node[i]);
+    return text;
+}
+
+static void tell_ports(const struct bus *bus)
+{
+    const struct bus_ports *ports = &bus->ports;
+    char units[NODES_TEXT_SIZE];
+    units_text(&bus->options->nodes, units);
+    if (bus->options->port)
+        bus_log(bus, "%s on %s", units, bus->options->port);
+    else if (bus->options->pty)
+        bus_log(bus, "%s on %s, link %s", units, ports->line.path, ports->link.path);
+    if (ports->tcp)
+        bus_log(bus, "%s on tcp:%s", units, ports->tcp->address);
+    if (ports->rfc2217)
+        bus_log(bus, "%s on rfc2217://%s", units, ports->rfc2217->address);
+}
+
+static void tell_flash(struct bus *bus)
+{
+    for (unsigned at = 0; at < bus->segment.units; at++) {
+        const struct bus_unit *unit = &bus->unit[at];
+        if (unit->flash_path)
+            bus_log(bus, "unit %s: flash image %s", unit->name, unit->flash_path);
+        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+            struct rkm04_motor_state state;
+            rkm04_motor_state(segment_unit(&bus->segment, unit->number), motor, &state);
+            if (state.slot == RKM04_SLOT_LOADED)
+                bus_log(bus, "unit %s, motor %u: starts the program of %u commands from flash", unit->name, motor,
+                        state.commands);
+            else if (state.slot == RKM04_SLOT_UNTRUSTED)
+                bus_log(bus, "unit %s, motor %u: its flash slot holds no whole program and counts as empty", unit->name, motor);
+        }
+    }
+}
+
+void serve_report_start(const struct serve_options *options, struct bus *const *buses)
+{
+    for (unsigned i = 0; i < options->lines; i++)
+        tell_ports(buses[i]);
+    if (options->baud == 0)
+        log_at(0, "framing %s, bytes not paced, clock %s", options->config.framing->name, options->clock_text);
+    else
+        log_at(0, "framing %s, bytes paced at 19200 baud, turnaround %" PRIu32 " us, clock %s", options->config.framing->name,
+               options->turnaround, options->clock_text);
+    if (!options->flash)
+        log_at(0, "no flash image: stored programs are lost when the emulator ends (--flash FILE keeps them)");
+    for (unsigned i = 0; i < options->lines; i++)
+        tell_flash(buses[i]);
+}
+
+/* ---- READY ---------------------------------------------------------------------------------------------------------- */
+
+static json_t *nodes_json(const struct node_list *nodes)
+{
+    json_t *list = json_array();
+    for (unsigned i = 0; list && i < nodes->count; i++) {
+        if (json_array_append_new(list, json_integer(nodes->node[i])) != 0) {
+            json_decref(list);
+            return NULL;
+        }
+    }
+    return list;
+}
+
+/* Where a line is to be found. */
+static json_t *ports_json(const struct bus *bus)
+{
+    const struct bus_ports *ports = &bus->ports;
+    bool pty = bus->options->pty;
+    return json_pack("{s:s?, s:s?, s:s?, s:s?, s:s?}", "pty", pty ? ports->line.path : NULL, "link",
+                     pty ? ports->link.path : NULL, "port", bus->options->port, "tcp", ports->tcp ? ports->tcp->address : NULL,
+                     "rfc2217", ports->rfc2217 ? ports->rfc2217->address : NULL);
+}
+
+/* With several lines the ports at the top are those of line 0, and `lines` has all. */
+static json_t *ready_json(const struct serve_options *options, struct bus *const *buses)
+{
+    json_t *ready = ports_json(buses[0]), *lines = NULL;
+    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:s?}", "node", (int)options->config.node, "nodes",
+                             nodes_json(&options->nodes), "framing", options->config.framing->name, "baud", (int)options->baud,
+                             "turnaround", (int)options->turnaround, "clock", options->clock_text, "flash", options->flash);
+    bool well = ready && rest && json_object_update(ready, rest) == 0;
+    json_decref(rest);
+    if (well && options->lines > 1) {
+        lines = json_array();
+        for (unsigned i = 0; well && i < options->lines; i++)
+            well = json_array_append_new(lines, ports_json(buses[i])) == 0;
+        well = json_object_set_new(ready, "lines", lines) == 0 && well;
+    }
+    if (well)
+        return ready;
+    json_decref(ready);
+    return NULL;
+}
+
+bool serve_report_ready(const struct serve_options *options, struct bus *const *buses)
+{
+    json_t *ready = ready_json(options, buses);
+    char *text = ready ? json_dumps(ready, JSON_COMPACT) : NULL, *line = NULL;
+    char units[NODES_TEXT_SIZE], status[NODES_TEXT_SIZE + 32];
+    json_decref(ready);
+    if (!text || asprintf(&line, "READY %s", text) < 0) {
+        log_error("out of memory");
+        free(text);
+        return false;
+    }
+    snprintf(status, sizeof status, "%s on %u line%s", units_text(&options->nodes, units), options->lines,
+             options->lines > 1 ? "s" : "");
+    bool done = puts(line) >= 0 && fflush(stdout) == 0;
+    if (!done)
+        log_error("cannot print the READY line on stdout: %s", strerror(errno));
+    done = done && notify_ready(options->ready_fd, line, status);
+    free(line);
+    free(text);
+    return done;
+}
+
+/* ---- The end -------------------------------------------------------------------------------------------------------- */
+
+void serve_report_end(struct bus *bus)
+{
+    struct rkm04_counters sum = {0};
+    struct segment_counters line = segment_counters(&bus->segment);
+    for (unsigned number = 1; number <= bus->segment.units; number++) {
+        struct rkm04_counters counters = rkm04_counters(segment_unit(&bus->segment, number));
+        sum.requests += counters.requests;
+        sum.answers += counters.answers;
+        sum.dropped += counters.dropped;
+    }
+    bus_log(bus, "requests %" PRIu32 ", answers %" PRIu32 ", frames dropped %" PRIu32 ", bytes dropped %" PRIu64
+                 ", collisions %" PRIu64 ", framing errors %" PRIu64 ", overruns %" PRIu64,
+            sum.requests, sum.answers, sum.dropped, bus_ports_dropped(bus), line.collisions, line.framing_errors, line.overruns);
+}

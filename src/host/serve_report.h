@@ -1,0 +1,16 @@
+/* serve_report.h: what `rkm04 serve` tells at its beginning and end. */
+#ifndef RKM04_HOST_SERVE_REPORT_H
+#define RKM04_HOST_SERVE_REPORT_H
+
+#include "bus.h"
+
+/* What stands where, and what was found in flash, for the log. */
+void serve_report_start(const struct serve_options *options, struct bus *const *buses);
+
+/* The READY line on stdout, on --ready-fd and to the service manager. Returns false if it could not be told (reported). */
+bool serve_report_ready(const struct serve_options *options, struct bus *const *buses);
+
+/* Counters of a line, for the log. */
+void serve_report_end(struct bus *bus);
+
+#endif
