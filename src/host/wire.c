@@ -78,7 +78,7 @@ static uint64_t own_end(const struct wire *wire, unsigned station, uint64_t from
     return RKM04_NEVER;
 }
 
-/* Find the beginning of the next byte that an ear hears: one in which it does not begin to send itself. */
+/* Find the beginning of the next byte that an ear hears: one within which it does not begin to send itself. */
 static void listen(struct wire *wire, unsigned ear)
 {
     uint64_t from = wire->ear[ear].from, fall = RKM04_NEVER, end;
@@ -89,8 +89,8 @@ static void listen(struct wire *wire, unsigned ear)
                 from = end;
                 high = true;
             }
-            fall = from == RKM04_NEVER ? RKM04_NEVER : line_falls(wire, ear, from, high);
-            end = fall == RKM04_NEVER ? RKM04_NEVER : own_end(wire, ear, from, fall + DECIDED);
+            fall = line_falls(wire, ear, from, high);
+            end = own_end(wire, ear, from, fall == RKM04_NEVER ? RKM04_NEVER : fall + DECIDED);
             from = end;
             high = true;
         } while (end != RKM04_NEVER);
@@ -273,7 +273,7 @@ bool wire_hear(struct wire *wire, uint64_t until, struct wire_byte *byte)
         unsigned number = next_ear(wire);
         struct wire_ear *ear = &wire->ear[number];
         bool heard = sample(wire, number, byte);
-        ear->from = ear->fall + (heard ? DECIDED : MIDDLE);
+        ear->from = ear->fall + (heard ? DECIDED : MIDDLE) + 1u;
         listen(wire, number);
         if (!heard)
             continue;
