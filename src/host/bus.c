@@ -21,7 +21,7 @@
 
 uint64_t bus_present(const struct bus *bus)
 {
-    return virtual_clock_tick(&bus->clock, uv_hrtime());
+    return bus->running ? virtual_clock_tick(&bus->clock, uv_hrtime()) : 0;
 }
 
 static void say(const struct bus *bus, uint64_t tick, const char *format, va_list list)
@@ -281,7 +281,6 @@ bool bus_begin(struct bus *bus, unsigned number, const struct serve_options *opt
     bus->timer_fd = bus->ports.lower_fd = bus->ports.link.lock = -1;
     line_none(&bus->ports.line);
     bus->clock = options->clock;
-    virtual_clock_start(&bus->clock, uv_hrtime());
     if (!bus_listener_begin(&bus->listener, coverage, options->config.framing, &options->nodes)) {
         log_error("out of memory");
         return false;
@@ -307,6 +306,7 @@ bool bus_start(struct bus *bus)
     if (!bus_ports_publish(bus))
         return false;
     virtual_clock_start(&bus->clock, uv_hrtime());
+    bus->running = true;
     bus_catch_up(bus);
     return true;
 }

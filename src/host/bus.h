@@ -44,6 +44,7 @@ struct bus {
     uint64_t heard;       /* ns at which the last bytes came */
     uint64_t taken;       /* tick for which the last bytes were handed over */
     uint64_t answered;    /* a real wire: tick at which the answer in `out` may set out */
+    bool running;         /* time has begun */
     bool busy;            /* within bus_catch_up() */
     int timer_fd;
     uv_poll_t timer;

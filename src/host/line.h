@@ -37,7 +37,7 @@ struct line {
     struct line *next; /* being watched */
     int mark;         /* the watch's, for this pty */
     bool doubtful;    /* notices were lost: `clients` may be wrong */
-    bool closings;    /* somebody has closed it: `clients` may be wrong if anybody is left */
+    unsigned closings; /* notices of clients that have closed it, not counted yet */
     unsigned clients; /* have the line open; a device counts as one */
     uint64_t dropped; /* bytes that nobody was there for, or that a client did not read in time */
     char path[64];    /* of the pty's slave; "" for a device */

@@ -2,7 +2,7 @@
  * poll() return at once, for ever) and the settings stay within reach; who comes and goes is told by inotify.
  *
  * inotify merges equal notices that follow each other, so counting them may err when two clients come or go together. Hence
- * `clients` is corrected whenever it looks doubtful: with our own slave closed for a moment, the master tells by a hang-up
+ * whether anybody is left is looked up whenever one closes it: with our own slave closed for a moment, the master tells by a hang-up
  * whether anybody else has the slave open. */
 #include "line.h"
 
@@ -108,21 +108,26 @@ static void opened(struct line *line)
     line->tell(line->context, line->clients == 1 ? LINE_ATTACHED : LINE_SHARED);
 }
 
-static void closed(struct line *line)
+/* The last client has gone. */
+static void deserted(struct line *line)
 {
-    if (line->clients == 0 || --line->clients > 0)
-        return;
+    line->clients = 0;
     forget_client(line);
     line->tell(line->context, LINE_DETACHED);
 }
 
+/* Who has closed the line is counted when it is certain whether anybody is left: two who have opened it at once give one notice.
+ * But if all that are known have closed it, and then one opens it, they have gone. */
 static void follow(struct line *line, uint32_t mask)
 {
+    if ((mask & IN_OPEN) && line->closings > 0 && line->closings >= line->clients) {
+        line->closings = 0;
+        deserted(line);
+    }
     if (mask & IN_OPEN)
         opened(line);
-    if (mask & IN_CLOSE)
-        closed(line);
-    line->closings |= (mask & IN_CLOSE) != 0;
+    if ((mask & IN_CLOSE) && line->clients > 0)
+        line->closings++;
 }
 
 static struct line *marked(const struct line_watch *watch, int mark)
@@ -184,24 +189,23 @@ void line_pty_count_again(struct line *line)
         others = anybody_else(line);
         notices = read_notices(line->watch, line);
     }
-    line->doubtful = line->closings = false;
+    unsigned closings = line->closings;
+    line->doubtful = false;
+    line->closings = 0;
     if (others < 0)
         line->tell(line->context, LINE_FAILED);
     else if (others && line->clients == 0)
         opened(line);
-    else if (!others && line->clients > 0) {
-        line->clients = 1;
-        closed(line);
-    }
+    else if (others)
+        line->clients = line->clients > closings ? line->clients - closings : 1;
+    else if (line->clients > 0)
+        deserted(line);
 }
 
 void line_watch_follow(struct line_watch *watch)
 {
     read_notices(watch, NULL);
-    for (struct line *line = watch->lines; line; line = line->next) {
-        if (line->doubtful || (line->closings && line->clients > 0))
+    for (struct line *line = watch->lines; line; line = line->next)
+        if (line->doubtful || line->closings > 0)
             line_pty_count_again(line);
-        else
-            line->closings = false;
-    }
 }
