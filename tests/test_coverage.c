@@ -144,7 +144,8 @@ END_TEST
 
 START_TEST(P4_a_message_without_a_right_motor_covers_no_message_of_a_motor)
 {
-    ask("\2", 1);
+    const char number_alone[] = {2}; /* and no zero behind it */
+    ask(number_alone, 1);
     ask("\2" "9D", 3);
     ask("\6" "x", 2);
     ck_assert_uint_eq(covered(COVERAGE_MESSAGES), 0);
@@ -214,7 +215,8 @@ START_TEST(C3_C4_alone_and_in_a_text_are_two_things)
         ck_assert_uint_eq(times(COVERAGE_COMMANDS, alone[i]), 1);
         ck_assert_uint_eq(times(COVERAGE_COMMANDS, inside[i]), 0);
     }
-    set('1', "K C75 V500");
+    set('1', "K D");
+    set('1', "C75 V500");
     for (size_t i = 0; i < 3; i++) {
         ck_assert_uint_eq(times(COVERAGE_COMMANDS, alone[i]), 1);
         ck_assert_uint_eq(times(COVERAGE_COMMANDS, inside[i]), 1);
@@ -232,6 +234,15 @@ START_TEST(P2_a_text_with_an_error_covers_its_flag_and_no_command)
     ck_assert_uint_eq(times(COVERAGE_FLAGS, "flag 1, bad value"), 1);
     ck_assert_uint_eq(times(COVERAGE_FLAGS, "flag 2, unknown command"), 2);
     ck_assert_uint_eq(times(COVERAGE_FLAGS, "flag 0, all right"), 0);
+}
+END_TEST
+
+START_TEST(C1_what_stands_before_a_reset_is_not_covered)
+{
+    set('1', "D \\ H \\ U");
+    ck_assert_uint_eq(times(COVERAGE_COMMANDS, "\\"), 1);
+    ck_assert_uint_eq(times(COVERAGE_COMMANDS, "U"), 1);
+    ck_assert_uint_eq(covered(COVERAGE_COMMANDS), 2);
 }
 END_TEST
 
@@ -455,6 +466,7 @@ static Suite *coverage_suite(void)
     tcase_add_test(counting, G_and_position_count_by_sign_and_I_by_bit_and_level);
     tcase_add_test(counting, C3_C4_alone_and_in_a_text_are_two_things);
     tcase_add_test(counting, P2_a_text_with_an_error_covers_its_flag_and_no_command);
+    tcase_add_test(counting, C1_what_stands_before_a_reset_is_not_covered);
     tcase_add_test(counting, any_spelling_of_the_call_counts_as_the_call);
     tcase_add_test(counting, a_fault_counts_by_its_reason);
     tcase_add_test(counting, storing_counts_by_how_it_went);

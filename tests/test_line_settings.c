@@ -163,6 +163,20 @@ START_TEST(a_byte_begins_when_it_is_said_or_when_the_line_is_free)
 }
 END_TEST
 
+START_TEST(silence_takes_no_time_from_what_follows)
+{
+    listen_to(at_9600, at_19200, false);
+    for (unsigned i = 0; i < 2; i++) {
+        say('A', 0);
+        ck_assert_uint_eq(count, i); /* what begins with its last bit is under way still */
+        count += line_ear_silence(&ear, heard + count);
+        ck_assert_uint_eq(count, i + 1);
+    }
+    ck_assert_uint_eq(heard[0].tick, 833);  /* eight bits at 9600 baud */
+    ck_assert_uint_eq(heard[1].tick, 1875); /* ten more */
+}
+END_TEST
+
 /* Each bit is sampled twice; the first sample is lost in the long start bit: 0 b0 b0 b1 b1 b2 b2 b3, b3 is taken as stop bit. */
 START_TEST(U7_a_client_at_half_the_speed_is_heard_as_garbage)
 {
@@ -329,6 +343,7 @@ static Suite *line_settings_suite(void)
     suite_add_tcase(suite, settings);
     tcase_add_test(hearing, U7_equal_ends_hear_what_is_said);
     tcase_add_test(hearing, a_byte_begins_when_it_is_said_or_when_the_line_is_free);
+    tcase_add_test(hearing, silence_takes_no_time_from_what_follows);
     tcase_add_test(hearing, U7_a_client_at_half_the_speed_is_heard_as_garbage);
     tcase_add_test(hearing, U7_a_client_at_twice_the_speed_is_heard_as_garbage_or_not_at_all);
     tcase_add_test(hearing, U7_far_from_the_speed_there_is_silence);

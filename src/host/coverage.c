@@ -212,22 +212,30 @@ static void count_command(struct coverage *coverage, struct rkm04_command comman
     }
 }
 
-/* The text of Set Command: it counts only if all of it is right (P2). */
+/* The text of Set Command: it counts only if all of it is right (P2), and from the last `\` on: what stands before is dropped
+ * (C1). */
 static void count_text(struct coverage *coverage, const uint8_t *text, size_t length)
 {
-    struct rkm04_reader reader;
-    struct rkm04_command command;
+    struct rkm04_reader reader, from;
+    struct rkm04_command command, reset = {.op = 0};
     enum rkm04_read found;
     unsigned commands = 0;
     rkm04_read_begin(&reader, text, length);
-    while ((found = rkm04_read(&reader, &command)) == RKM04_READ_COMMAND)
+    from = reader;
+    while ((found = rkm04_read(&reader, &command)) == RKM04_READ_COMMAND) {
         commands++;
+        if (command.op == '\\') {
+            reset = command;
+            from = reader;
+        }
+    }
     if (found != RKM04_READ_END)
         return;
     if (length > 0 && memchr(text, COMMENT, length) != NULL)
         count(coverage, COVERAGE_COMMANDS, COMMENT);
-    rkm04_read_begin(&reader, text, length);
-    while (rkm04_read(&reader, &command) == RKM04_READ_COMMAND)
+    if (reset.op != 0)
+        count_command(coverage, reset, false);
+    while (rkm04_read(&from, &command) == RKM04_READ_COMMAND)
         count_command(coverage, command, commands == 1);
 }
 

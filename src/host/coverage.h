@@ -49,7 +49,7 @@ struct coverage {
 void coverage_begin(struct coverage *coverage);
 
 /* The client has sent a whole, well-framed message to `dnode`: 0 or the address of a unit that is there. Commands count if
- * the unit takes the text, that is if nothing in it is wrong (P2). */
+ * the unit takes them: nothing in the text is wrong (P2), and no `\` follows (C1). */
 void coverage_request(struct coverage *coverage, uint8_t dnode, const uint8_t *message, size_t length);
 
 /* A unit answers with this message. */
