@@ -447,6 +447,11 @@ START_TEST(a_full_disk_is_reported)
     ck_assert_int_eq(symlink("/dev/full", json_file), 0);
     ck_assert(!coverage_write(&coverage, file));
     ck_assert_ptr_nonnull(strstr(read_file(file), "missing"));
+    unlink(file);
+    unlink(json_file);
+    ck_assert_int_eq(symlink("/dev/full", file), 0);
+    ck_assert(!coverage_write(&coverage, file));
+    ck_assert_int_eq(read_file(json_file)[0], '{');
 }
 END_TEST
 

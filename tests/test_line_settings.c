@@ -8,6 +8,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <rkm04/unit.h>
+
 #include "../src/host/line_settings.h"
 
 #define HEARD_MAX 2000
@@ -332,6 +334,37 @@ START_TEST(U7_two_per_cent_off_the_speed_does_no_harm)
 }
 END_TEST
 
+/* Requests that a unit takes out of a well-framed one, heard at the unit's speed. */
+static unsigned requests_taken(struct line_settings client)
+{
+    static struct rkm04_unit unit;
+    static const struct rkm04_port nothing;
+    const struct rkm04_config config = {.node = 1};
+    struct rkm04_sender sender = {0};
+    uint8_t frame[32];
+    size_t length = rkm04_hdlc.begin(&sender, 1, 0, 3, false, frame);
+    length += rkm04_hdlc.put(&sender, 2, frame + length);
+    length += rkm04_hdlc.put(&sender, '1', frame + length);
+    length += rkm04_hdlc.put(&sender, 'D', frame + length);
+    length += rkm04_hdlc.end(&sender, frame + length);
+    hear_all(client, line_settings_unit, false, frame, length);
+    rkm04_init(&unit, &config, &nothing, NULL);
+    for (size_t i = 0; i < count; i++)
+        ck_assert_uint_eq(rkm04_receive(&unit, &heard[i].byte, 1), 1);
+    return rkm04_counters(&unit).requests;
+}
+
+START_TEST(U7_a_unit_obeys_a_client_of_its_own_speed_only)
+{
+    static const uint32_t others[] = {1200, 4800, 9600, 38400, 57600, 115200};
+    ck_assert_uint_eq(requests_taken(at_19200), 1);
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        ck_assert_uint_eq(requests_taken(line_settings_of(others[i], 8, 'N', 1)), 0);
+    ck_assert_uint_eq(requests_taken(line_settings_of(19200, 7, 'E', 1)), 0);
+    ck_assert_uint_eq(requests_taken(line_settings_of(19200, 8, 'N', 2)), 1);
+}
+END_TEST
+
 static Suite *line_settings_suite(void)
 {
     Suite *suite = suite_create("line_settings");
@@ -353,6 +386,7 @@ static Suite *line_settings_suite(void)
     tcase_add_test(hearing, only_the_ratio_of_the_speeds_matters);
     tcase_add_test(hearing, any_bytes_at_any_two_speeds_are_heard_as_a_second_receiver_hears_them);
     tcase_add_test(hearing, U7_two_per_cent_off_the_speed_does_no_harm);
+    tcase_add_test(hearing, U7_a_unit_obeys_a_client_of_its_own_speed_only);
     tcase_set_timeout(hearing, 60);
     suite_add_tcase(suite, hearing);
     return suite;
