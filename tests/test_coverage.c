@@ -355,17 +355,20 @@ static char file[64], json_file[80];
 
 static void make_folder(void)
 {
-    setup();
-    strcpy(folder + strlen(folder) - 6, "XXXXXX");
     ck_assert_ptr_nonnull(mkdtemp(folder));
     snprintf(file, sizeof file, "%s/report", folder);
     snprintf(json_file, sizeof json_file, "%s/report.json", folder);
 }
 
-static void remove_folder(void)
+static void empty_folder(void)
 {
     unlink(file);
     unlink(json_file);
+}
+
+static void remove_folder(void)
+{
+    empty_folder();
     rmdir(folder);
 }
 
@@ -447,8 +450,7 @@ START_TEST(a_full_disk_is_reported)
     ck_assert_int_eq(symlink("/dev/full", json_file), 0);
     ck_assert(!coverage_write(&coverage, file));
     ck_assert_ptr_nonnull(strstr(read_file(file), "missing"));
-    unlink(file);
-    unlink(json_file);
+    empty_folder();
     ck_assert_int_eq(symlink("/dev/full", file), 0);
     ck_assert(!coverage_write(&coverage, file));
     ck_assert_int_eq(read_file(json_file)[0], '{');
@@ -479,7 +481,9 @@ static Suite *coverage_suite(void)
     tcase_add_test(counting, a_client_that_does_everything_reaches_100_per_cent);
     tcase_add_test(counting, per_cent_is_rounded_down_so_that_100_means_all);
     suite_add_tcase(suite, counting);
-    tcase_add_checked_fixture(reports, make_folder, remove_folder);
+    tcase_add_unchecked_fixture(reports, make_folder, remove_folder); /* also when a test fails */
+    tcase_add_checked_fixture(reports, setup, empty_folder);
+    tcase_add_checked_fixture(reports, empty_folder, NULL);
     tcase_add_test(reports, the_text_lists_what_is_covered_and_what_is_missing);
     tcase_add_test(reports, the_JSON_says_the_same);
     tcase_add_test(reports, a_name_that_ends_in_json_gets_the_JSON_alone);
