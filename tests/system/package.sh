@@ -116,8 +116,8 @@ test_the_package_has_what_a_debian_package_has() {
 test_the_package_satisfies_lintian() {
     command -v lintian >/dev/null || { echo "  (lintian is not installed: not asked)"; return; }
     # There is no bug in Debian's tracker that asks for this package.
-    lintian --allow-root --fail-on error,warning --suppress-tags initial-upload-closes-no-bugs "$package" >"$folder/lintian.err" ||
-        fail "lintian"
+    lintian --allow-root --fail-on error,warning --suppress-tags initial-upload-closes-no-bugs "$package" \
+        >"$folder/lintian.err" || fail "lintian"
 }
 
 build_package

@@ -16,8 +16,9 @@ install_root() {
 
 # analyze WHAT...: systemd-analyze, which must have nothing to complain about.
 analyze() {
-    mkdir -p -m 700 "$folder/runtime"
-    XDG_RUNTIME_DIR=$folder/runtime SYSTEMD_LOG_LEVEL=notice systemd-analyze "$@" >"$folder/analyze.out" 2>"$folder/analyze.err" ||
+    mkdir -p "$folder/runtime"
+    XDG_RUNTIME_DIR=$folder/runtime SYSTEMD_LOG_LEVEL=notice \
+        systemd-analyze "$@" >"$folder/analyze.out" 2>"$folder/analyze.err" ||
         fail "systemd-analyze $*"
     same "" "$(<"$folder/analyze.err")" "complaints of systemd-analyze $*"
 }
@@ -103,7 +104,7 @@ test_an_instance_with_a_name_takes_its_nodes_from_its_file() {
 }
 
 test_an_instance_with_a_name_and_no_file_says_what_is_missing() {
-    local scope=system instance=press
+    local scope=system instance=press variables
     install_root
     eval "variables=($(unit_line Environment))"
     local command
@@ -115,8 +116,11 @@ test_an_instance_with_a_name_and_no_file_says_what_is_missing() {
 
 # The pty belongs to the service; those who may use serial ports may use it too.
 test_the_group_of_serial_ports_may_use_the_pty_of_the_service() {
-    [[ $(id -u) == 0 ]] && getent group dialout >/dev/null || { echo "  (not root, or no group dialout: not tried)"; return; }
-    local scope=system instance=3
+    if [[ $(id -u) != 0 ]] || ! getent group dialout >/dev/null; then
+        echo "  (not root, or no group dialout: not tried)"
+        return
+    fi
+    local scope=system instance=3 post
     install_root
     start_instance
     eval "post=($(unit_line ExecStartPost))"
