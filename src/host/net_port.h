@@ -39,12 +39,12 @@ struct net_port_calls {
     size_t (*room)(void *context);
     /* `peer`: "127.0.0.1:40123". */
     void (*news)(void *context, enum net_news news, const char *peer);
-    /* RFC 2217: the client has set its port. A client that attaches has 19200 8N1 and sets one thing after the other: what
+    /* RFC 2217: the client has changed its port. A client that attaches has 19200 8N1 and sets one thing after the other: what
      * counts is what stands when bytes come. parity: N O E M S; stop_bits: 1, 2, or 3 for 1.5. */
     void (*settings)(void *context, uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits);
     /* RFC 2217: a break begins or ends; a telnet break is both at once. It ends with the client at the latest. */
     void (*line_break)(void *context, bool on);
-    /* RFC 2217: the client has set DTR or RTS; both are on when it attaches. */
+    /* RFC 2217: the client has changed DTR or RTS; both are on when it attaches. */
     void (*lines)(void *context, bool dtr, bool rts);
     /* RFC 2217: bytes that have been handed to bytes() and are not on the wire yet are to be forgotten. */
     void (*purge)(void *context);

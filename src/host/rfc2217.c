@@ -131,47 +131,48 @@ static void take_option(struct rfc2217 *port, uint8_t verb, uint8_t option)
 
 /* ---- Commands of RFC 2217 ------------------------------------------------------------------------------------------- */
 
-/* In each, 0 or nothing asks for the value in force. */
+/* In each, 0 or nothing asks for the value in force; so does what has no name. */
 
 static enum rfc2217_event set_baud(struct rfc2217 *port, const uint8_t *value, size_t length)
 {
     uint32_t baud = 0;
     for (size_t i = 0; length >= 4 && i < 4; i++)
         baud = baud << 8 | value[i];
-    if (baud != 0)
+    bool changed = baud != 0 && baud != port->baud;
+    if (changed)
         port->baud = baud;
     uint8_t now[4];
     for (unsigned i = 0; i < 4; i++)
         now[i] = (uint8_t)(port->baud >> (24 - 8 * i));
     answer(port, SET_BAUDRATE, now, sizeof now);
-    return baud != 0 ? RFC2217_SETTINGS : RFC2217_NOTHING;
+    return changed ? RFC2217_SETTINGS : RFC2217_NOTHING;
 }
 
 static enum rfc2217_event set_data_bits(struct rfc2217 *port, uint8_t value)
 {
-    bool known = value >= 5 && value <= 8;
-    if (known)
+    bool changed = value >= 5 && value <= 8 && value != port->data_bits;
+    if (changed)
         port->data_bits = value;
     answer_byte(port, SET_DATASIZE, port->data_bits);
-    return known ? RFC2217_SETTINGS : RFC2217_NOTHING;
+    return changed ? RFC2217_SETTINGS : RFC2217_NOTHING;
 }
 
 static enum rfc2217_event set_parity(struct rfc2217 *port, uint8_t value)
 {
-    bool known = value >= 1 && value <= strlen(parities);
-    if (known)
+    bool changed = value >= 1 && value <= strlen(parities) && parities[value - 1] != port->parity;
+    if (changed)
         port->parity = parities[value - 1];
     answer_byte(port, SET_PARITY, (uint8_t)(strchr(parities, port->parity) - parities + 1));
-    return known ? RFC2217_SETTINGS : RFC2217_NOTHING;
+    return changed ? RFC2217_SETTINGS : RFC2217_NOTHING;
 }
 
 static enum rfc2217_event set_stop_bits(struct rfc2217 *port, uint8_t value)
 {
-    bool known = value >= 1 && value <= 3;
-    if (known)
+    bool changed = value >= 1 && value <= 3 && value != port->stop_bits;
+    if (changed)
         port->stop_bits = value;
     answer_byte(port, SET_STOPSIZE, port->stop_bits);
-    return known ? RFC2217_SETTINGS : RFC2217_NOTHING;
+    return changed ? RFC2217_SETTINGS : RFC2217_NOTHING;
 }
 
 /* One line, whose three values are `ask`, then on, then off. Returns `event` if it has changed. */

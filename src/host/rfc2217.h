@@ -17,9 +17,9 @@
 enum rfc2217_event {
     RFC2217_NOTHING,
     RFC2217_DATA,        /* `data` is data */
-    RFC2217_SETTINGS,    /* baud, data_bits, parity or stop_bits has been set */
-    RFC2217_LINES,       /* dtr or rts has been set */
-    RFC2217_BREAK,       /* `breaking` has been set */
+    RFC2217_SETTINGS,    /* baud, data_bits, parity or stop_bits has changed */
+    RFC2217_LINES,       /* dtr or rts has changed */
+    RFC2217_BREAK,       /* `breaking` has changed */
     RFC2217_BREAK_PULSE, /* a break of no given length */
     RFC2217_PURGE,       /* `purge` says what is to be forgotten */
     RFC2217_FLOW         /* `suspended` has been set */
