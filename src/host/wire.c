@@ -121,7 +121,7 @@ static void forget(struct wire *wire, uint64_t time)
             time = wire->ear[ear].fall;
     for (unsigned i = 0; i < wire->count;) {
         uint64_t end = wire->signal[i].end;
-        if (end >= time) {
+        if (end + 1u >= time) {
             i++;
             continue;
         }
