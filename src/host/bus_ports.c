@@ -267,6 +267,19 @@ static void net_bytes(void *context, const uint8_t *bytes, size_t length)
         bus_catch_up(bus);
 }
 
+/* Who has the line, for one who comes over TCP. */
+static const char *net_owner(void *context)
+{
+    struct bus *bus = context;
+    const struct bus_ports *ports = &bus->ports;
+    if (ports->line.watch)
+        line_watch_follow(ports->line.watch); /* somebody may have closed the pty just now */
+    if (bus->options->pty && ports->line.clients > 0)
+        return "a client of the pty";
+    const char *owner = ports->tcp ? net_port_client(ports->tcp) : NULL;
+    return !owner && ports->rfc2217 ? net_port_client(ports->rfc2217) : owner;
+}
+
 static void net_told(void *context, enum net_news news, const char *peer)
 {
     struct bus *bus = context;
@@ -316,6 +329,7 @@ static const struct net_port_calls net_calls = {
     .bytes = net_bytes,
     .room = net_room,
     .news = net_told,
+    .owner = net_owner,
     .settings = net_settings,
     .line_break = net_break,
     .purge = net_purge,

@@ -81,6 +81,27 @@ test_with_a_link_there_is_a_pty_beside_tcp() {
     holds "$said" "motor 1: 25" "over TCP the same unit"
 }
 
+# sent_away KEY: whoever comes by this way is told that the line is in use.
+sent_away() {
+    exec 4<>"/dev/tcp/127.0.0.1/$(address "$1" | sed 's/.*://')"
+    holds "$(timeout "$limit" cat <&4)" "refused: the line is in use by $2" "what a second client by $1 is told"
+    exec 4>&-
+}
+
+test_one_client_has_the_line_whatever_way_it_came() {
+    serve bus --tcp 0 --rfc2217 0
+    exec 3<>"$folder/bus"
+    sent_away tcp "a client of the pty"
+    sent_away rfc2217 "a client of the pty"
+    exec 3>&-
+    exec 3<>"/dev/tcp/127.0.0.1/$(address tcp | sed 's/.*://')"
+    dialogue 3 "$request" "$answer" "the client over TCP has the line"
+    sent_away rfc2217 127.0.0.1
+    sent_away tcp 127.0.0.1
+    dialogue 3 "$request" "$answer" "the client over TCP still has the line"
+    exec 3>&-
+}
+
 test_each_line_has_a_tcp_port_of_its_own() {
     start bus "$RKM04" serve --tcp 0 --lines 2 --clock max
     soon "the lines are ready" ready bus
