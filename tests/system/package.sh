@@ -12,7 +12,7 @@ skip() {
 }
 
 [[ $(id -u) == 0 ]] || skip "dpkg installs only for root"
-for tool in dpkg dpkg-deb dpkg-shlibdeps cpack gzip; do
+for tool in dpkg dpkg-deb dpkg-shlibdeps cpack file gzip; do
     command -v "$tool" >/dev/null || skip "$tool is not installed"
 done
 
