@@ -15,7 +15,7 @@ static const char help[] =
     "  or:  rkm04 exec [OPTION...] [M=]FILE...\n"
     "A virtual RKM04, the unit for four stepper motors on RS485.\n"
     "\n"
-    "  serve      one unit on a pseudo terminal or serial device, in real time\n"
+    "  serve      units on a line: pseudo terminal, serial device or TCP, in real time\n"
     "  exec       run programs in virtual time, as fast as the machine can\n"
     "\n"
     "      --help      give this help; `rkm04 serve --help' tells more about serve\n"
@@ -23,9 +23,11 @@ static const char help[] =
     "\n"
     "Examples:\n"
     "  rkm04 serve --node 3 --flash unit3.flash\n"
+    "  rkm04 serve --node 1-16 --tcp 4001\n"
     "  rkm04 exec --trace pulses.csv program.rks\n"
     "\n"
-    "Exit status: 0 well, 1 failure at run time, 2 usage, 124 --until of exec reached with a motor still running.\n";
+    "Exit status: 0 well, 1 failure at run time, 2 usage, 4 less than --min-coverage of serve, 124 --until of exec reached "
+    "with a motor still running.\n";
 
 static const struct {
     const char *name, *full_name;
