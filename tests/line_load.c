@@ -83,8 +83,9 @@ static void check_answer(uint64_t asked, uint8_t node)
         memcpy(text, load.message + 2 + motor * field + 1, field - 1);
         int64_t position = strtol(text, NULL, 10);
         bool ramp = asked < load.begun + RAMP_THIRDS / 3 + 1 || position > STEPS - RAMP;
-        ck_assert_msg(position <= STEPS && (ramp || position == expected_steps(asked)), "unit %u, motor %zu: %lld steps at tick %llu, expected %lld", node,
-                      motor + 1, (long long)position, (unsigned long long)asked, (long long)expected_steps(asked));
+        ck_assert_msg(position <= STEPS && (ramp || position == expected_steps(asked)),
+                      "unit %u, motor %zu: %lld steps at tick %llu, expected %lld", node, motor + 1, (long long)position,
+                      (unsigned long long)asked, (long long)expected_steps(asked));
     }
     load.right++;
 }

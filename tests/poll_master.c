@@ -4,8 +4,8 @@
  *     poll_master PTY UNITS STEPS SECONDS
  *
  * PTY: the line; UNITS: addresses 1..UNITS are there; STEPS: of every motor; SECONDS: of real time, after which it stops anyway.
- * Prints {"polls":…,"answers":…,"wrong":…,"arrived":…,"seconds":…} and exits with 0 if every poll was answered well, and, unless
- * SECONDS were over first, every motor stands at STEPS. */
+ * Prints {"polls":…,"answers":…,"wrong":…,"arrived":…,"seconds":…}: how many polls were answered, how many of the answers were
+ * wrong, how many motors stand at STEPS. Exits with 0 if every poll was answered and nothing was wrong. */
 #include <fcntl.h>
 #include <inttypes.h>
 #include <poll.h>

@@ -311,6 +311,20 @@ bool bus_start(struct bus *bus)
     return true;
 }
 
+bool bus_power(struct bus *bus, const char *name, bool on)
+{
+    for (unsigned at = 0; at < bus->segment.units; at++) {
+        if (strcmp(bus->unit[at].name, name) != 0)
+            continue;
+        bus_catch_up(bus);
+        segment_power(&bus->segment, bus->unit[at].number, on);
+        bus_log(bus, "unit %s: power %s", name, on ? "on" : "off");
+        bus_catch_up(bus);
+        return true;
+    }
+    return false;
+}
+
 bool bus_end(struct bus *bus)
 {
     bool well = true;

@@ -68,6 +68,9 @@ bool bus_start(struct bus *bus);
 bool bus_end(struct bus *bus);
 void bus_free(struct bus *bus);
 
+/* The power switch of a unit, by its name ("3", "3-2"), now. Returns false if there is no such unit. */
+bool bus_power(struct bus *bus, const char *name, bool on);
+
 /* ---- For the ports ---------------------------------------------------------------------------------------------------- */
 
 /* The present tick, for the log; the units may be behind it while nobody looks. */

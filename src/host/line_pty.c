@@ -2,8 +2,8 @@
  * poll() return at once, for ever) and the settings stay within reach; who comes and goes is told by inotify.
  *
  * inotify merges equal notices that follow each other, so counting them may err when two clients come or go together. Hence
- * whether anybody is left is looked up whenever one closes it: with our own slave closed for a moment, the master tells by a hang-up
- * whether anybody else has the slave open. */
+ * whether anybody is left is looked up whenever one closes it: with our own slave closed for a moment, the master tells by a
+ * hang-up whether anybody else has the slave open. */
 #include "line.h"
 
 #include <errno.h>

@@ -13,8 +13,8 @@ struct link_path {
     int lock;        /* -1: not ours */
 };
 
-/* Take the name `path` (NULL: the default, $XDG_RUNTIME_DIR/rkm04/busNUMBER or a private folder under the temporary directory), and
- * remove a stale link of our own there. Whatever else stands there is left alone, and refused. Failures are reported.
+/* Take the name `path` (NULL: the default, $XDG_RUNTIME_DIR/rkm04/busNUMBER or a private folder under the temporary directory),
+ * and remove a stale link of our own there. Whatever else stands there is left alone, and refused. Failures are reported.
  * Returns false if the name cannot be had. */
 bool link_path_claim(struct link_path *link, const char *path, unsigned number);
 

@@ -13,6 +13,7 @@
 #include "coverage.h"
 #include "log.h"
 #include "notify.h"
+#include "serve_commands.h"
 #include "serve_options.h"
 #include "serve_report.h"
 #include "subcommands.h"
@@ -28,6 +29,7 @@ struct serve {
     struct bus *bus[SERVE_LINES_MAX];
     struct line_watch watch;
     struct coverage coverage;
+    struct serve_commands commands;
     enum exit_status status;
 
     uv_loop_t loop;
@@ -162,7 +164,9 @@ static bool start(struct serve *serve)
         return false;
     serve->idle.data = serve;
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
-        !start_signals(serve) || !serve_report_ready(options, serve->bus))
+        !start_signals(serve) ||
+        (options->commands && !serve_commands_start(&serve->commands, &serve->loop, options, serve->bus)) ||
+        !serve_report_ready(options, serve->bus))
         return false;
     on_presence(serve);
     return true;

@@ -35,6 +35,7 @@ enum key {
     KEY_STRICT_LINE,
     KEY_EXIT_WHEN_IDLE,
     KEY_READY_FD,
+    KEY_COMMANDS,
     KEY_COVERAGE,
     KEY_MIN_COVERAGE
 };
@@ -42,7 +43,8 @@ enum key {
 static const struct argp_option table[] = {
     {NULL, 0, NULL, 0, "The units:", 1},
     {"node", KEY_NODE, "LIST", 0,
-     "Addresses (DNode) of the units on the line, 1 to 16, as in 3 or 1,2,5-8; default 1. The same address may be given twice", 0},
+     "Addresses (DNode) of the units on the line, 1 to 16, as in 3 or 1,2,5-8; default 1. The same address may be given twice",
+     0},
     {"flash", KEY_FLASH, "FILE", 0,
      "Flash image of a unit; made if it is not there. %n in it stands for the unit's address, %l for the number of the line. "
      "Without it stored programs live as long as the emulator", 0},
@@ -59,7 +61,8 @@ static const struct argp_option table[] = {
      "Who turns the driver of an RS485 device on while units send: driver (default), the kernel's if it can, else the adapter; "
      "toggles: RTS is on while bytes go out", 0},
     {"tcp", KEY_TCP, "HOST:PORT", 0,
-     "Offer the line over TCP, raw; default host 127.0.0.1, port 0 for a free one. Then there is no pty unless --link is given", 0},
+     "Offer the line over TCP, raw; default host 127.0.0.1, port 0 for a free one. Then there is no pty unless --link is given",
+     0},
     {"rfc2217", KEY_RFC2217, "HOST:PORT", 0, "The same with settings, purge, break and modem lines by RFC 2217", 0},
     {"framing", KEY_FRAMING, "NAME", 0, "hdlc (default) or plain", 0},
     {"baud", KEY_BAUD, "RATE", 0, "19200 (default): each byte takes its 520.8 us, both ways; 0: bytes take no time", 0},
@@ -79,6 +82,9 @@ static const struct argp_option table[] = {
     {"exit-when-idle", KEY_EXIT_WHEN_IDLE, "SECONDS", OPTION_ARG_OPTIONAL,
      "End when nobody has had the line open for so many seconds of real time, 0 to 86400; default 10. With --port: when "
      "nothing has come in", 0},
+    {"commands", KEY_COMMANDS, NULL, 0,
+     "Read commands from stdin, a pipe or terminal, one a line: `power off 3' and `power on 3' are the power switch of unit 3; "
+     "`power off 2/3' is on line 2", 0},
     {"coverage", KEY_COVERAGE, "FILE", 0,
      "At the end write what clients have exercised out of all messages, commands, flags and faults, as text, and to FILE.json",
      0},
@@ -316,6 +322,9 @@ static error_t read_option(int key, char *text, struct argp_state *state)
     case KEY_EXIT_WHEN_IDLE:
         options->exit_when_idle = true;
         options->idle_seconds = text ? number("exit-when-idle", text, 0, IDLE_MAX, " of seconds", state) : IDLE_DEFAULT;
+        return 0;
+    case KEY_COMMANDS:
+        options->commands = true;
         return 0;
     case KEY_COVERAGE:
         options->coverage = read_path("coverage", text, state);

@@ -32,6 +32,7 @@ struct serve_options {
     bool strict_line;
     bool exit_when_idle;
     unsigned idle_seconds;      /* of --exit-when-idle */
+    bool commands;              /* on stdin */
     int ready_fd;               /* -1: none */
 };
 
