@@ -69,7 +69,8 @@ static bool read_address(struct address *address, const char *text)
         host++;
         length -= 2;
     }
-    if (length >= HOST_SIZE || (!address->ipv6 && memchr(host, ':', length)) || !read_port(address->port))
+    bool strange = !address->ipv6 && (memchr(host, ':', length) || memchr(host, '[', length));
+    if (length >= HOST_SIZE || strange || !read_port(address->port))
         return false;
     snprintf(address->host, sizeof address->host, "%.*s", length > 0 ? (int)length : HOST_SIZE, length > 0 ? host : DEFAULT_HOST);
     return true;
@@ -401,10 +402,10 @@ static void attach(struct net_port *port, struct net_peer *peer)
 }
 
 /* The text of the refusal has to arrive, so what the peer sends is read until it has closed its side, or for a while. */
-static void refuse(struct net_port *port, struct net_peer *peer)
+static void refuse(struct net_port *port, struct net_peer *peer, const char *owner)
 {
     peer->state = PEER_REFUSED;
-    int length = snprintf((char *)peer->wire, NET_WIRE, "rkm04: refused: the line is in use by %s\r\n", port->client->name);
+    int length = snprintf((char *)peer->wire, NET_WIRE, "rkm04: refused: the line is in use by %.200s\r\n", owner);
     uv_buf_t text = uv_buf_init((char *)peer->wire, (unsigned)length);
     if (uv_try_write((uv_stream_t *)&peer->tcp, &text, 1) != length ||
         uv_shutdown(&peer->shutdown, (uv_stream_t *)&peer->tcp, NULL) != 0 ||
@@ -413,6 +414,11 @@ static void refuse(struct net_port *port, struct net_peer *peer)
     else
         uv_timer_start(&peer->timer, on_linger, LINGER_MS, 0);
     port->calls->news(port->context, NET_REFUSED, peer->name);
+}
+
+const char *net_port_client(const struct net_port *port)
+{
+    return port->client && port->client->state == PEER_CLIENT ? port->client->name : NULL;
 }
 
 static struct net_peer *free_peer(struct net_port *port)
@@ -452,8 +458,11 @@ static void accept_next(struct net_port *port)
     name_peer(peer);
     if (port->client && port->client->state == PEER_LEAVING)
         detach(port);
-    if (port->client)
-        refuse(port, peer);
+    const char *owner = net_port_client(port);
+    if (!owner && port->calls->owner)
+        owner = port->calls->owner(port->context);
+    if (owner)
+        refuse(port, peer, owner);
     else
         attach(port, peer);
 }

@@ -39,6 +39,8 @@ struct net_port_calls {
     size_t (*room)(void *context);
     /* `peer`: "127.0.0.1:40123". */
     void (*news)(void *context, enum net_news news, const char *peer);
+    /* Who else has the line (by another way than this port), so that a client has to be refused; NULL: nobody. */
+    const char *(*owner)(void *context);
     /* RFC 2217: the client has changed its port. A client that attaches has 19200 8N1 and sets one thing after the other: what
      * counts is what stands when bytes come. parity: N O E M S; stop_bits: 1, 2, or 3 for 1.5. */
     void (*settings)(void *context, uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits);
@@ -103,6 +105,9 @@ bool net_address_valid(const char *address);
  * must stay until it is closed and the loop has run out. Failures are reported. Returns false if it did not work. */
 bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, enum net_kind kind,
                    const struct net_port_calls *calls, void *context);
+
+/* The name of the client that has the line; NULL: nobody, or one that has closed its own side and gives way to any other. */
+const char *net_port_client(const struct net_port *port);
 
 /* There may be room() again. Not needed after bytes(). */
 void net_port_wake(struct net_port *port);
