@@ -1,0 +1,135 @@
+#!/bin/bash
+# The line over TCP: where it listens, who gets in, what is left when somebody ends.
+
+. "$(dirname "$0")/lib.sh"
+
+version="01.02,06.03.2009"
+
+# serve_tcp OPTIONS...: a unit that is reached over TCP alone; $address is where.
+serve_tcp() {
+    start bus "$RKM04" serve "$@"
+    soon "the unit is ready" ready bus
+    address=$(sed -n 's/^READY .*"\(tcp\|rfc2217\)":"\([^"]*\)".*/\2/p' "$folder/bus.out")
+}
+
+# connect: descriptor 3 is a connection to the unit.
+connect() {
+    exec 3<>"/dev/tcp/${address%:*}/${address##*:}" || fail "cannot connect to $address"
+}
+
+logged() {
+    [[ $(grep -c "$1" "$folder/bus.err") == "$2" ]]
+}
+
+test_port_0_is_a_free_one_of_this_machine() {
+    serve_tcp --tcp 0
+    [[ $address =~ ^127\.0\.0\.1:[1-9][0-9]*$ ]] || fail "the address: '$address'"
+    holds "$(<"$folder/bus.out")" '"pty":null' "there is no pty"
+    exits 0 "$RKMCTL" -p "tcp:$address" version
+    holds "$said" "$version" "over TCP"
+}
+
+test_the_client_may_close_and_connect_again_at_will() {
+    local i
+    serve_tcp --tcp localhost:0
+    for i in 1 2 3 4 5; do
+        exits 0 "$RKMCTL" -p "tcp:$address" version
+        holds "$said" "$version" "time $i"
+    done
+}
+
+test_an_IPv6_address_stands_in_brackets() {
+    [[ -e /proc/net/if_inet6 ]] && grep -q '^0*1 ' /proc/net/if_inet6 || return 0 # this machine has none
+    serve_tcp --tcp '[::1]:0'
+    [[ $address =~ ^\[::1\]:[1-9][0-9]*$ ]] || fail "the address: '$address'"
+    exits 0 "$RKMCTL" -p "tcp:$address" version
+    holds "$said" "$version" "over IPv6"
+}
+
+test_pty_and_TCP_reach_the_same_unit() {
+    serve bus --tcp 127.0.0.1:0 --clock max
+    address=$(sed -n 's/^READY .*"tcp":"\([^"]*\)".*/\1/p' "$folder/bus.out")
+    exits 0 ctl bus -m 2 set 'F500 R'
+    soon "the motor has arrived" position_is bus 2 500
+    exits 0 "$RKMCTL" -p "tcp:$address" -m 2 position
+    same "motor 2: 500" "$said" "over TCP"
+}
+
+test_an_address_that_is_none_is_wrong_usage() {
+    local wrong
+    for wrong in '' 4000x 65536 ::1 localhost '[::1]' 1:2:3; do
+        exits 2 "$RKM04" serve --tcp "$wrong"
+        holds "$complained" "HOST:PORT" "what was expected instead of '$wrong'"
+        exits 2 "$RKM04" serve --rfc2217 "$wrong"
+    done
+}
+
+test_an_address_in_use_is_a_failure() {
+    serve_tcp --tcp 0
+    exits 1 "$RKM04" serve --tcp "$address"
+    holds "$complained" "$address" "the message"
+    holds "$complained" "another program listens there" "the message"
+    exits 0 "$RKMCTL" -p "tcp:$address" version
+}
+
+test_a_host_that_is_not_here_is_a_failure() {
+    exits 1 "$RKM04" serve --tcp 192.0.2.1:0
+    holds "$complained" 192.0.2.1 "the message"
+}
+
+test_a_client_that_is_killed_leaves_the_line_to_the_next() {
+    local kind
+    for kind in tcp rfc2217; do
+        serve_tcp --$kind 0
+        start client bash -c "exec 3<>/dev/tcp/127.0.0.1/${address##*:}; read -rd '' <&3"
+        soon "the client is there" logged 'has opened the line' 1
+        kill -KILL "$started"
+        status_of "$started" 2>/dev/null
+        soon "the client has gone" logged 'has closed the line' 1
+        connect
+        soon "the next is there" logged 'has opened the line' 2
+        exec 3>&-
+    done
+}
+
+test_a_client_hears_that_the_emulator_has_ended() {
+    local unit
+    serve_tcp --tcp 0
+    unit=$started
+    connect
+    soon "the client is there" logged 'has opened the line' 1
+    kill "$unit"
+    same "" "$(hear_bytes 3 1)" "the end of the connection"
+    exec 3>&-
+}
+
+test_frames_over_TCP_are_the_same_byte_for_byte() {
+    serve_tcp --tcp 0
+    connect
+    dialogue 3 "7e 01 00 08 58 10 7e" "7e 00 01 ff 08 00 00 db ff 7e" "an unknown message"
+    exec 3>&-
+}
+
+test_RFC_2217_doubles_FF_and_acknowledges_settings() {
+    serve_tcp --rfc2217 0
+    connect
+    dialogue 3 "" "fffb00 fffd00 fffb03 fffd2c" "what the server wants"
+    dialogue 3 "fffb2c" "fffa2c6bb0fff0" "COM-PORT-OPTION is agreed"
+    dialogue 3 "fffa2c 01 00004b00 fff0" "fffa2c 65 00004b00 fff0" "19200 baud"
+    dialogue 3 "7e 01 00 08 58 10 7e" "7e 00 01 ff ff 08 00 00 db ff ff 7e" "an unknown message"
+    exec 3>&-
+}
+
+test_random_bytes_do_no_harm() {
+    local kind
+    for kind in tcp rfc2217; do
+        serve_tcp --$kind 0 --baud 0
+        head -c 300000 /dev/urandom | timeout "$limit" socat -u - "TCP:$address" || fail "$kind: cannot send"
+        soon "the client has gone" logged 'has closed the line' 1
+        connect
+        soon "the next is there" logged 'has opened the line' 2
+        exec 3>&-
+    done
+}
+
+run_cases "$@"
