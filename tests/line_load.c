@@ -146,7 +146,7 @@ int main(void)
 {
     Suite *suite = suite_create("line_load");
     TCase *load_case = tcase_create("load");
-    tcase_set_timeout(load_case, 200);
+    tcase_set_timeout(load_case, 500);
     tcase_add_test(load_case, U3_U7_sixteen_units_at_full_speed_polled_without_a_pause_lose_no_step_and_no_answer);
     suite_add_tcase(suite, load_case);
     SRunner *runner = srunner_create(suite);

@@ -57,9 +57,11 @@ static void look(struct bus *bus)
 
 /* ---- To the units --------------------------------------------------------------------------------------------------- */
 
+/* Bytes of the client that can be taken. Each may be heard as several, and one more when it falls silent. */
 static size_t room(const struct bus *bus)
 {
-    return strict(bus) ? bus_room(bus) / LINE_EAR_MAX : bus_room(bus);
+    size_t most = bus_room(bus);
+    return !strict(bus) ? most : most > 0 ? (most - 1) / LINE_EAR_MAX : 0;
 }
 
 static void take_heard(struct bus *bus, const struct line_heard *heard, size_t number)
