@@ -320,6 +320,7 @@ void profile_change_speed(struct rkm04_motion *motion, uint64_t tick, uint16_t s
         return;
     struct state state = present(motion, tick);
     motion->segment[state.segment].speed = speed;
+    motion->changed = true;
     mark_present(&motion->profile);
     plan_from(motion, state);
     ramp_go_on(&motion->ramp, &motion->profile, tick);
@@ -333,12 +334,21 @@ struct stop {
     uint32_t step;
 };
 
-/* Steps from stop->step to the end of the ramp at this acceleration, rounded up. What lies less than the tolerance above a
- * whole number counts as that number: rational ways cannot come so near, irrational ones shall (R5). */
-static uint32_t steps_of_stop(const struct stop *stop, uint16_t acceleration, bool exact)
+/* What lies less than this above a whole number of steps counts as that number. Irrational ways shall (R5), rational ones
+ * only as far as they were rounded: by a few units, or after a change of speed, whose place is kept with 2^-34 of speed2, by
+ * a hundred at each; the next rational way above a whole number then is 4 000 000 units off. */
+static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint64_t unit)
+{
+    if (!motion->ramp.exact)
+        return unit / 1000000;
+    return motion->changed ? 100000 : 8;
+}
+
+/* Steps from stop->step to the end of the ramp at this acceleration, rounded up. */
+static uint32_t steps_of_stop(const struct rkm04_motion *motion, const struct stop *stop, uint16_t acceleration)
 {
     const uint64_t unit = (uint64_t)4 * acceleration * (uint64_t)RAMP_STEP;
-    const uint64_t tolerance = exact ? 1000000 : unit / 1000000;
+    const uint64_t tolerance = tolerance_of_stop(motion, unit);
     uint64_t short_of = (uint64_t)-stop->offset;
     if (stop->energy.high == 0 && stop->energy.low <= short_of)
         return 0;
@@ -357,7 +367,7 @@ static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, stru
         uint16_t acceleration = motion->segment[state->segment].acceleration;
         uint64_t factor = (uint64_t)4 * acceleration;
         stop.offset = y.whole * (int64_t)factor + (int64_t)wide_high(y.part, factor);
-        uint32_t last = stop.step + steps_of_stop(&stop, acceleration, motion->ramp.exact);
+        uint32_t last = stop.step + steps_of_stop(motion, &stop, acceleration);
         add_break(&motion->profile, state->at, state->q, -(int32_t)acceleration);
         if (motion->kind != RKM04_MOTION_STEPS)
             return last;
