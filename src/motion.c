@@ -217,16 +217,6 @@ static void count_pulses(struct rkm04_motor *motor, uint32_t count)
     motor->motion.done += count;
 }
 
-static void send_pulses(struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count)
-{
-    void (*step)(void *, uint64_t, unsigned, int32_t) = unit->port->step;
-    void *context = unit->context;
-    uint32_t position = (uint32_t)motor->position, way = motor->motion.forward ? 1 : UINT32_MAX;
-    unsigned number = motor_number(unit, motor);
-    for (const uint64_t *end = tick + count; tick < end; tick++)
-        step(context, *tick, number, (int32_t)(position += way));
-}
-
 /* Send up to `room` pulses due up to `limit`, and end the motion at its last one. */
 static void run_pulses(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit, uint32_t room)
 {
@@ -237,7 +227,7 @@ static void run_pulses(struct rkm04_unit *unit, struct rkm04_motor *motor, uint6
     if (count > 0) {
         motor->last_pulse = tick[count - 1];
         if (pulses_are_seen(unit))
-            send_pulses(unit, motor, tick, count);
+            report_steps(unit, motor, tick, count);
         count_pulses(motor, (uint32_t)count);
     }
     if (motion->ramp.next == RKM04_NEVER)
