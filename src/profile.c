@@ -93,6 +93,14 @@ static uint64_t energy(uint16_t acceleration, struct rkm04_place from, struct rk
     return lower(2 * Q_MAX, gain.high << 2 | gain.low >> 62);
 }
 
+#define ROUNDING 64u /* differences of q up to this are none; those that a plan means are millions of times as large */
+
+/* Is there a way between two places? */
+static bool stretches(uint16_t acceleration, struct rkm04_place from, struct rkm04_place to)
+{
+    return before(from, to) && energy(acceleration, from, to) > ROUNDING;
+}
+
 /* ---- The table of break points -------------------------------------------------------------------------------------- */
 
 /* Append a break point; where nothing bends, none is needed. The first of a plan, at profile->leg, always is one. The oldest
@@ -147,15 +155,17 @@ static unsigned segment_at(const struct rkm04_motion *motion, struct rkm04_place
 }
 
 /* Adds the break points that bring a present speed to the limit of its segment; leaves in *state where that is done, at the
- * end of the segment at the latest. At or below S a change happens at once (R6). */
-static void reach_limit(struct rkm04_motion *motion, struct state *state, struct rkm04_place end, uint64_t limit)
+ * end of the segment at the latest. At or below S a change happens at once (R6), up to a speed from which the segment's end can
+ * be reached with speed `leave`. */
+static void reach_limit(struct rkm04_motion *motion, struct state *state, struct rkm04_place end, uint64_t limit, uint64_t leave)
 {
     struct rkm04_profile *profile = &motion->profile;
     uint16_t acceleration = motion->segment[state->segment].acceleration;
     uint64_t jump = q_of(motion->start_speed);
-    if (state->moving && state->q < limit && state->q < jump) {
+    uint64_t at_once = lower(lower(limit, jump), raised(leave, energy(acceleration, state->at, end)));
+    if (state->moving && at_once > state->q + ROUNDING) {
         add_break(profile, state->at, state->q, 0);
-        state->q = lower(limit, jump);
+        state->q = at_once;
         return;
     }
     if (state->q <= limit)
@@ -190,7 +200,7 @@ static void plan_segment(struct rkm04_motion *motion, const struct state *state,
         top = ahead(state->at, peak - state->q, segment->acceleration);
     }
     struct rkm04_place fall = peak > leave ? behind(end, peak - leave, segment->acceleration) : end;
-    if (peak == limit && before(top, fall))
+    if (peak == limit && stretches(segment->acceleration, top, fall))
         add_break(profile, top, peak, 0);
     else
         fall = top;
@@ -224,7 +234,7 @@ static void plan_steps(struct rkm04_motion *motion, struct state state)
     for (; state.segment < motion->segments; state.segment++) {
         uint16_t acceleration = motion->segment[state.segment].acceleration;
         end = end_of(motion, state.segment);
-        reach_limit(motion, &state, end, q_of(motion->segment[state.segment].speed));
+        reach_limit(motion, &state, end, q_of(motion->segment[state.segment].speed), leave[state.segment]);
         uint64_t gain = energy(acceleration, state.at, end);
         uint64_t out = lower(leave[state.segment], raised(state.q, gain));
         if (out < lowered(state.q, gain)) /* a present speed that cannot be braked in time */
@@ -242,7 +252,7 @@ static void plan_endless(struct rkm04_motion *motion, struct state state)
 {
     uint64_t limit = q_of(motion->segment[0].speed);
     uint16_t acceleration = motion->segment[0].acceleration;
-    reach_limit(motion, &state, (struct rkm04_place){UINT64_MAX, UINT64_MAX}, limit);
+    reach_limit(motion, &state, (struct rkm04_place){UINT64_MAX, UINT64_MAX}, limit, limit);
     if (state.q < limit) {
         add_break(&motion->profile, state.at, state.q, acceleration);
         state.at = ahead(state.at, limit - state.q, acceleration);
@@ -301,10 +311,16 @@ static struct state present(const struct rkm04_motion *motion, uint64_t tick)
     return state;
 }
 
+/* Does the speed only fall from here to the end? */
 static bool on_final_ramp(const struct rkm04_motion *motion)
 {
     const struct rkm04_profile *profile = &motion->profile;
-    return !profile->endless && profile->leg + 2 == profile->count && motion->ramp.slope < 0;
+    if (profile->endless)
+        return false;
+    for (unsigned i = profile->leg; i + 1u < profile->count; i++)
+        if (profile->point[i].slope >= 0)
+            return false;
+    return true;
 }
 
 /* Keep the points that were passed; the next one added is where the motion is now. */
@@ -396,7 +412,6 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
     struct state state = present(motion, tick);
     uint64_t q_end = q_of(motion->start_speed);
     mark_present(profile);
-    const uint64_t rounding = 64; /* of q, far below the smallest rest of a step that can occur */
     uint32_t last;
     if (state.q <= q_end) {
         last = (uint32_t)(state.at.high >> 32) + ((uint32_t)state.at.high != 0 || state.at.low != 0);
@@ -406,7 +421,7 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
         last = plan_stop(motion, &state, y, w);
         uint16_t acceleration = motion->segment[state.segment].acceleration;
         struct rkm04_place slow = ahead(state.at, lowered(state.q, q_end), acceleration);
-        if (before(slow, place_at(last)) && energy(acceleration, slow, place_at(last)) > rounding)
+        if (stretches(acceleration, slow, place_at(last)))
             add_break(profile, slow, q_end, 0);
     }
     profile->endless = false;
@@ -430,6 +445,6 @@ bool profile_point(const struct rkm04_motion *motion, unsigned i, struct profile
     point->step = ramp_step_of(at->at) + !last;
     if (!profile->endless && point->step > end)
         point->step = end;
-    point->speed = last ? 0 : wide_root_of((uint32_t)(at->speed2 >> (RAMP_SPEED2_BITS + 1)));
+    point->speed = last ? 0 : wide_root_of((uint32_t)((at->speed2 + ROUNDING) >> (RAMP_SPEED2_BITS + 1)));
     return true;
 }
