@@ -46,8 +46,7 @@ static void try_compound(unsigned s, const struct ref_segment *segment, unsigned
     motion_start(&rig, 0);
     uint64_t begin = motion_compound(&rig, s, segment, n), last = begin + ref_tick(&track, track.steps);
     motion_to(&rig, last + 1000000);
-    motion_check(rig.begin == begin && rig.begins == 1 && rig.ends == 1, "began at %llu; %s", (unsigned long long)rig.begin,
-                  motion_what());
+    motion_check(rig.begin == begin && rig.begins == 1 && rig.ends == 1, "began at %" PRIu64 "; %s", rig.begin, motion_what());
     motion_expect(&rig, &track, begin, 0, 1, 1);
     motion_check(rig.position == (int32_t)track.steps, "position %d; %s", rig.position, motion_what());
     motion_check(motion_state(&rig) == RKM04_IDLE, "not idle; %s", motion_what());
@@ -78,8 +77,8 @@ START_TEST(R4_the_reference_is_the_fastest_motion_under_the_limits)
         for (int j = 0; j < 60; j++) {
             double place = (double)track.steps * (double)motion_random(1u << 30) / (1u << 30);
             double square = ref_square_at(&track, place), limit = ref_limit_at(s, segment, n, place);
-            motion_check(fabs(square - limit) <= 1e-6 * limit, "square of the speed %.9g at %.9g, limit %.9g; %s", square, place, limit,
-                          motion_what());
+            motion_check(fabs(square - limit) <= 1e-6 * limit, "square of the speed %.9g at %.9g, limit %.9g; %s", square, place,
+                         limit, motion_what());
         }
     }
 }
@@ -136,7 +135,7 @@ START_TEST(R4_random_compounds_are_within_a_tick_in_every_pulse)
         unsigned s;
         motion_randomize(motion_seed() + i);
         unsigned n = random_compound(segment, &s, i % 16 == 0 ? 3000 : 200);
-        motion_trying("compound %u of seed %llu:", i, (unsigned long long)motion_seed());
+        motion_trying("compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
         try_compound(s, segment, n);
     }
@@ -166,7 +165,7 @@ START_TEST(R4_long_compounds_do_not_drift)
         unsigned s;
         motion_randomize(motion_seed() + 7000 + i);
         unsigned n = random_compound(segment, &s, 400000);
-        motion_trying("long compound %u of seed %llu:", i, (unsigned long long)motion_seed());
+        motion_trying("long compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
         ref_plan(&track, s, segment, n);
         size_t count = 0;
@@ -176,14 +175,14 @@ START_TEST(R4_long_compounds_do_not_drift)
         motion_want(&rig, wanted, count);
         uint64_t begin = motion_compound(&rig, s, segment, n), last = begin + ref_tick(&track, track.steps);
         motion_to(&rig, last + 1000000);
-        motion_check(rig.steps == track.steps && !rig.torn, "%llu steps; %s", (unsigned long long)rig.steps, motion_what());
+        motion_check(rig.steps == track.steps && !rig.torn, "%" PRIu64 " steps; %s", rig.steps, motion_what());
         for (size_t j = 0; j < count; j++) {
             uint64_t due = begin + ref_tick(&track, wanted[j]);
-            motion_check(rig.tick[j] + 1 >= due && rig.tick[j] <= due + 1, "pulse %llu at %llu, expected %llu; %s",
-                          (unsigned long long)wanted[j], (unsigned long long)(rig.tick[j] - begin), (unsigned long long)(due - begin),
-                          motion_what());
+            motion_check(rig.tick[j] + 1 >= due && rig.tick[j] <= due + 1,
+                         "pulse %" PRIu64 " at %" PRIu64 ", expected %" PRIu64 "; %s", wanted[j], rig.tick[j] - begin,
+                         due - begin, motion_what());
         }
-        motion_check(rig.last + 1 >= last && rig.last <= last + 1, "last pulse at %llu; %s", (unsigned long long)rig.last, motion_what());
+        motion_check(rig.last + 1 >= last && rig.last <= last + 1, "last pulse at %" PRIu64 "; %s", rig.last, motion_what());
     }
 }
 END_TEST
@@ -199,11 +198,11 @@ START_TEST(R4_a_compound_of_one_segment_is_a_single_motion)
         motion_start(&rig, 0);
         uint64_t begin = motion_compound(&rig, s, &one, 1);
         motion_to(&rig, begin + ref_single_tick(s, &one, one.steps) + 1000000);
-        motion_check(rig.steps == one.steps, "%llu steps; %s", (unsigned long long)rig.steps, motion_what());
+        motion_check(rig.steps == one.steps, "%" PRIu64 " steps; %s", rig.steps, motion_what());
         for (uint64_t k = 1; k <= one.steps; k++) {
             uint64_t due = begin + ref_single_tick(s, &one, k);
-            motion_check(rig.tick[k - 1] + 1 >= due && rig.tick[k - 1] <= due + 1, "pulse %llu at %llu; %s", (unsigned long long)k,
-                          (unsigned long long)(rig.tick[k - 1] - begin), motion_what());
+            motion_check(rig.tick[k - 1] + 1 >= due && rig.tick[k - 1] <= due + 1, "pulse %" PRIu64 " at %" PRIu64 "; %s", k,
+                         rig.tick[k - 1] - begin, motion_what());
         }
     }
 }
@@ -217,7 +216,7 @@ START_TEST(P7_tables_of_random_compounds_name_every_corner)
         unsigned s;
         motion_randomize(motion_seed() + 20000 + i);
         unsigned n = random_compound(segment, &s, 3000);
-        motion_trying("compound %u of seed %llu:", i, (unsigned long long)motion_seed());
+        motion_trying("compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
         ref_plan(&track, s, segment, n);
         ref_table(&track, table, sizeof table);
@@ -259,7 +258,7 @@ START_TEST(C12_the_output_is_set_at_the_last_pulse_before_the_last_segment)
         unsigned s;
         motion_randomize(motion_seed() + 40000 + i);
         unsigned n = random_compound(segment, &s, 100);
-        motion_trying("outputs %u of seed %llu:", i, (unsigned long long)motion_seed());
+        motion_trying("outputs %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
         ref_plan(&track, s, segment, n);
         motion_start(&rig, 0);
@@ -268,9 +267,8 @@ START_TEST(C12_the_output_is_set_at_the_last_pulse_before_the_last_segment)
         uint64_t begin = motion_compound(&rig, s, segment, n), before = track.steps - segment[n - 1].steps;
         motion_to(&rig, begin + ref_tick(&track, track.steps) + 1000000);
         motion_check(rig.outputs == 0x85, "outputs %02x; %s", rig.outputs, motion_what());
-        motion_check(rig.outputs_tick == rig.tick[before - 1], "set at %llu, pulse %llu was at %llu; %s",
-                      (unsigned long long)rig.outputs_tick, (unsigned long long)before, (unsigned long long)rig.tick[before - 1],
-                      motion_what());
+        motion_check(rig.outputs_tick == rig.tick[before - 1], "set at %" PRIu64 ", pulse %" PRIu64 " was at %" PRIu64 "; %s",
+                     rig.outputs_tick, before, rig.tick[before - 1], motion_what());
         motion_expect(&rig, &track, begin, 0, 1, 1);
     }
 }
