@@ -208,18 +208,23 @@ unsigned motion_count(unsigned normal)
     return count < 1 ? 1 : (unsigned)count;
 }
 
-void motion_randomize(uint64_t seed)
-{
-    random_state = seed;
-}
-
 /* splitmix64 */
-uint64_t motion_random(uint64_t below)
+static uint64_t mixed(uint64_t z)
 {
-    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
     z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return (z ^ (z >> 31)) % below;
+    return z ^ (z >> 31);
+}
+
+void motion_randomize(uint64_t run)
+{
+    random_state = mixed(motion_seed() + 1) + mixed(run + UINT64_C(0x9e3779b97f4a7c15));
+}
+
+uint64_t motion_random(uint64_t below)
+{
+    random_state += UINT64_C(0x9e3779b97f4a7c15);
+    return mixed(random_state) % below;
 }
 
 unsigned motion_pick(unsigned low, unsigned high)

@@ -84,7 +84,8 @@ uint64_t motion_seed(void);
 /* `normal` times RKM04_TEST_SCALE (1 if not set). */
 unsigned motion_count(unsigned normal);
 
-void motion_randomize(uint64_t seed);
+/* Begin a series of random numbers that depends on the seed and this number. */
+void motion_randomize(uint64_t run);
 uint64_t motion_random(uint64_t below);
 
 /* low..high, evenly over the logarithm; the limits themselves come often. */

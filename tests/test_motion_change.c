@@ -145,7 +145,7 @@ START_TEST(C4_random_compounds_are_planned_anew)
 {
     for (unsigned i = 0; i < motion_count(30); i++) {
         struct ref_segment segment[REF_SEGMENTS];
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned n = 2 + (unsigned)motion_random(REF_SEGMENTS - 1), s = motion_pick(1, 2000);
         for (unsigned j = 0; j < n; j++)
             segment[j] = (struct ref_segment){motion_pick(1, 300), motion_pick(2, 16000), motion_pick(10, 60000)};
@@ -178,7 +178,7 @@ static uint64_t change_often(uint64_t begin, unsigned times, unsigned multiple)
 START_TEST(C4_many_changes_in_one_motion_leave_its_steps_exact)
 {
     for (unsigned i = 0; i < motion_count(400); i++) {
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         struct ref_segment m = {motion_pick(200, 3000), motion_pick(1, 3000), motion_pick(10, 60000)};
         unsigned s = motion_pick(1, 2000);
         if (i % 5 == 0)
@@ -197,7 +197,7 @@ START_TEST(R5_a_motion_whose_speed_was_changed_stops_exactly_and_resumes_with_th
 {
     unsigned near = 0;
     for (unsigned i = 0; i < motion_count(1500); i++) {
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         struct ref_segment m = {motion_pick(200, 3000), motion_pick(1, 3000), motion_pick(10, 60000)};
         unsigned s = motion_pick(1, 2000);
         if (i % 2 == 0) { /* round numbers make whole places */
@@ -238,7 +238,7 @@ END_TEST
 START_TEST(R5_after_a_change_a_place_just_above_a_whole_number_adds_a_step)
 {
     unsigned met[4] = {0};
-    motion_randomize(motion_seed() + 3);
+    motion_randomize(3);
     while (met[REF_EDGE_RATIONAL] < motion_count(150) || met[REF_EDGE_WHOLE] < motion_count(50)) {
         int64_t s = motion_pick(1, 2000), v1 = s + 1 + (int64_t)motion_random(2000), v2 = s + 1 + (int64_t)motion_random(4000);
         int64_t a = motion_pick(300, 60000), n1 = (v1 - s) * 1000 / a + 2 + (int64_t)motion_random(50);

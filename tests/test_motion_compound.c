@@ -69,7 +69,7 @@ START_TEST(R4_the_reference_is_the_fastest_motion_under_the_limits)
     for (unsigned i = 0; i < motion_count(1000); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned n = random_compound(segment, &s, 2000);
         motion_trying("compound %u:", i);
         motion_trying_segments(s, segment, n);
@@ -133,7 +133,7 @@ START_TEST(R4_random_compounds_are_within_a_tick_in_every_pulse)
     for (unsigned i = 0; i < motion_count(1200); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned n = random_compound(segment, &s, i % 16 == 0 ? 3000 : 200);
         motion_trying("compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
@@ -146,7 +146,7 @@ START_TEST(R4_a_compound_of_ten_segments_of_one_step_is_within_a_tick)
 {
     for (unsigned i = 0; i < motion_count(200); i++) {
         struct ref_segment segment[REF_SEGMENTS];
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned s = motion_pick(1, 2000);
         for (unsigned j = 0; j < REF_SEGMENTS; j++)
             segment[j] = (struct ref_segment){1, motion_pick(1, 16000), motion_pick(1, 60000)};
@@ -163,7 +163,7 @@ START_TEST(R4_long_compounds_do_not_drift)
     for (unsigned i = 0; i < motion_count(10); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + 7000 + i);
+        motion_randomize(7000 + i);
         unsigned n = random_compound(segment, &s, 400000);
         motion_trying("long compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
@@ -190,7 +190,7 @@ END_TEST
 START_TEST(R4_a_compound_of_one_segment_is_a_single_motion)
 {
     for (unsigned i = 0; i < motion_count(150); i++) {
-        motion_randomize(motion_seed() + 9000 + i);
+        motion_randomize(9000 + i);
         struct ref_segment one = {motion_pick(1, 500), motion_pick(1, 16000), motion_pick(1, 60000)};
         unsigned s = motion_pick(1, 2000);
         motion_trying("one segment %u:", i);
@@ -214,7 +214,7 @@ START_TEST(P7_tables_of_random_compounds_name_every_corner)
     for (unsigned i = 0; i < motion_count(1500); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + 20000 + i);
+        motion_randomize(20000 + i);
         unsigned n = random_compound(segment, &s, 3000);
         motion_trying("compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
@@ -233,7 +233,7 @@ START_TEST(P7_tables_of_single_motions_name_every_corner)
 {
     char table[1024];
     for (unsigned i = 0; i < motion_count(1500); i++) {
-        motion_randomize(motion_seed() + 30000 + i);
+        motion_randomize(30000 + i);
         struct ref_segment one = {motion_pick(1, 16000000), motion_pick(1, 16000), motion_pick(1, 60000)};
         unsigned s = motion_pick(1, 2000);
         motion_trying("single %u:", i);
@@ -256,7 +256,7 @@ START_TEST(C12_the_output_is_set_at_the_last_pulse_before_the_last_segment)
     for (unsigned i = 0; i < motion_count(300); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + 40000 + i);
+        motion_randomize(40000 + i);
         unsigned n = random_compound(segment, &s, 100);
         motion_trying("outputs %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);

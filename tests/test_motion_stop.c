@@ -193,7 +193,7 @@ START_TEST(R5_random_compounds_stop_exactly_in_every_slot)
 {
     for (unsigned i = 0; i < motion_count(40); i++) {
         struct ref_segment segment[REF_SEGMENTS];
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned n = 1 + (unsigned)motion_random(REF_SEGMENTS), s = motion_pick(1, 2000);
         for (unsigned j = 0; j < n; j++)
             segment[j] = (struct ref_segment){motion_pick(1, 300), motion_pick(2, 16000), motion_pick(10, 60000)};
@@ -268,7 +268,7 @@ static void stop_once(unsigned s, const struct ref_segment *segment, unsigned n,
 START_TEST(R5_a_place_just_above_a_whole_number_adds_a_step_and_a_whole_one_does_not)
 {
     unsigned above = 0, exactly = 0;
-    motion_randomize(motion_seed());
+    motion_randomize(0);
     while (above < motion_count(400) || exactly < motion_count(400)) {
         unsigned s = motion_pick(1, 2000), v = s + 1 + (unsigned)motion_random(14000), a = motion_pick(100, 60000);
         unsigned first = (unsigned)(1000.0 * (v - s) / a) + 2;
@@ -315,7 +315,7 @@ static unsigned slot_just_above(long double offset, unsigned v, unsigned first, 
 START_TEST(R5_an_irrational_place_just_above_a_whole_number_counts_as_that_number)
 {
     unsigned met = 0;
-    motion_randomize(motion_seed() + 1);
+    motion_randomize(1);
     while (met < motion_count(300)) {
         unsigned s = motion_pick(1, 2000);
         struct ref_segment two[] = {{1 + motion_random(60), 16000, motion_pick(10, 60000)}, {0, 0, motion_pick(10, 60000)}};
@@ -378,14 +378,14 @@ static unsigned stop_at_fractions(unsigned tries, long double near, unsigned mos
 
 START_TEST(R5_a_rational_place_just_above_a_whole_number_adds_a_step_in_a_compound)
 {
-    motion_randomize(motion_seed() + 2);
+    motion_randomize(2);
     ck_assert_uint_ge(stop_at_fractions(motion_count(300), 0.9e-6L, 60000), motion_count(200));
 }
 END_TEST
 
 START_TEST(R5_a_rational_place_less_than_10_to_the_minus_8_above_a_whole_number_adds_a_step)
 {
-    motion_randomize(motion_seed() + 3);
+    motion_randomize(3);
     ck_assert_uint_ge(stop_at_fractions(motion_count(150), 1e-8L, 12), 1);
 }
 END_TEST
@@ -431,7 +431,7 @@ START_TEST(C3_a_motion_held_and_resumed_many_times_makes_all_its_steps)
 {
     const struct ref_segment three[] = {{300, 700, 3000}, {500, 1500, 2500}, {200, 400, 9001}};
     for (unsigned i = 0; i < motion_count(100); i++) {
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         uint64_t begin = begin_motion(BY_K, 100, three, 3), done = 0;
         for (unsigned holds = 0; holds < 6; holds++) {
             motion_trying("hold %u of run %u", holds, i);
