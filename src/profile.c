@@ -86,7 +86,7 @@ static uint64_t energy(uint16_t acceleration, struct rkm04_place from, struct rk
 {
     struct wide way = wide_difference(wide_of(to), wide_of(from));
     uint64_t factor = (uint64_t)4 * acceleration;
-    if ((way.high >> 32) >= (2 * Q_MAX >> RAMP_SPEED2_BITS) / factor)
+    if ((way.high >> 32) > (2 * Q_MAX >> RAMP_SPEED2_BITS) / factor)
         return 2 * Q_MAX;
     /* factor * way has 96 places; keep 34 of them. */
     struct wide gain = {way.high * factor + wide_high(way.low, factor), way.low * factor};
@@ -439,10 +439,12 @@ bool profile_point(const struct rkm04_motion *motion, unsigned i, struct profile
     const struct rkm04_profile *profile = &motion->profile;
     if (i >= profile->count)
         return false;
+    /* A place planned on the way has lost up to 2^-35 of a step by rounding, a speed up to ROUNDING. */
+    const struct wide lost = {0, UINT64_C(1) << 61};
     const struct rkm04_break *at = &profile->point[i];
     bool last = !profile->endless && i + 1u == profile->count;
     uint32_t end = ramp_step_of(profile->point[profile->count - 1].at);
-    point->step = ramp_step_of(at->at) + !last;
+    point->step = ramp_step_of(place_of(wide_sum(wide_of(at->at), lost))) + !last;
     if (!profile->endless && point->step > end)
         point->step = end;
     point->speed = last ? 0 : wide_root_of((uint32_t)((at->speed2 + ROUNDING) >> (RAMP_SPEED2_BITS + 1)));
