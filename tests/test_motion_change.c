@@ -233,6 +233,50 @@ START_TEST(R5_a_motion_whose_speed_was_changed_stops_exactly_and_resumes_with_th
 }
 END_TEST
 
+/* An endless motion changes its speed in slot `from`, and is stopped by K in every slot after it. Returns how many of the
+ * stops were at a whole number of steps. */
+static unsigned stop_everywhere_after(unsigned s, const struct ref_segment *m, unsigned from, unsigned speed, unsigned slots)
+{
+    unsigned at_whole = 0;
+    uint64_t begin = begin_motion(s, m, 1, 0);
+    send_speed(speed, begin + from * SLOT);
+    motion_to(&rig, begin + from * SLOT + 1);
+    ref_change(&whole, from * SLOT, speed);
+    for (unsigned slot = from + 1; slot < from + slots; slot++) {
+        motion_trying("V%u in slot %u, K in slot %u of", speed, from, slot);
+        motion_trying_segments(s, m, 1);
+        motion_to(&rig, begin + slot * SLOT);
+        save = rig;
+        motion_send(&rig, "K");
+        ref_copy(&changed, &whole);
+        ref_stop(&changed, slot * SLOT);
+        at_whole += changed.edge == REF_EDGE_WHOLE;
+        uint64_t before = ref_steps_at(&whole, slot * SLOT), last = changed.steps ? ref_tick(&changed, changed.steps) : 0;
+        motion_to(&rig, begin + slot * SLOT + last + 2 * SLOT);
+        motion_expect(&rig, &changed, begin, 0, before > 3 ? before - 3 : 1, 1);
+        motion_check(motion_state(&rig) == RKM04_HELD, "not held; %s", motion_what());
+        rig = save;
+    }
+    return at_whole;
+}
+
+START_TEST(R5_after_a_change_a_motion_stops_exactly_in_every_slot)
+{
+    unsigned at_whole = 0;
+    const struct ref_segment even = {REF_ENDLESS, 1000, 2000}, thirds = {REF_ENDLESS, 3250, 60000};
+    const struct ref_segment odd = {REF_ENDLESS, 1501, 7919};
+    motion_randomize(5);
+    at_whole += stop_everywhere_after(100, &even, 500, 100, 700); /* to S, below it, above it */
+    at_whole += stop_everywhere_after(100, &even, 500, 50, 700);
+    at_whole += stop_everywhere_after(100, &even, 310, 400, 500);
+    at_whole += stop_everywhere_after(50, &thirds, 60, 50, 300);
+    at_whole += stop_everywhere_after(50, &thirds, 23, 25, 300);
+    at_whole += stop_everywhere_after(70, &odd, 90, 70, 400);
+    at_whole += stop_everywhere_after(70, &odd, 300, 2501, 400);
+    ck_assert_uint_ge(at_whole, 100);
+}
+END_TEST
+
 /* At constant speed V2, after a change from V1 at slot n1, x' is a multiple of 1/1000A again: find those just above a whole
  * number. */
 START_TEST(R5_after_a_change_a_place_just_above_a_whole_number_adds_a_step)
@@ -375,6 +419,7 @@ int main(void)
     tcase_set_timeout(many, 200);
     tcase_add_test(many, C4_many_changes_in_one_motion_leave_its_steps_exact);
     tcase_add_test(many, R5_a_motion_whose_speed_was_changed_stops_exactly_and_resumes_with_that_speed);
+    tcase_add_test(many, R5_after_a_change_a_motion_stops_exactly_in_every_slot);
     tcase_add_test(many, R5_after_a_change_a_place_just_above_a_whole_number_adds_a_step);
     suite_add_tcase(suite, many);
     TCase *when = tcase_create("when");

@@ -337,6 +337,32 @@ START_TEST(R5_an_irrational_place_just_above_a_whole_number_counts_as_that_numbe
 }
 END_TEST
 
+/* At a speed up to S the place itself is what counts: x' = x. */
+START_TEST(R5_at_a_speed_up_to_S_an_irrational_place_just_above_a_whole_number_counts_as_that_number)
+{
+    unsigned met = 0;
+    motion_randomize(4);
+    while (met < motion_count(200)) {
+        unsigned s = motion_pick(20, 2000);
+        struct ref_segment two[] = {{1 + motion_random(60), 16000, motion_pick(10, 60000)},
+                                    {0, 1 + (unsigned)motion_random(s), motion_pick(10, 60000)}};
+        long double v = two[1].speed, a = two[0].acceleration;
+        long double peak = sqrtl(((long double)s * s + v * v) / 2 + a * (long double)two[0].steps), time = (2 * peak - s - v) / a;
+        if (two[1].speed % 2 == 0 || two[1].speed % 5 == 0 || peak > 16000 || floorl(2 * peak) == 2 * peak || time > 3)
+            continue;
+        if ((s * s - v * v) / (2 * a) > (long double)two[0].steps) /* V2 cannot be reached from S */
+            continue;
+        long double offset = (long double)two[0].steps - v * time;
+        unsigned slot = slot_just_above(offset, two[1].speed, (unsigned)(time * 1000) + 2, 0.9e-6L);
+        if (slot == 0)
+            continue;
+        two[1].steps = two[1].speed * (slot / 1000 + 3);
+        stop_once(s, two, 2, slot, REF_EDGE_IRRATIONAL);
+        met++;
+    }
+}
+END_TEST
+
 /* Stops in the second segment, at constant speed, where x' lies less than `near` above a whole number; returns how many
  * really do. The lower the second acceleration, the nearer to a whole number may a fraction come. */
 static unsigned stop_at_fractions(unsigned tries, long double near, unsigned most_acceleration)
@@ -494,6 +520,7 @@ int main(void)
     tcase_set_timeout(edge, 200);
     tcase_add_test(edge, R5_a_place_just_above_a_whole_number_adds_a_step_and_a_whole_one_does_not);
     tcase_add_test(edge, R5_an_irrational_place_just_above_a_whole_number_counts_as_that_number);
+    tcase_add_test(edge, R5_at_a_speed_up_to_S_an_irrational_place_just_above_a_whole_number_counts_as_that_number);
     tcase_add_test(edge, R5_a_rational_place_just_above_a_whole_number_adds_a_step_in_a_compound);
     tcase_add_test(edge, R5_a_rational_place_less_than_10_to_the_minus_8_above_a_whole_number_adds_a_step);
     suite_add_tcase(suite, edge);
