@@ -40,6 +40,12 @@ static void clear_stacks(struct rkm04_motor *motor)
     motor->calls = 0;
 }
 
+static void forget_fresh(struct rkm04_motor *motor)
+{
+    motor->fresh = RKM04_NEVER;
+    motor->hold_fresh = false;
+}
+
 void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     bool busy = interp_index(motor) != 0;
@@ -49,7 +55,7 @@ void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
     clear_stacks(motor);
     motor->next = 0;
     motor->number = 0;
-    motor->fresh = RKM04_NEVER;
+    forget_fresh(motor);
     motor->wake = RKM04_NEVER;
     motor->state = RKM04_IDLE;
     motor->held = RKM04_READY;
@@ -82,8 +88,27 @@ static void take_fresh(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->next = motor->fresh;
     motor->fresh = RKM04_NEVER;
     motor->resume = false;
-    motor->state = RKM04_READY;
+    motor->state = motor->hold_fresh ? RKM04_HELD : RKM04_READY;
+    motor->held = RKM04_READY;
+    motor->hold_fresh = false;
     motor->due = motion_free_from(unit, motor);
+}
+
+/* Has the motor a command to execute, or is it in one? (C6) */
+static bool has_work(const struct rkm04_motor *motor)
+{
+    switch ((enum rkm04_state)motor->state) {
+    case RKM04_READY:
+        return motor->next < motor->program.written;
+    case RKM04_MOVING:
+    case RKM04_DWELL:
+    case RKM04_WAIT:
+    case RKM04_BLOCK:
+    case RKM04_HELD:
+        return true;
+    default:
+        return false;
+    }
 }
 
 /* Will the motor stand still, with new commands as one way out? */
@@ -100,8 +125,10 @@ static bool ends_with_fresh(const struct rkm04_motor *motor)
 void interp_stored(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
 {
     unit->touched = true;
-    if (ends_with_fresh(motor) && motor->fresh == RKM04_NEVER)
+    if (ends_with_fresh(motor) && (motor->fresh == RKM04_NEVER || motor->hold_fresh)) {
         motor->fresh = first;
+        motor->hold_fresh = false;
+    }
     if (motor->state == RKM04_IDLE) {
         motor->state = RKM04_READY;
         motor->due = motion_free_from(unit, motor);
@@ -112,6 +139,12 @@ void interp_request(struct rkm04_unit *unit, struct rkm04_motor *motor, char req
 {
     unsigned n = motor->pendings;
     unit->touched = true;
+    if (motor->fresh != RKM04_NEVER) { /* it is about the new commands, which wait for the end of the ramp or for the slot */
+        motor->hold_fresh = request == 'K';
+        return;
+    }
+    if (request == 'K' && n == 0 && !has_work(motor)) /* nothing to hold, whatever arrives behind it */
+        return;
     if (n > 0 && motor->pending[n - 1] == request)
         return;
     if (n > 1 && request == 'K') { /* K C75 K is the same as K */
@@ -138,23 +171,6 @@ bool interp_change_speed(struct rkm04_unit *unit, struct rkm04_motor *motor, uin
 
 /* ---- X (C6) --------------------------------------------------------------------------------------------------- */
 
-/* Has the motor a command to execute, or is it in one? (C6) */
-static bool has_work(const struct rkm04_motor *motor)
-{
-    switch ((enum rkm04_state)motor->state) {
-    case RKM04_READY:
-        return motor->next < motor->program.written;
-    case RKM04_MOVING:
-    case RKM04_DWELL:
-    case RKM04_WAIT:
-    case RKM04_BLOCK:
-    case RKM04_HELD:
-        return true;
-    default:
-        return false;
-    }
-}
-
 static void look_at_total_stop(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (motor->guard_x == 0 || !input_is_high(unit, motor->guard_x) || !has_work(motor))
@@ -162,7 +178,7 @@ static void look_at_total_stop(struct rkm04_unit *unit, struct rkm04_motor *moto
     if (motor->state == RKM04_MOVING && motor->after == RKM04_AFTER_END)
         return;
     motor->guard_x = 0;
-    motor->fresh = RKM04_NEVER;
+    forget_fresh(motor);
     motor->resume = false;
     if (motor->state != RKM04_MOVING) {
         motor->motion.kind = RKM04_MOTION_NONE;
@@ -232,7 +248,7 @@ static void act_on_requests(struct rkm04_unit *unit, struct rkm04_motor *motor)
     }
     motor->change_after = 0;
     if (count > 0 && !ends_with_fresh(motor))
-        motor->fresh = RKM04_NEVER;
+        forget_fresh(motor);
 }
 
 static bool stands_still(const struct rkm04_motor *motor)

@@ -114,6 +114,7 @@ static bool prepare(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm
     motion->total = 0;
     motion->mark = 0;
     motion->marks = 0;
+    motion->changed = false;
     motion->start_speed = motor->start_speed;
     motion->segments = 1;
     motion->segment[0] = (struct rkm04_segment){.steps = 0, .speed = motor->speed, .acceleration = motor->acceleration};
@@ -171,6 +172,8 @@ void motion_begin_compound(struct rkm04_unit *unit, struct rkm04_motor *motor)
     }
     if (segments == 1)
         write_outputs(unit, unit->now, unit->outputs | motion->marks);
+    if (motion->marks == 0)
+        motion->mark = 0;
     set_off(unit, motor);
 }
 
@@ -214,38 +217,49 @@ static void count_pulses(struct rkm04_motor *motor, uint32_t count)
     motor->motion.done += count;
 }
 
-static void send_pulses(struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count)
+/* Send up to `room` pulses due up to `limit`, and end the motion at its last one. */
+static void run_pulses(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit, uint32_t room)
 {
-    void (*step)(void *, uint64_t, unsigned, int32_t) = unit->port->step;
-    void *context = unit->context;
-    uint32_t position = (uint32_t)motor->position, way = motor->motion.forward ? 1 : UINT32_MAX;
-    unsigned number = motor_number(unit, motor);
-    for (const uint64_t *end = tick + count; tick < end; tick++)
-        step(context, *tick, number, (int32_t)(position += way));
+    struct rkm04_motion *motion = &motor->motion;
+    uint64_t tick[64];
+    const uint32_t most = sizeof tick / sizeof *tick;
+    size_t count = ramp_pulses(&motion->ramp, &motion->profile, limit, tick, room < most ? room : most);
+    if (count > 0) {
+        motor->last_pulse = tick[count - 1];
+        if (pulses_are_seen(unit))
+            report_steps(unit, motor, tick, count);
+        count_pulses(motor, (uint32_t)count);
+    }
+    if (motion->ramp.next == RKM04_NEVER)
+        end_motion(unit, motor, motor->last_pulse);
+}
+
+/* Pulses that may be sent before the one that sets outputs. */
+static uint32_t room_before_mark(const struct rkm04_motion *motion)
+{
+    return motion->done < motion->mark ? motion->mark - motion->done - 1 : UINT32_MAX;
 }
 
 void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit)
 {
     struct rkm04_motion *motion = &motor->motion;
-    uint64_t tick[64];
-    while (motion->ramp.next <= limit) {
-        size_t room = sizeof tick / sizeof *tick;
-        uint32_t to_mark = motion->done < motion->mark ? motion->mark - motion->done : UINT32_MAX;
+    while (motion->ramp.next <= limit && room_before_mark(motion) > 0) {
         if (!pulses_are_seen(unit))
-            count_pulses(motor, ramp_skip(&motion->ramp, &motion->profile, limit, to_mark - 1));
-        bool marking = motion->done < motion->mark && motion->mark - motion->done <= room;
-        if (marking)
-            room = motion->mark - motion->done;
-        size_t count = ramp_pulses(&motion->ramp, &motion->profile, limit, tick, room);
-        if (count > 0) {
-            motor->last_pulse = tick[count - 1];
-            if (pulses_are_seen(unit))
-                send_pulses(unit, motor, tick, count);
-            count_pulses(motor, (uint32_t)count);
-        }
-        if (marking && motion->done == motion->mark)
-            write_outputs(unit, motor->last_pulse, unit->outputs | motion->marks);
-        if (motion->ramp.next == RKM04_NEVER)
-            end_motion(unit, motor, motor->last_pulse);
+            count_pulses(motor, ramp_skip(&motion->ramp, &motion->profile, limit, room_before_mark(motion)));
+        run_pulses(unit, motor, limit, room_before_mark(motion));
     }
+}
+
+uint64_t motion_mark_due(const struct rkm04_motor *motor)
+{
+    return room_before_mark(&motor->motion) == 0 ? motor->motion.ramp.next : RKM04_NEVER;
+}
+
+void motion_pass_mark(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    struct rkm04_motion *motion = &motor->motion;
+    uint32_t before = motion->done;
+    run_pulses(unit, motor, motion->ramp.next, 1);
+    if (motion->done != before) /* it may have been the change to the next leg only */
+        write_outputs(unit, motor->last_pulse, unit->outputs | motion->marks);
 }

@@ -14,8 +14,15 @@ void motion_begin_limit(struct rkm04_unit *unit, struct rkm04_motor *motor, bool
 /* Can the Y table be computed (E1)? */
 bool motion_compound_possible(const struct rkm04_motor *motor);
 
-/* Send the pulses due up to and including tick `limit`, and end the motion at its last one. */
+/* Send the pulses due up to and including tick `limit`, and end the motion at its last one. Stops short of the pulse that sets
+ * outputs (C12). */
 void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit);
+
+/* Tick of the pulse that motion_run() stopped short of; RKM04_NEVER: none. */
+uint64_t motion_mark_due(const struct rkm04_motor *motor);
+
+/* Send that pulse and set its outputs. */
+void motion_pass_mark(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
 /* Decelerate to a stop (R5); what comes behind it stands in motor->after. */
 void motion_stop(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_after after);

@@ -86,11 +86,19 @@ static uint64_t energy(uint16_t acceleration, struct rkm04_place from, struct rk
 {
     struct wide way = wide_difference(wide_of(to), wide_of(from));
     uint64_t factor = (uint64_t)4 * acceleration;
-    if ((way.high >> 32) >= (2 * Q_MAX >> RAMP_SPEED2_BITS) / factor)
+    if ((way.high >> 32) > (2 * Q_MAX >> RAMP_SPEED2_BITS) / factor)
         return 2 * Q_MAX;
     /* factor * way has 96 places; keep 34 of them. */
     struct wide gain = {way.high * factor + wide_high(way.low, factor), way.low * factor};
     return lower(2 * Q_MAX, gain.high << 2 | gain.low >> 62);
+}
+
+#define ROUNDING 64u /* differences of q up to this are none; those that a plan means are millions of times as large */
+
+/* Is there a way between two places? */
+static bool stretches(uint16_t acceleration, struct rkm04_place from, struct rkm04_place to)
+{
+    return before(from, to) && energy(acceleration, from, to) > ROUNDING;
 }
 
 /* ---- The table of break points -------------------------------------------------------------------------------------- */
@@ -147,15 +155,17 @@ static unsigned segment_at(const struct rkm04_motion *motion, struct rkm04_place
 }
 
 /* Adds the break points that bring a present speed to the limit of its segment; leaves in *state where that is done, at the
- * end of the segment at the latest. At or below S a change happens at once (R6). */
-static void reach_limit(struct rkm04_motion *motion, struct state *state, struct rkm04_place end, uint64_t limit)
+ * end of the segment at the latest. At or below S a change happens at once (R6), up to a speed from which the segment's end can
+ * be reached with speed `leave`. */
+static void reach_limit(struct rkm04_motion *motion, struct state *state, struct rkm04_place end, uint64_t limit, uint64_t leave)
 {
     struct rkm04_profile *profile = &motion->profile;
     uint16_t acceleration = motion->segment[state->segment].acceleration;
     uint64_t jump = q_of(motion->start_speed);
-    if (state->moving && state->q < limit && state->q < jump) {
+    uint64_t at_once = lower(lower(limit, jump), raised(leave, energy(acceleration, state->at, end)));
+    if (state->moving && at_once > state->q + ROUNDING) {
         add_break(profile, state->at, state->q, 0);
-        state->q = lower(limit, jump);
+        state->q = at_once;
         return;
     }
     if (state->q <= limit)
@@ -190,7 +200,7 @@ static void plan_segment(struct rkm04_motion *motion, const struct state *state,
         top = ahead(state->at, peak - state->q, segment->acceleration);
     }
     struct rkm04_place fall = peak > leave ? behind(end, peak - leave, segment->acceleration) : end;
-    if (peak == limit && before(top, fall))
+    if (peak == limit && stretches(segment->acceleration, top, fall))
         add_break(profile, top, peak, 0);
     else
         fall = top;
@@ -224,7 +234,7 @@ static void plan_steps(struct rkm04_motion *motion, struct state state)
     for (; state.segment < motion->segments; state.segment++) {
         uint16_t acceleration = motion->segment[state.segment].acceleration;
         end = end_of(motion, state.segment);
-        reach_limit(motion, &state, end, q_of(motion->segment[state.segment].speed));
+        reach_limit(motion, &state, end, q_of(motion->segment[state.segment].speed), leave[state.segment]);
         uint64_t gain = energy(acceleration, state.at, end);
         uint64_t out = lower(leave[state.segment], raised(state.q, gain));
         if (out < lowered(state.q, gain)) /* a present speed that cannot be braked in time */
@@ -242,7 +252,7 @@ static void plan_endless(struct rkm04_motion *motion, struct state state)
 {
     uint64_t limit = q_of(motion->segment[0].speed);
     uint16_t acceleration = motion->segment[0].acceleration;
-    reach_limit(motion, &state, (struct rkm04_place){UINT64_MAX, UINT64_MAX}, limit);
+    reach_limit(motion, &state, (struct rkm04_place){UINT64_MAX, UINT64_MAX}, limit, limit);
     if (state.q < limit) {
         add_break(&motion->profile, state.at, state.q, acceleration);
         state.at = ahead(state.at, limit - state.q, acceleration);
@@ -301,10 +311,16 @@ static struct state present(const struct rkm04_motion *motion, uint64_t tick)
     return state;
 }
 
+/* Does the speed only fall from here to the end? */
 static bool on_final_ramp(const struct rkm04_motion *motion)
 {
     const struct rkm04_profile *profile = &motion->profile;
-    return !profile->endless && profile->leg + 2 == profile->count && motion->ramp.slope < 0;
+    if (profile->endless)
+        return false;
+    for (unsigned i = profile->leg; i + 1u < profile->count; i++)
+        if (profile->point[i].slope >= 0)
+            return false;
+    return true;
 }
 
 /* Keep the points that were passed; the next one added is where the motion is now. */
@@ -320,6 +336,7 @@ void profile_change_speed(struct rkm04_motion *motion, uint64_t tick, uint16_t s
         return;
     struct state state = present(motion, tick);
     motion->segment[state.segment].speed = speed;
+    motion->changed = true;
     mark_present(&motion->profile);
     plan_from(motion, state);
     ramp_go_on(&motion->ramp, &motion->profile, tick);
@@ -333,12 +350,21 @@ struct stop {
     uint32_t step;
 };
 
-/* Steps from stop->step to the end of the ramp at this acceleration, rounded up. What lies less than the tolerance above a
- * whole number counts as that number: rational ways cannot come so near, irrational ones shall (R5). */
-static uint32_t steps_of_stop(const struct stop *stop, uint16_t acceleration, bool exact)
+/* What lies less than this above a whole number of steps counts as that number. Irrational ways shall (R5), rational ones
+ * only as far as they were rounded: by a few units, or after a change of speed, whose place is kept with 2^-34 of speed2, by
+ * a hundred at each; the next rational way above a whole number then is 4 000 000 units off. */
+static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint64_t unit)
+{
+    if (!motion->ramp.exact)
+        return unit / 1000000;
+    return motion->changed ? 100000 : 8;
+}
+
+/* Steps from stop->step to the end of the ramp at this acceleration, rounded up. */
+static uint32_t steps_of_stop(const struct rkm04_motion *motion, const struct stop *stop, uint16_t acceleration)
 {
     const uint64_t unit = (uint64_t)4 * acceleration * (uint64_t)RAMP_STEP;
-    const uint64_t tolerance = exact ? 1000000 : unit / 1000000;
+    const uint64_t tolerance = tolerance_of_stop(motion, unit);
     uint64_t short_of = (uint64_t)-stop->offset;
     if (stop->energy.high == 0 && stop->energy.low <= short_of)
         return 0;
@@ -357,7 +383,7 @@ static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, stru
         uint16_t acceleration = motion->segment[state->segment].acceleration;
         uint64_t factor = (uint64_t)4 * acceleration;
         stop.offset = y.whole * (int64_t)factor + (int64_t)wide_high(y.part, factor);
-        uint32_t last = stop.step + steps_of_stop(&stop, acceleration, motion->ramp.exact);
+        uint32_t last = stop.step + steps_of_stop(motion, &stop, acceleration);
         add_break(&motion->profile, state->at, state->q, -(int32_t)acceleration);
         if (motion->kind != RKM04_MOTION_STEPS)
             return last;
@@ -386,7 +412,6 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
     struct state state = present(motion, tick);
     uint64_t q_end = q_of(motion->start_speed);
     mark_present(profile);
-    const uint64_t rounding = 64; /* of q, far below the smallest rest of a step that can occur */
     uint32_t last;
     if (state.q <= q_end) {
         last = (uint32_t)(state.at.high >> 32) + ((uint32_t)state.at.high != 0 || state.at.low != 0);
@@ -396,7 +421,7 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
         last = plan_stop(motion, &state, y, w);
         uint16_t acceleration = motion->segment[state.segment].acceleration;
         struct rkm04_place slow = ahead(state.at, lowered(state.q, q_end), acceleration);
-        if (before(slow, place_at(last)) && energy(acceleration, slow, place_at(last)) > rounding)
+        if (stretches(acceleration, slow, place_at(last)))
             add_break(profile, slow, q_end, 0);
     }
     profile->endless = false;
@@ -414,12 +439,14 @@ bool profile_point(const struct rkm04_motion *motion, unsigned i, struct profile
     const struct rkm04_profile *profile = &motion->profile;
     if (i >= profile->count)
         return false;
+    /* A place planned on the way has lost up to 2^-35 of a step by rounding, a speed up to ROUNDING. */
+    const struct wide lost = {0, UINT64_C(1) << 61};
     const struct rkm04_break *at = &profile->point[i];
     bool last = !profile->endless && i + 1u == profile->count;
     uint32_t end = ramp_step_of(profile->point[profile->count - 1].at);
-    point->step = ramp_step_of(at->at) + !last;
+    point->step = ramp_step_of(place_of(wide_sum(wide_of(at->at), lost))) + !last;
     if (!profile->endless && point->step > end)
         point->step = end;
-    point->speed = last ? 0 : wide_root_of((uint32_t)(at->speed2 >> (RAMP_SPEED2_BITS + 1)));
+    point->speed = last ? 0 : wide_root_of((uint32_t)((at->speed2 + ROUNDING) >> (RAMP_SPEED2_BITS + 1)));
     return true;
 }

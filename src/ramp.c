@@ -32,7 +32,7 @@ static inline bool below(struct rkm04_fixed a, struct rkm04_fixed b)
 }
 
 /* What cutting off may have lost: always added, so that a pulse due exactly at a tick is never a tick late. */
-static const struct rkm04_fixed ROUND_UP = {0, 4};
+static const struct rkm04_fixed ROUND_UP = {0, 4}, LAST_PLACE = {0, 1};
 
 /* ---- Instants ----------------------------------------------------------------------------------------------------- */
 
@@ -116,9 +116,9 @@ static void reckon_from_start(struct rkm04_ramp *ramp, struct rkm04_instant star
     y.whole -= RAMP_STEP;
     if (start.high | start.low) {
         struct wide gone = wide_difference((struct wide){0, 0}, (struct wide){start.high, start.low});
-        struct rkm04_fixed half = scaled((uint32_t)ramp->slope, gone);
-        y = sum(sum(y, times(sum(w, half), gone)), ROUND_UP);
-        w = sum(w, sum(half, half));
+        uint64_t rise = (uint32_t)ramp->slope;
+        y = sum(sum(y, times(sum(w, scaled(rise, gone)), gone)), ROUND_UP);
+        w = sum(sum(w, scaled(2 * rise, gone)), LAST_PLACE);
     }
     ramp->y = y;
     ramp->w = w;
@@ -135,17 +135,16 @@ static void reckon_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, s
         ticks = 0;
         places = (struct wide){0, 0};
     }
-    struct rkm04_fixed half = scaled(fall, places);
     struct rkm04_fixed w_whole = {(int64_t)((uint64_t)w.whole + 2 * fall * ticks), w.part};
     struct wide part = wide_product(w.part, ticks);
     struct rkm04_fixed way = {(int64_t)((uint64_t)w.whole * ticks + fall * ticks * ticks + part.high), part.low};
-    way = sum(way, times(sum(w_whole, half), places));
+    way = sum(way, times(sum(w_whole, scaled(fall, places)), places));
     struct rkm04_fixed y = y_of_part(place);
     y.whole = (int64_t)((uint64_t)y.whole + (uint64_t)RAMP_STEP * (ramp->left - UINT64_C(1)));
     ramp->y = difference(y, way);
-    ramp->w = sum(w_whole, sum(half, half));
+    ramp->w = w_whole;
     if (places.high | places.low)
-        ramp->w = sum(ramp->w, (struct rkm04_fixed){0, 1});
+        ramp->w = sum(sum(w_whole, scaled(2 * fall, places)), LAST_PLACE);
 }
 
 struct motion_state {

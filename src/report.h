@@ -17,6 +17,10 @@ static inline void report_event(struct rkm04_unit *unit, const struct rkm04_moto
         unit->port->event(unit->context, tick, motor ? motor_number(unit, motor) : 0, what, value);
 }
 
+/* The next `count` steps of the present motion, at these ticks; the port must have `step`. A function of its own file: it is
+ * the one loop that is run for every pulse, and deserves the registers. */
+void report_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count);
+
 /* What the direction terminal shows: held at 0 in simulation mode (C11). */
 static inline void report_direction(struct rkm04_unit *unit, const struct rkm04_motor *motor, uint64_t tick, bool forward)
 {

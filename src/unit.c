@@ -63,14 +63,33 @@ uint64_t rkm04_next_event(const struct rkm04_unit *unit)
     return next < unit->now ? unit->now : next;
 }
 
+/* All pulses due up to and including `limit`. Between slots motors meet in one thing only, the outputs that their pulses set
+ * (C12): those come in order of time. */
+static void run_motors(struct rkm04_unit *unit, uint64_t limit)
+{
+    for (unsigned i = 0; i < RKM04_MOTORS; i++)
+        motion_run(unit, &unit->motor[i], limit);
+    for (;;) {
+        struct rkm04_motor *first = NULL;
+        for (unsigned i = 0; i < RKM04_MOTORS; i++) {
+            struct rkm04_motor *motor = &unit->motor[i];
+            if (motion_mark_due(motor) <= limit && (!first || motion_mark_due(motor) < motion_mark_due(first)))
+                first = motor;
+        }
+        if (!first)
+            return;
+        motion_pass_mark(unit, first);
+        motion_run(unit, first, limit);
+    }
+}
+
 void rkm04_advance(struct rkm04_unit *unit, uint64_t ticks)
 {
     uint64_t end = unit->now > RKM04_NEVER - ticks ? RKM04_NEVER : unit->now + ticks;
     while (unit->now < end) {
         uint64_t slot = next_slot(unit);
         bool reached = slot < end;
-        for (unsigned i = 0; i < RKM04_MOTORS; i++)
-            motion_run(unit, &unit->motor[i], reached ? slot : end - 1);
+        run_motors(unit, reached ? slot : end - 1);
         if (reached) {
             unit->now = slot;
             unit->touched = false;

@@ -62,6 +62,8 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_ev
 
 static const struct rkm04_port port = {.step = on_step, .direction = on_direction, .outputs = on_outputs, .event = on_event};
 
+static const struct rkm04_port deaf_port = {.direction = on_direction, .outputs = on_outputs, .event = on_event};
+
 /* ---- Driving ------------------------------------------------------------------------------------------------------ */
 
 void motion_start(struct motion_rig *rig, uint16_t speed_change_latency)
@@ -83,6 +85,19 @@ void motion_want(struct motion_rig *rig, const uint64_t *wanted, size_t count)
     rig->wanted_count = count;
 }
 
+void motion_listen(struct motion_rig *rig, bool listen)
+{
+    struct rkm04_motor_state state;
+    motion_check(rkm04_motor_state(&rig->unit, 1, &state), "there is no motor 1");
+    rig->unit.port = listen ? &port : &deaf_port;
+    rig->steps = state.steps;
+    rig->position = state.position;
+    rig->spacing = UINT64_MAX;
+    rig->last = 0;
+    while (rig->wanted && rig->wanted_next < rig->wanted_count && rig->wanted[rig->wanted_next] <= rig->steps)
+        rig->tick[rig->wanted_next++] = 0;
+}
+
 void motion_send(struct motion_rig *rig, const char *text)
 {
     int flag = rkm04_set_command(&rig->unit, '1', text, strlen(text), NULL);
@@ -92,8 +107,7 @@ void motion_send(struct motion_rig *rig, const char *text)
 void motion_to(struct motion_rig *rig, uint64_t tick)
 {
     uint64_t now = rkm04_now(&rig->unit);
-    motion_check(now <= tick, "the test goes back in time, from %llu to %llu; %s", (unsigned long long)now,
-                  (unsigned long long)tick, what);
+    motion_check(now <= tick, "the test goes back in time, from %" PRIu64 " to %" PRIu64 "; %s", now, tick, what);
     rkm04_advance(&rig->unit, tick - now);
 }
 
@@ -154,8 +168,8 @@ void motion_trying_segments(unsigned start_speed, const struct ref_segment *segm
     size_t length = strlen(what);
     length += (size_t)snprintf(what + length, sizeof what - length, " S%u", start_speed);
     for (unsigned i = 0; i < segments && length < sizeof what; i++)
-        length += (size_t)snprintf(what + length, sizeof what - length, " A%u V%u F%llu%s", segment[i].acceleration,
-                                   segment[i].speed, (unsigned long long)segment[i].steps, segments > 1 ? " Y" : "");
+        length += (size_t)snprintf(what + length, sizeof what - length, " A%u V%u F%" PRIu64 "%s", segment[i].acceleration,
+                                   segment[i].speed, segment[i].steps, segments > 1 ? " Y" : "");
 }
 
 const char *motion_what(void)
@@ -166,13 +180,14 @@ const char *motion_what(void)
 void motion_expect(const struct motion_rig *rig, const struct ref_track *track, uint64_t begin, uint64_t first, uint64_t from,
                    unsigned slack)
 {
-    motion_check(rig->steps == first + track->steps, "%llu steps, expected %llu + %llu; %s", (unsigned long long)rig->steps,
-                  (unsigned long long)first, (unsigned long long)track->steps, what);
+    motion_check(rig->steps == first + track->steps, "%" PRIu64 " steps, expected %" PRIu64 " + %" PRIu64 "; %s", rig->steps,
+                 first, track->steps, what);
     motion_check(!rig->torn, "the position does not follow the pulses; %s", what);
     for (uint64_t k = from; k <= track->steps; k++) {
         uint64_t due = begin + ref_tick(track, k), tick = rig->tick[first + k - 1];
-        motion_check(tick + slack >= due && tick <= due + slack, "pulse %llu at %llu, expected %llu (slack %u); %s",
-                      (unsigned long long)k, (unsigned long long)(tick - begin), (unsigned long long)(due - begin), slack, what);
+        motion_check(tick + slack >= due && tick <= due + slack,
+                     "pulse %" PRIu64 " at %" PRIu64 ", expected %" PRIu64 " (slack %u); %s", k, tick - begin, due - begin, slack,
+                     what);
     }
 }
 
@@ -193,18 +208,23 @@ unsigned motion_count(unsigned normal)
     return count < 1 ? 1 : (unsigned)count;
 }
 
-void motion_randomize(uint64_t seed)
-{
-    random_state = seed;
-}
-
 /* splitmix64 */
-uint64_t motion_random(uint64_t below)
+static uint64_t mixed(uint64_t z)
 {
-    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
     z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return (z ^ (z >> 31)) % below;
+    return z ^ (z >> 31);
+}
+
+void motion_randomize(uint64_t run)
+{
+    random_state = mixed(motion_seed() + 1) + mixed(run + UINT64_C(0x9e3779b97f4a7c15));
+}
+
+uint64_t motion_random(uint64_t below)
+{
+    random_state += UINT64_C(0x9e3779b97f4a7c15);
+    return mixed(random_state) % below;
 }
 
 unsigned motion_pick(unsigned low, unsigned high)

@@ -5,6 +5,7 @@
 #define RKM04_TESTS_MOTION_RIG_H
 
 #include <check.h>
+#include <inttypes.h>
 #include <rkm04/unit.h>
 
 #include "reference.h"
@@ -38,6 +39,9 @@ void motion_want(struct motion_rig *rig, const uint64_t *wanted, size_t count);
 /* Send motor 1 a text at the present tick; it must be taken. */
 void motion_send(struct motion_rig *rig, const char *text);
 
+/* From now on nobody listens to the pulses, or somebody does again; rig->steps goes on where the unit is. */
+void motion_listen(struct motion_rig *rig, bool listen);
+
 /* Do all ticks before this one. */
 void motion_to(struct motion_rig *rig, uint64_t tick);
 
@@ -54,10 +58,10 @@ void motion_single(struct motion_rig *rig, unsigned start_speed, const struct re
 uint64_t motion_compound(struct motion_rig *rig, unsigned start_speed, const struct ref_segment *segment, unsigned segments);
 
 /* ck_assert_msg writes to a file each time it passes; this one is free until it fails. */
-#define motion_check(condition, ...)                                                                                              \
-    do {                                                                                                                          \
-        if (!(condition))                                                                                                         \
-            ck_abort_msg(__VA_ARGS__);                                                                                            \
+#define motion_check(condition, ...) \
+    do { \
+        if (!(condition)) \
+            ck_abort_msg(__VA_ARGS__); \
     } while (0)
 
 /* Say what is being tried; every failure below repeats it. */
@@ -80,7 +84,8 @@ uint64_t motion_seed(void);
 /* `normal` times RKM04_TEST_SCALE (1 if not set). */
 unsigned motion_count(unsigned normal);
 
-void motion_randomize(uint64_t seed);
+/* Begin a series of random numbers that depends on the seed and this number. */
+void motion_randomize(uint64_t run);
 uint64_t motion_random(uint64_t below);
 
 /* low..high, evenly over the logarithm; the limits themselves come often. */

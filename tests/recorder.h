@@ -36,7 +36,8 @@ size_t recorder_steps(const struct recorder *recorder, unsigned motor);
 uint64_t recorder_step(const struct recorder *recorder, unsigned motor, size_t n);
 
 /* The n-th (1..) record of an event of a motor with this value, or NULL. */
-const struct record *recorder_event(const struct recorder *recorder, unsigned motor, enum rkm04_event what, int64_t value, size_t n);
+const struct record *recorder_event(const struct recorder *recorder, unsigned motor, enum rkm04_event what, int64_t value,
+                                    size_t n);
 
 /* Sort by tick, then motor; stable. */
 void recorder_sort(struct recorder *recorder);

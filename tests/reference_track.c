@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define MILLION 1000000ul
-#define PULSE_BITS 256    /* enough for one pulse: 2^-256 of 2^45 ticks */
+#define PULSE_BITS 192    /* enough for one pulse: 2^-192 of 2^45 ticks */
 #define SAME_BITS 1000    /* numbers closer than 2^-SAME_BITS are the same */
 #define FRACTION_BITS 600 /* a rational number met here has a denominator of fewer bits (is_rational) */
 

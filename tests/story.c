@@ -39,81 +39,98 @@ static unsigned draw_bit(void)
     return (unsigned)(story_draw(2) ? 1 + story_draw(4) : 80 + story_draw(4));
 }
 
+/* Moves and their figures. */
+static void draw_move(char *one, size_t room, bool slow)
+{
+    unsigned n = (unsigned)(1 + story_draw(4)); /* of inputs */
+    switch (story_draw(20)) {
+    case 0: case 1: case 2: case 3: case 4:
+        snprintf(one, room, "R");
+        break;
+    case 5: case 6:
+        snprintf(one, room, "F%u", slow ? PICK(1, 2, 3, 17, 250, 3000) : PICK(1, 2, 3, 7, 30, 90));
+        break;
+    case 7:
+        snprintf(one, room, "B%u", slow ? PICK(1, 5, 40, 700) : PICK(1, 5, 20, 60));
+        break;
+    case 8: case 9:
+        snprintf(one, room, "V%u", slow ? PICK(50, 333, 1000, 3001) : PICK(700, 1999, 5003, 16000));
+        break;
+    case 10:
+        snprintf(one, room, "S%u", slow ? PICK(7, 100, 1000) : PICK(100, 1000, 2000));
+        break;
+    case 11:
+        snprintf(one, room, "A%u", slow ? PICK(100, 2000, 7777) : PICK(7777, 30011, 60000));
+        break;
+    case 12: case 13:
+        snprintf(one, room, "Y");
+        break;
+    case 14:
+        snprintf(one, room, "%s", story_draw(2) ? "G+" : "G-");
+        break;
+    case 15:
+        snprintf(one, room, "G%u", PICK(1, 10, 50));
+        break;
+    case 16:
+        snprintf(one, room, story_draw(2) ? "H" : "D");
+        break;
+    case 17:
+        snprintf(one, room, "%c%02u", story_draw(2) ? ')' : '(', n);
+        break;
+    default:
+        snprintf(one, room, "W%u", slow ? PICK(1, 20, 300) : PICK(1, 2, 5));
+        break;
+    }
+}
+
+/* Everything else: bits, guards, jumps, loops, blocks, functions. */
+static void draw_control(char *one, size_t room)
+{
+    unsigned n = (unsigned)(1 + story_draw(4)); /* of labels, inputs */
+    switch (story_draw(14)) {
+    case 0:
+        snprintf(one, room, "%c%02u", story_draw(2) ? 'O' : 'Z', draw_bit());
+        break;
+    case 1: case 2:
+        snprintf(one, room, "T%02u", draw_bit());
+        break;
+    case 3:
+        snprintf(one, room, "C%02u", draw_bit());
+        break;
+    case 4:
+        snprintf(one, room, "%c%02u", story_draw(2) ? 'M' : 'N', n);
+        break;
+    case 5:
+        snprintf(one, room, story_draw(4) ? "U" : "X%02u", n);
+        break;
+    case 6: case 7:
+        snprintf(one, room, "@%u", n);
+        break;
+    case 8:
+        snprintf(one, room, "I%02u%c%u", draw_bit(), story_draw(2) ? 'H' : 'L', n);
+        break;
+    case 9:
+        snprintf(one, room, "%c%u", story_draw(3) ? 'J' : '\'', n);
+        break;
+    case 10: case 11:
+        snprintf(one, room, story_draw(2) ? "L%u" : "E", n);
+        break;
+    case 12:
+        snprintf(one, room, "%c", (int)PICK('.', '[', ']', ']', ']', ']'));
+        break;
+    default:
+        snprintf(one, room, "%c%u", story_draw(2) ? 'T' : 'C', PICK(41, 51, 52, 58, 40));
+        break;
+    }
+}
+
 static void add_command(char *text, size_t room, bool slow)
 {
     char one[32];
-    unsigned n = (unsigned)(1 + story_draw(4)); /* of labels, inputs, outputs */
-    switch (story_draw(34)) {
-    case 0: case 1: case 2: case 3: case 4:
-        snprintf(one, sizeof one, "R");
-        break;
-    case 5: case 6:
-        snprintf(one, sizeof one, "F%u", slow ? PICK(1, 2, 3, 17, 250, 3000) : PICK(1, 2, 3, 7, 30, 90));
-        break;
-    case 7:
-        snprintf(one, sizeof one, "B%u", slow ? PICK(1, 5, 40, 700) : PICK(1, 5, 20, 60));
-        break;
-    case 8: case 9:
-        snprintf(one, sizeof one, "V%u", slow ? PICK(50, 333, 1000, 3001) : PICK(700, 1999, 5003, 16000));
-        break;
-    case 10:
-        snprintf(one, sizeof one, "S%u", slow ? PICK(7, 100, 1000) : PICK(100, 1000, 2000));
-        break;
-    case 11:
-        snprintf(one, sizeof one, "A%u", slow ? PICK(100, 2000, 7777) : PICK(7777, 30011, 60000));
-        break;
-    case 12: case 13:
-        snprintf(one, sizeof one, "Y");
-        break;
-    case 14:
-        snprintf(one, sizeof one, "%s", story_draw(2) ? "G+" : "G-");
-        break;
-    case 15:
-        snprintf(one, sizeof one, "G%u", PICK(1, 10, 50));
-        break;
-    case 16:
-        snprintf(one, sizeof one, story_draw(2) ? "H" : "D");
-        break;
-    case 17:
-        snprintf(one, sizeof one, "%c%02u", story_draw(2) ? ')' : '(', n);
-        break;
-    case 18: case 19:
-        snprintf(one, sizeof one, "W%u", slow ? PICK(1, 20, 300) : PICK(1, 2, 5));
-        break;
-    case 20:
-        snprintf(one, sizeof one, "%c%02u", story_draw(2) ? 'O' : 'Z', draw_bit());
-        break;
-    case 21: case 22:
-        snprintf(one, sizeof one, "T%02u", draw_bit());
-        break;
-    case 23:
-        snprintf(one, sizeof one, "C%02u", draw_bit());
-        break;
-    case 24:
-        snprintf(one, sizeof one, "%c%02u", story_draw(2) ? 'M' : 'N', n);
-        break;
-    case 25:
-        snprintf(one, sizeof one, story_draw(4) ? "U" : "X%02u", n);
-        break;
-    case 26: case 27:
-        snprintf(one, sizeof one, "@%u", n);
-        break;
-    case 28:
-        snprintf(one, sizeof one, "I%02u%c%u", draw_bit(), story_draw(2) ? 'H' : 'L', n);
-        break;
-    case 29:
-        snprintf(one, sizeof one, "%c%u", story_draw(3) ? 'J' : '\'', n);
-        break;
-    case 30: case 31:
-        snprintf(one, sizeof one, story_draw(2) ? "L%u" : "E", n);
-        break;
-    case 32:
-        snprintf(one, sizeof one, "%c", (int)PICK('.', '[', ']', ']', ']', ']'));
-        break;
-    default:
-        snprintf(one, sizeof one, "%c%u", story_draw(2) ? 'T' : 'C', PICK(41, 51, 52, 58, 40));
-        break;
-    }
+    if (story_draw(34) < 20)
+        draw_move(one, sizeof one, slow);
+    else
+        draw_control(one, sizeof one);
     size_t length = strlen(text);
     snprintf(text + length, room - length, "%s ", one);
 }

@@ -46,8 +46,7 @@ static void try_compound(unsigned s, const struct ref_segment *segment, unsigned
     motion_start(&rig, 0);
     uint64_t begin = motion_compound(&rig, s, segment, n), last = begin + ref_tick(&track, track.steps);
     motion_to(&rig, last + 1000000);
-    motion_check(rig.begin == begin && rig.begins == 1 && rig.ends == 1, "began at %llu; %s", (unsigned long long)rig.begin,
-                  motion_what());
+    motion_check(rig.begin == begin && rig.begins == 1 && rig.ends == 1, "began at %" PRIu64 "; %s", rig.begin, motion_what());
     motion_expect(&rig, &track, begin, 0, 1, 1);
     motion_check(rig.position == (int32_t)track.steps, "position %d; %s", rig.position, motion_what());
     motion_check(motion_state(&rig) == RKM04_IDLE, "not idle; %s", motion_what());
@@ -70,7 +69,7 @@ START_TEST(R4_the_reference_is_the_fastest_motion_under_the_limits)
     for (unsigned i = 0; i < motion_count(1000); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned n = random_compound(segment, &s, 2000);
         motion_trying("compound %u:", i);
         motion_trying_segments(s, segment, n);
@@ -78,8 +77,8 @@ START_TEST(R4_the_reference_is_the_fastest_motion_under_the_limits)
         for (int j = 0; j < 60; j++) {
             double place = (double)track.steps * (double)motion_random(1u << 30) / (1u << 30);
             double square = ref_square_at(&track, place), limit = ref_limit_at(s, segment, n, place);
-            motion_check(fabs(square - limit) <= 1e-6 * limit, "square of the speed %.9g at %.9g, limit %.9g; %s", square, place, limit,
-                          motion_what());
+            motion_check(fabs(square - limit) <= 1e-6 * limit, "square of the speed %.9g at %.9g, limit %.9g; %s", square, place,
+                         limit, motion_what());
         }
     }
 }
@@ -134,9 +133,9 @@ START_TEST(R4_random_compounds_are_within_a_tick_in_every_pulse)
     for (unsigned i = 0; i < motion_count(1200); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned n = random_compound(segment, &s, i % 16 == 0 ? 3000 : 200);
-        motion_trying("compound %u of seed %llu:", i, (unsigned long long)motion_seed());
+        motion_trying("compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
         try_compound(s, segment, n);
     }
@@ -147,7 +146,7 @@ START_TEST(R4_a_compound_of_ten_segments_of_one_step_is_within_a_tick)
 {
     for (unsigned i = 0; i < motion_count(200); i++) {
         struct ref_segment segment[REF_SEGMENTS];
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned s = motion_pick(1, 2000);
         for (unsigned j = 0; j < REF_SEGMENTS; j++)
             segment[j] = (struct ref_segment){1, motion_pick(1, 16000), motion_pick(1, 60000)};
@@ -164,9 +163,9 @@ START_TEST(R4_long_compounds_do_not_drift)
     for (unsigned i = 0; i < motion_count(10); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + 7000 + i);
+        motion_randomize(7000 + i);
         unsigned n = random_compound(segment, &s, 400000);
-        motion_trying("long compound %u of seed %llu:", i, (unsigned long long)motion_seed());
+        motion_trying("long compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
         ref_plan(&track, s, segment, n);
         size_t count = 0;
@@ -176,14 +175,14 @@ START_TEST(R4_long_compounds_do_not_drift)
         motion_want(&rig, wanted, count);
         uint64_t begin = motion_compound(&rig, s, segment, n), last = begin + ref_tick(&track, track.steps);
         motion_to(&rig, last + 1000000);
-        motion_check(rig.steps == track.steps && !rig.torn, "%llu steps; %s", (unsigned long long)rig.steps, motion_what());
+        motion_check(rig.steps == track.steps && !rig.torn, "%" PRIu64 " steps; %s", rig.steps, motion_what());
         for (size_t j = 0; j < count; j++) {
             uint64_t due = begin + ref_tick(&track, wanted[j]);
-            motion_check(rig.tick[j] + 1 >= due && rig.tick[j] <= due + 1, "pulse %llu at %llu, expected %llu; %s",
-                          (unsigned long long)wanted[j], (unsigned long long)(rig.tick[j] - begin), (unsigned long long)(due - begin),
-                          motion_what());
+            motion_check(rig.tick[j] + 1 >= due && rig.tick[j] <= due + 1,
+                         "pulse %" PRIu64 " at %" PRIu64 ", expected %" PRIu64 "; %s", wanted[j], rig.tick[j] - begin,
+                         due - begin, motion_what());
         }
-        motion_check(rig.last + 1 >= last && rig.last <= last + 1, "last pulse at %llu; %s", (unsigned long long)rig.last, motion_what());
+        motion_check(rig.last + 1 >= last && rig.last <= last + 1, "last pulse at %" PRIu64 "; %s", rig.last, motion_what());
     }
 }
 END_TEST
@@ -191,7 +190,7 @@ END_TEST
 START_TEST(R4_a_compound_of_one_segment_is_a_single_motion)
 {
     for (unsigned i = 0; i < motion_count(150); i++) {
-        motion_randomize(motion_seed() + 9000 + i);
+        motion_randomize(9000 + i);
         struct ref_segment one = {motion_pick(1, 500), motion_pick(1, 16000), motion_pick(1, 60000)};
         unsigned s = motion_pick(1, 2000);
         motion_trying("one segment %u:", i);
@@ -199,11 +198,11 @@ START_TEST(R4_a_compound_of_one_segment_is_a_single_motion)
         motion_start(&rig, 0);
         uint64_t begin = motion_compound(&rig, s, &one, 1);
         motion_to(&rig, begin + ref_single_tick(s, &one, one.steps) + 1000000);
-        motion_check(rig.steps == one.steps, "%llu steps; %s", (unsigned long long)rig.steps, motion_what());
+        motion_check(rig.steps == one.steps, "%" PRIu64 " steps; %s", rig.steps, motion_what());
         for (uint64_t k = 1; k <= one.steps; k++) {
             uint64_t due = begin + ref_single_tick(s, &one, k);
-            motion_check(rig.tick[k - 1] + 1 >= due && rig.tick[k - 1] <= due + 1, "pulse %llu at %llu; %s", (unsigned long long)k,
-                          (unsigned long long)(rig.tick[k - 1] - begin), motion_what());
+            motion_check(rig.tick[k - 1] + 1 >= due && rig.tick[k - 1] <= due + 1, "pulse %" PRIu64 " at %" PRIu64 "; %s", k,
+                         rig.tick[k - 1] - begin, motion_what());
         }
     }
 }
@@ -215,9 +214,9 @@ START_TEST(P7_tables_of_random_compounds_name_every_corner)
     for (unsigned i = 0; i < motion_count(1500); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + 20000 + i);
+        motion_randomize(20000 + i);
         unsigned n = random_compound(segment, &s, 3000);
-        motion_trying("compound %u of seed %llu:", i, (unsigned long long)motion_seed());
+        motion_trying("compound %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
         ref_plan(&track, s, segment, n);
         ref_table(&track, table, sizeof table);
@@ -234,7 +233,7 @@ START_TEST(P7_tables_of_single_motions_name_every_corner)
 {
     char table[1024];
     for (unsigned i = 0; i < motion_count(1500); i++) {
-        motion_randomize(motion_seed() + 30000 + i);
+        motion_randomize(30000 + i);
         struct ref_segment one = {motion_pick(1, 16000000), motion_pick(1, 16000), motion_pick(1, 60000)};
         unsigned s = motion_pick(1, 2000);
         motion_trying("single %u:", i);
@@ -257,9 +256,9 @@ START_TEST(C12_the_output_is_set_at_the_last_pulse_before_the_last_segment)
     for (unsigned i = 0; i < motion_count(300); i++) {
         struct ref_segment segment[REF_SEGMENTS];
         unsigned s;
-        motion_randomize(motion_seed() + 40000 + i);
+        motion_randomize(40000 + i);
         unsigned n = random_compound(segment, &s, 100);
-        motion_trying("outputs %u of seed %llu:", i, (unsigned long long)motion_seed());
+        motion_trying("outputs %u of seed %" PRIu64 ":", i, motion_seed());
         motion_trying_segments(s, segment, n);
         ref_plan(&track, s, segment, n);
         motion_start(&rig, 0);
@@ -268,9 +267,8 @@ START_TEST(C12_the_output_is_set_at_the_last_pulse_before_the_last_segment)
         uint64_t begin = motion_compound(&rig, s, segment, n), before = track.steps - segment[n - 1].steps;
         motion_to(&rig, begin + ref_tick(&track, track.steps) + 1000000);
         motion_check(rig.outputs == 0x85, "outputs %02x; %s", rig.outputs, motion_what());
-        motion_check(rig.outputs_tick == rig.tick[before - 1], "set at %llu, pulse %llu was at %llu; %s",
-                      (unsigned long long)rig.outputs_tick, (unsigned long long)before, (unsigned long long)rig.tick[before - 1],
-                      motion_what());
+        motion_check(rig.outputs_tick == rig.tick[before - 1], "set at %" PRIu64 ", pulse %" PRIu64 " was at %" PRIu64 "; %s",
+                     rig.outputs_tick, before, rig.tick[before - 1], motion_what());
         motion_expect(&rig, &track, begin, 0, 1, 1);
     }
 }

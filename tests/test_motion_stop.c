@@ -68,7 +68,8 @@ static void expect_stop(enum stopper by, uint64_t begin, uint64_t at)
     motion_expect(&rig, &stopped, begin, 0, before > 3 ? before - 3 : 1, 1);
     static const enum rkm04_state after[] = {RKM04_HELD, RKM04_IDLE, RKM04_IDLE, RKM04_ENDED};
     motion_check(motion_state(&rig) == after[by], "state %s; %s", rkm04_state_name(motion_state(&rig)), motion_what());
-    motion_check(rig.ends == rig.begins && rig.position == (int32_t)stopped.steps, "position %d; %s", rig.position, motion_what());
+    motion_check(rig.ends == rig.begins, "%u begins, %u ends; %s", rig.begins, rig.ends, motion_what());
+    motion_check(rig.position == (int32_t)stopped.steps, "position %d; %s", rig.position, motion_what());
 }
 
 /* After expect_stop by K: C75 makes the rest, from standstill. */
@@ -81,12 +82,11 @@ static void expect_resume(void)
     motion_to(&rig, slot + 1);
     if (!ref_plan_rest(&rest, &stopped)) {
         motion_to(&rig, slot + 100 * SLOT);
-        motion_check(rig.steps == done && motion_state(&rig) == RKM04_IDLE, "%llu steps after C75; %s",
-                      (unsigned long long)rig.steps, motion_what());
+        motion_check(rig.steps == done && motion_state(&rig) == RKM04_IDLE, "%" PRIu64 " steps after C75; %s", rig.steps,
+                     motion_what());
         return;
     }
-    motion_check(rig.begin == slot, "goes on at %llu instead of %llu; %s", (unsigned long long)rig.begin, (unsigned long long)slot,
-                  motion_what());
+    motion_check(rig.begin == slot, "goes on at %" PRIu64 " instead of %" PRIu64 "; %s", rig.begin, slot, motion_what());
     if (rest.steps >= REF_ENDLESS) {
         rest.steps = ref_steps_at(&rest, 199999);
         motion_to(&rig, slot + 200000);
@@ -109,7 +109,8 @@ static uint64_t begin_motion(enum stopper by, unsigned s, const struct ref_segme
         length += snprintf(text + length, sizeof text - (size_t)length, " A%u V%u", segment[i].acceleration, segment[i].speed);
         commands += 2;
         if (segment[i].steps != REF_ENDLESS) {
-            length += snprintf(text + length, sizeof text - (size_t)length, " F%u%s", (unsigned)segment[i].steps, n > 1 ? " Y" : "");
+            const char *const format = n > 1 ? " F%u Y" : " F%u";
+            length += snprintf(text + length, sizeof text - (size_t)length, format, (unsigned)segment[i].steps);
             commands += n > 1 ? 2 : 1;
         }
     }
@@ -192,7 +193,7 @@ START_TEST(R5_random_compounds_stop_exactly_in_every_slot)
 {
     for (unsigned i = 0; i < motion_count(40); i++) {
         struct ref_segment segment[REF_SEGMENTS];
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         unsigned n = 1 + (unsigned)motion_random(REF_SEGMENTS), s = motion_pick(1, 2000);
         for (unsigned j = 0; j < n; j++)
             segment[j] = (struct ref_segment){motion_pick(1, 300), motion_pick(2, 16000), motion_pick(10, 60000)};
@@ -242,8 +243,8 @@ END_TEST
 
 /* ---- Knife edges --------------------------------------------------------------------------------------------------- */
 
-/* A motion at constant speed V since long is stopped at slot n: x' = S(V - S)/A + Vn/1000. Finds the slot at which it lies r/1000A
- * above a whole number. Returns 0 if there is none. */
+/* A motion at constant speed V since long is stopped at slot n: x' = S(V - S)/A + Vn/1000. Finds the slot at which it lies
+ * r/1000A above a whole number. Returns 0 if there is none. */
 static unsigned slot_of_remainder(unsigned s, unsigned v, unsigned a, uint64_t r, unsigned first)
 {
     uint64_t unit = UINT64_C(1000) * a, offset = UINT64_C(1000) * s * (v - s) % unit;
@@ -267,7 +268,7 @@ static void stop_once(unsigned s, const struct ref_segment *segment, unsigned n,
 START_TEST(R5_a_place_just_above_a_whole_number_adds_a_step_and_a_whole_one_does_not)
 {
     unsigned above = 0, exactly = 0;
-    motion_randomize(motion_seed());
+    motion_randomize(0);
     while (above < motion_count(400) || exactly < motion_count(400)) {
         unsigned s = motion_pick(1, 2000), v = s + 1 + (unsigned)motion_random(14000), a = motion_pick(100, 60000);
         unsigned first = (unsigned)(1000.0 * (v - s) / a) + 2;
@@ -290,11 +291,11 @@ START_TEST(R5_a_place_just_above_a_whole_number_adds_a_step_and_a_whole_one_does
 END_TEST
 
 /* x' of a stop at second t, at constant speed in the second of two segments, less V2 t. */
-static long double offset_in_second(unsigned s, const struct ref_segment two[2], long double border_speed, long double border_time)
+static long double offset_in_second(unsigned s, const struct ref_segment two[2], long double border, long double border_time)
 {
     long double v = two[1].speed, a = two[1].acceleration;
-    return (long double)two[0].steps + (v * v - border_speed * border_speed) / (2 * a) - v * (border_time + (v - border_speed) / a) +
-           (v * v - (long double)s * s) / (2 * a);
+    long double steady_place = (long double)two[0].steps + (v * v - border * border) / (2 * a);
+    return steady_place - v * (border_time + (v - border) / a) + (v * v - (long double)s * s) / (2 * a);
 }
 
 /* The first slot after `first` at which offset + v n/1000 lies less than `near` above a whole number, or 0. v and 1000 have no
@@ -314,7 +315,7 @@ static unsigned slot_just_above(long double offset, unsigned v, unsigned first, 
 START_TEST(R5_an_irrational_place_just_above_a_whole_number_counts_as_that_number)
 {
     unsigned met = 0;
-    motion_randomize(motion_seed() + 1);
+    motion_randomize(1);
     while (met < motion_count(300)) {
         unsigned s = motion_pick(1, 2000);
         struct ref_segment two[] = {{1 + motion_random(60), 16000, motion_pick(10, 60000)}, {0, 0, motion_pick(10, 60000)}};
@@ -325,18 +326,45 @@ START_TEST(R5_an_irrational_place_just_above_a_whole_number_counts_as_that_numbe
         long double time = (border - s) / two[0].acceleration, steady = time + (two[1].speed - border) / two[1].acceleration;
         if (steady > 3)
             continue;
-        unsigned slot = slot_just_above(offset_in_second(s, two, border, time), two[1].speed, (unsigned)(steady * 1000) + 2, 0.9e-6L);
+        long double offset = offset_in_second(s, two, border, time);
+        unsigned slot = slot_just_above(offset, two[1].speed, (unsigned)(steady * 1000) + 2, 0.9e-6L);
         if (slot == 0 || two[0].acceleration == two[1].acceleration)
             continue;
-        two[1].steps = (uint64_t)(two[1].speed * (slot / 1000.0L + 2)) + (uint64_t)two[1].speed * two[1].speed / two[1].acceleration;
+        two[1].steps = two[1].speed * (slot / 1000 + 3) + two[1].speed * two[1].speed / two[1].acceleration;
         stop_once(s, two, 2, slot, REF_EDGE_IRRATIONAL);
         met++;
     }
 }
 END_TEST
 
-/* Stops in the second segment, at constant speed, where x' lies less than `near` above a whole number; returns how many really do.
- * The lower the second acceleration, the nearer to a whole number may a fraction come. */
+/* At a speed up to S the place itself is what counts: x' = x. */
+START_TEST(R5_at_a_speed_up_to_S_an_irrational_place_just_above_a_whole_number_counts_as_that_number)
+{
+    unsigned met = 0;
+    motion_randomize(4);
+    while (met < motion_count(200)) {
+        unsigned s = motion_pick(20, 2000);
+        struct ref_segment two[] = {{1 + motion_random(60), 16000, motion_pick(10, 60000)},
+                                    {0, 1 + (unsigned)motion_random(s), motion_pick(10, 60000)}};
+        long double v = two[1].speed, a = two[0].acceleration;
+        long double peak = sqrtl(((long double)s * s + v * v) / 2 + a * (long double)two[0].steps), time = (2 * peak - s - v) / a;
+        if (two[1].speed % 2 == 0 || two[1].speed % 5 == 0 || peak > 16000 || floorl(2 * peak) == 2 * peak || time > 3)
+            continue;
+        if ((s * s - v * v) / (2 * a) > (long double)two[0].steps) /* V2 cannot be reached from S */
+            continue;
+        long double offset = (long double)two[0].steps - v * time;
+        unsigned slot = slot_just_above(offset, two[1].speed, (unsigned)(time * 1000) + 2, 0.9e-6L);
+        if (slot == 0)
+            continue;
+        two[1].steps = two[1].speed * (slot / 1000 + 3);
+        stop_once(s, two, 2, slot, REF_EDGE_IRRATIONAL);
+        met++;
+    }
+}
+END_TEST
+
+/* Stops in the second segment, at constant speed, where x' lies less than `near` above a whole number; returns how many
+ * really do. The lower the second acceleration, the nearer to a whole number may a fraction come. */
 static unsigned stop_at_fractions(unsigned tries, long double near, unsigned most_acceleration)
 {
     unsigned met = edges[REF_EDGE_RATIONAL];
@@ -344,7 +372,7 @@ static unsigned stop_at_fractions(unsigned tries, long double near, unsigned mos
         unsigned s = motion_pick(1, 2000);
         struct ref_segment two[] = {{0, s + 1 + (unsigned)motion_random(2000), motion_pick(100, 60000)},
                                     {0, 0, motion_pick(1, most_acceleration)}};
-        two[1].speed = two[0].speed + 1 + (unsigned)motion_random(2 * two[1].acceleration < 2000 ? 2 * two[1].acceleration : 2000);
+        two[1].speed = two[0].speed + 1 + (unsigned)motion_random(two[1].acceleration < 1000 ? 2 * two[1].acceleration : 2000);
         long double v = two[0].speed, a = two[0].acceleration, rise = (v * v - (long double)s * s) / (2 * a);
         two[0].steps = (uint64_t)rise + 1 + motion_random(500);
         long double time = (v - s) / a + ((long double)two[0].steps - rise) / v;
@@ -354,7 +382,7 @@ static unsigned stop_at_fractions(unsigned tries, long double near, unsigned mos
         unsigned slot = slot_just_above(offset_in_second(s, two, v, time), two[1].speed, (unsigned)(steady * 1000) + 2, near);
         if (slot == 0)
             continue;
-        two[1].steps = (uint64_t)(two[1].speed * (slot / 1000.0L + 2)) + (uint64_t)two[1].speed * two[1].speed / two[1].acceleration;
+        two[1].steps = two[1].speed * (slot / 1000 + 3) + two[1].speed * two[1].speed / two[1].acceleration;
         motion_trying("knife edge in a compound, K in slot %u of", slot);
         motion_trying_segments(s, two, 2);
         uint64_t begin = begin_motion(BY_K, s, two, 2);
@@ -367,8 +395,8 @@ static unsigned stop_at_fractions(unsigned tries, long double near, unsigned mos
         uint64_t last = begin + ref_tick(&stopped, stopped.steps);
         motion_to(&rig, last + 100 * SLOT);
         motion_check(rig.steps == stopped.steps && rig.last + 1 >= last && rig.last <= last + 1,
-                     "%llu steps, the last at %llu, expected %llu at %llu; %s", (unsigned long long)rig.steps,
-                     (unsigned long long)rig.last, (unsigned long long)stopped.steps, (unsigned long long)last, motion_what());
+                     "%" PRIu64 " steps, the last at %" PRIu64 ", expected %" PRIu64 " at %" PRIu64 "; %s", rig.steps, rig.last,
+                     stopped.steps, last, motion_what());
         tries--;
     }
     return edges[REF_EDGE_RATIONAL] - met;
@@ -376,14 +404,14 @@ static unsigned stop_at_fractions(unsigned tries, long double near, unsigned mos
 
 START_TEST(R5_a_rational_place_just_above_a_whole_number_adds_a_step_in_a_compound)
 {
-    motion_randomize(motion_seed() + 2);
+    motion_randomize(2);
     ck_assert_uint_ge(stop_at_fractions(motion_count(300), 0.9e-6L, 60000), motion_count(200));
 }
 END_TEST
 
 START_TEST(R5_a_rational_place_less_than_10_to_the_minus_8_above_a_whole_number_adds_a_step)
 {
-    motion_randomize(motion_seed() + 3);
+    motion_randomize(3);
     ck_assert_uint_ge(stop_at_fractions(motion_count(150), 1e-8L, 12), 1);
 }
 END_TEST
@@ -415,8 +443,8 @@ START_TEST(C3_C75_during_the_ramp_goes_on_behind_it_and_a_later_K_cancels_that)
                 continue;
             }
             uint64_t again = rig.begin;
-            motion_check(again % SLOT == 0 && again >= last && again <= last + SLOT + 11, "goes on at %llu, last pulse at %llu; %s",
-                          (unsigned long long)again, (unsigned long long)last, motion_what());
+            motion_check(again % SLOT == 0 && again >= last && again <= last + SLOT + 11,
+                         "goes on at %" PRIu64 ", last pulse at %" PRIu64 "; %s", again, last, motion_what());
             ck_assert(ref_plan_rest(&rest, &stopped));
             motion_to(&rig, again + ref_tick(&rest, rest.steps) + 5 * SLOT);
             motion_expect(&rig, &rest, again, stopped.steps, 1, 1);
@@ -429,7 +457,7 @@ START_TEST(C3_a_motion_held_and_resumed_many_times_makes_all_its_steps)
 {
     const struct ref_segment three[] = {{300, 700, 3000}, {500, 1500, 2500}, {200, 400, 9001}};
     for (unsigned i = 0; i < motion_count(100); i++) {
-        motion_randomize(motion_seed() + i);
+        motion_randomize(i);
         uint64_t begin = begin_motion(BY_K, 100, three, 3), done = 0;
         for (unsigned holds = 0; holds < 6; holds++) {
             motion_trying("hold %u of run %u", holds, i);
@@ -450,7 +478,7 @@ START_TEST(C3_a_motion_held_and_resumed_many_times_makes_all_its_steps)
                 break;
         }
         motion_to(&rig, begin + 5000000);
-        motion_check(rig.steps == 1000 && rig.position == 1000, "%llu steps; %s", (unsigned long long)rig.steps, motion_what());
+        motion_check(rig.steps == 1000 && rig.position == 1000, "%" PRIu64 " steps; %s", rig.steps, motion_what());
         motion_check(motion_state(&rig) == RKM04_IDLE, "not idle; %s", motion_what());
     }
 }
@@ -492,6 +520,7 @@ int main(void)
     tcase_set_timeout(edge, 200);
     tcase_add_test(edge, R5_a_place_just_above_a_whole_number_adds_a_step_and_a_whole_one_does_not);
     tcase_add_test(edge, R5_an_irrational_place_just_above_a_whole_number_counts_as_that_number);
+    tcase_add_test(edge, R5_at_a_speed_up_to_S_an_irrational_place_just_above_a_whole_number_counts_as_that_number);
     tcase_add_test(edge, R5_a_rational_place_just_above_a_whole_number_adds_a_step_in_a_compound);
     tcase_add_test(edge, R5_a_rational_place_less_than_10_to_the_minus_8_above_a_whole_number_adds_a_step);
     suite_add_tcase(suite, edge);

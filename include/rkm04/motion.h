@@ -91,6 +91,7 @@ struct rkm04_motion {
     bool forward;
     bool moving;         /* between begin and last pulse; false during a hold */
     bool stopping;       /* on a stop ramp (R5) */
+    bool changed;        /* its speed has been changed on the way (C4) */
 };
 
 #endif

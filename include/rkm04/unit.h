@@ -159,6 +159,7 @@ struct rkm04_motor {
     uint8_t fault;       /* enum rkm04_fault */
     uint8_t led;         /* enum rkm04_led */
     bool resume;         /* C75 came: go on as soon as the motor may */
+    bool hold_fresh;     /* K came behind the commands at `fresh`: hold before them */
     bool pin_forward;    /* the direction output */
     uint8_t slot;        /* enum rkm04_slot: what power-up found in flash */
 
@@ -275,7 +276,8 @@ uint16_t rkm04_variables(const struct rkm04_unit *unit); /* VAR 80 in bit 0 */
 struct rkm04_counters rkm04_counters(const struct rkm04_unit *unit);
 
 /* The same as message 2 (Set Command) without a line: store a text for motor '0'..'4' at the present tick. For programs
- * run without a master. Returns the flag 0..3 of P1 and, with 1 and 2, the character in *character (may be NULL). */
+ * run without a master. Must not be called while an answer is going out on the line. Returns the flag 0..3 of P1 and, with 1
+ * and 2, the character in *character (may be NULL). */
 int rkm04_set_command(struct rkm04_unit *unit, char motor, const void *text, size_t length, uint8_t *character);
 
 /* Any message, without framing, as if from node 0 at the present tick. `answer` receives up to `room` bytes of what the

@@ -171,7 +171,8 @@ static void advise(const struct dialogue *d)
         fprintf(stderr, "  - %" PRIu32 " messages came that are not the answer: is another program or unit on this address?\n",
                 client->strange);
     else if (client->heard > 0)
-        fprintf(stderr, "  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right (see below)?\n",
+        fprintf(stderr,
+                "  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right (see below)?\n",
                 client->heard);
     fprintf(stderr,
             "  - has the unit power, and is its line (A, B) connected to %s?\n"

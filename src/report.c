@@ -1,0 +1,11 @@
+#include "report.h"
+
+void report_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count)
+{
+    void (*step)(void *, uint64_t, unsigned, int32_t) = unit->port->step;
+    void *context = unit->context;
+    uint32_t position = (uint32_t)motor->position, way = motor->motion.forward ? 1 : UINT32_MAX;
+    unsigned number = motor_number(unit, motor);
+    for (const uint64_t *end = tick + count; tick < end; tick++)
+        step(context, *tick, number, (int32_t)(position += way));
+}
