@@ -131,8 +131,9 @@ static void spin(uint64_t end, const char *condition)
         ck_abort_msg("never: %s; story: %s", condition, line.story);
 }
 
-/* Let the loop run, and do what follows, until the condition is true; fail if that takes too long. */
+/* Let the loop run until the condition is true; fail if that takes too long. UNTIL does what follows meanwhile. */
 #define UNTIL(condition) for (uint64_t end_ = now_ms() + LIMIT_MS; !(condition); spin(end_, #condition))
+#define AWAIT(condition) UNTIL(condition) {}
 
 static int connect_client(void)
 {
@@ -148,8 +149,7 @@ static int attach_client(void)
 {
     int fd = connect_client();
     line.story[0] = '\0';
-    UNTIL(strstr(line.story, "attached"))
-        ;
+    AWAIT(strstr(line.story, "attached"));
     return fd;
 }
 
@@ -179,8 +179,7 @@ static void send_all(int fd, const void *bytes, size_t length)
 
 static void is_heard(const char *text)
 {
-    UNTIL(line.heard_count >= strlen(text))
-        ;
+    AWAIT(line.heard_count >= strlen(text));
     ck_assert_mem_eq(line.heard, text, strlen(text));
     ck_assert_uint_eq(line.heard_count, strlen(text));
 }
@@ -262,8 +261,7 @@ START_TEST(bytes_pass_both_ways_as_they_are)
     ck_assert_uint_eq(net_port_send(&line.port, (const uint8_t *)"\xff\xf0\n\0", 4), 0);
     GETS(fd, "\xff\xf0\n\0");
     close(fd);
-    UNTIL(!line.port.attached)
-        ;
+    AWAIT(!line.port.attached);
     ck_assert_str_eq(line.story, "attached detached ");
     close_line();
 }
@@ -341,13 +339,11 @@ START_TEST(a_client_that_only_stops_sending_gets_its_answer)
     int fd = attach_client();
     send_all(fd, "ask", 3);
     shutdown(fd, SHUT_WR);
-    UNTIL(net_port_client(&line.port) == NULL)
-        ;
+    AWAIT(net_port_client(&line.port) == NULL);
     is_heard("ask");
     net_port_send(&line.port, (const uint8_t *)"answer", 6);
     GETS(fd, "answer");
-    UNTIL(!line.port.attached)
-        ;
+    AWAIT(!line.port.attached);
     close(fd);
     close_line();
 }
@@ -358,12 +354,10 @@ START_TEST(a_client_that_stops_sending_gives_way_to_the_next)
     open_line(NET_RAW, "0");
     int first = attach_client();
     shutdown(first, SHUT_WR);
-    UNTIL(net_port_client(&line.port) == NULL)
-        ;
+    AWAIT(net_port_client(&line.port) == NULL);
     line.story[0] = '\0';
     int second = connect_client();
-    UNTIL(net_port_client(&line.port) != NULL)
-        ;
+    AWAIT(net_port_client(&line.port) != NULL);
     ck_assert_str_eq(line.story, "detached attached ");
     net_port_send(&line.port, (const uint8_t *)"to you", 6);
     GETS(second, "to you");
@@ -388,8 +382,7 @@ START_TEST(bytes_wait_for_room_and_none_is_lost)
         sent += n > 0 ? (size_t)n : 0;
         line.room = wanted - line.heard_count;
         net_port_wake(&line.port);
-        UNTIL(line.heard_count == wanted)
-        ;
+        AWAIT(line.heard_count == wanted);
     }
     ck_assert_mem_eq(line.heard, bytes, sizeof bytes);
     close(fd);
@@ -404,12 +397,10 @@ START_TEST(what_a_client_has_written_reaches_the_units_after_it_has_gone)
     int fd = attach_client();
     send_all(fd, "first", 5);
     close(fd);
-    UNTIL(net_port_client(&line.port) == NULL)
-        ;
+    AWAIT(net_port_client(&line.port) == NULL);
     fd = connect_client();
     send_all(fd, "second", 6);
-    UNTIL(net_port_client(&line.port) != NULL)
-        ;
+    AWAIT(net_port_client(&line.port) != NULL);
     line.room = HEARD_MAX;
     net_port_wake(&line.port);
     is_heard("firstsecond");
@@ -451,8 +442,7 @@ START_TEST(a_client_that_is_torn_away_leaves_the_line_to_the_next)
     int fd = attach_client();
     setsockopt(fd, SOL_SOCKET, SO_LINGER, &now, sizeof now);
     close(fd); /* a reset */
-    UNTIL(!line.port.attached)
-        ;
+    AWAIT(!line.port.attached);
     net_port_send(&line.port, (const uint8_t *)"abc", 3);
     close(attach_client());
     close_line();
@@ -464,8 +454,7 @@ START_TEST(closing_the_line_lets_go_of_everybody)
     char text[200];
     open_line(NET_RAW, "0");
     int first = attach_client(), second = connect_client();
-    UNTIL(strstr(line.story, "refused"))
-        ;
+    AWAIT(strstr(line.story, "refused"));
     close_line();
     ck_assert_uint_eq(receive(first, text, sizeof text), 0);
     close(first);
@@ -563,11 +552,9 @@ START_TEST(a_break_ends_and_settings_are_fresh_when_the_client_has_gone)
     open_line(NET_RFC2217, "0");
     int fd = attach_rfc2217();
     send_all(fd, "\xff\xfa\x2c\x05\x05\xff\xf0\xff\xfa\x2c\x02\x07\xff\xf0\xff\xfa\x2c\x08\xff\xf0", 20);
-    UNTIL(line.port.rfc2217.suspended)
-        ;
+    AWAIT(line.port.rfc2217.suspended);
     close(fd);
-    UNTIL(!line.port.attached)
-        ;
+    AWAIT(!line.port.attached);
     ck_assert_str_eq(line.story, "attached break 19200-7N1 unbreak detached ");
     fd = attach_rfc2217();
     send_all(fd, "\xff\xfa\x2c\x02\x00\xff\xf0", 7);
