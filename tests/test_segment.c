@@ -56,6 +56,17 @@ START_TEST(U7_six_thousand_bytes_take_their_time_to_the_tick)
 }
 END_TEST
 
+START_TEST(U7_bytes_handed_over_when_the_one_before_has_passed_follow_without_a_gap)
+{
+    begin(one);
+    for (unsigned k = 0; k < 120; k++) {
+        segment_take(line, (const uint8_t *)"x", 1, segment_now(line));
+        line_settle();
+    }
+    ck_assert_uint_eq(segment_now(line), 120 / 12 * 6250);
+}
+END_TEST
+
 START_TEST(U7_gaps_between_bytes_are_kept)
 {
     static const uint64_t tick[] = {100, 5000, 5100, 5543, 7003, 9001};
@@ -248,9 +259,10 @@ START_TEST(P10_a_request_during_the_turnaround_is_taken_after_the_answer)
     struct segment_config config = line_timed();
     config.turnaround = 20000;
     line_begin(&config, three, NULL);
-    line_ask(1, VERSION, 1, 0);
+    size_t length = line_ask(1, VERSION, 1, 0);
     line_ask(1, "\0041", 2, 0);
     line_settle();
+    ck_assert_uint_eq(heard->tick[0], line_passed(20000, length + 1));
     ck_assert_uint_eq(line_answers(1, 1), 1);
     ck_assert_uint_eq(line_answers(1, 4), 1);
     ck_assert_uint_eq(segment_counters(line).overruns, 0);
@@ -302,6 +314,20 @@ START_TEST(a_unit_that_loses_power_stops_in_the_middle_of_its_answer)
     line_settle();
     ck_assert_uint_eq(line_answers(2, 1), 0);
     ck_assert_uint_eq(line_answers(1, 1), 1);
+}
+END_TEST
+
+START_TEST(a_unit_that_loses_power_during_the_turnaround_does_not_answer)
+{
+    begin(three);
+    size_t length = line_ask(2, VERSION, 1, 0);
+    segment_advance(line, line_passed(0, length) + 100);
+    ck_assert(!segment_idle(line));
+    segment_power(line, 2, false);
+    ck_assert(segment_idle(line));
+    segment_advance(line, SECOND);
+    ck_assert_uint_eq(heard->count, 0);
+    ck_assert_uint_eq(line_rig.monitored, length);
 }
 END_TEST
 
@@ -368,17 +394,31 @@ START_TEST(a_break_spoils_what_is_sent_meanwhile)
 }
 END_TEST
 
+START_TEST(a_break_is_no_byte_for_the_master_either)
+{
+    struct segment_config config = line_timed();
+    config.echo = true;
+    line_begin(&config, one, NULL);
+    segment_break(line, true);
+    segment_advance(line, 5000);
+    segment_break(line, false);
+    line_settle();
+    ck_assert_uint_eq(heard->count, 0);
+    ck_assert_uint_eq(line_rig.monitored, 1);
+    ck_assert(line_rig.monitor[0].lost);
+}
+END_TEST
+
 START_TEST(bytes_that_are_purged_never_set_out)
 {
     begin(one);
     size_t length = line_ask(1, VERSION, 1, 0);
     segment_advance(line, 1000); /* the second byte is on the wire */
     ck_assert_uint_eq(segment_purge(line), length - 2);
-    ck_assert_uint_eq(line_settle(), line_passed(0, 2));
-    ck_assert_uint_eq(line_rig.monitored, 2);
-    line_ask(1, VERSION, 1, segment_now(line));
+    size_t again = line_ask(1, VERSION, 1, 1000); /* follows the second byte */
     line_settle();
     ck_assert_uint_eq(line_answers(1, 1), 1);
+    ck_assert_uint_eq(line_rig.monitor[1 + again].tick, line_passed(0, 2 + again));
 }
 END_TEST
 
@@ -406,6 +446,7 @@ START_TEST(a_line_is_idle_before_the_first_byte_and_after_the_last_one)
     begin(three);
     ck_assert(segment_idle(line));
     line_ask(1, VERSION, 1, 100);
+    ck_assert_uint_eq(segment_due(line), line_passed(100, 1));
     while (line_answers(1, 1) == 0) {
         ck_assert(!segment_idle(line));
         segment_advance(line, segment_due(line));
@@ -440,6 +481,7 @@ int main(void)
     TCase *times = add_case(suite, "times");
     tcase_add_test(times, U7_byte_k_of_a_burst_has_passed_after_k_times_ten_bits);
     tcase_add_test(times, U7_six_thousand_bytes_take_their_time_to_the_tick);
+    tcase_add_test(times, U7_bytes_handed_over_when_the_one_before_has_passed_follow_without_a_gap);
     tcase_add_test(times, U7_gaps_between_bytes_are_kept);
     tcase_add_test(times, K4_a_request_acts_when_its_last_byte_has_passed);
     tcase_add_loop_test(times, the_answer_begins_when_the_turnaround_is_over, 0, 5);
@@ -461,11 +503,13 @@ int main(void)
     TCase *power = add_case(suite, "power");
     tcase_add_test(power, a_unit_without_power_is_silent_and_the_others_work_on);
     tcase_add_test(power, a_unit_that_loses_power_stops_in_the_middle_of_its_answer);
+    tcase_add_test(power, a_unit_that_loses_power_during_the_turnaround_does_not_answer);
     tcase_add_test(power, U8_power_up_begins_anew_with_a_time_of_its_own);
     tcase_add_test(power, next_events_count_in_the_time_of_the_line);
     TCase *master = add_case(suite, "master");
     tcase_add_loop_test(master, with_an_echo_the_master_hears_itself, 0, 2);
     tcase_add_test(master, a_break_spoils_what_is_sent_meanwhile);
+    tcase_add_test(master, a_break_is_no_byte_for_the_master_either);
     tcase_add_test(master, bytes_that_are_purged_never_set_out);
     TCase *state = add_case(suite, "state");
     tcase_add_loop_test(state, a_frame_is_open_until_its_last_byte, 0, 2);

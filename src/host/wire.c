@@ -19,13 +19,11 @@ static unsigned bit_at(const struct wire_signal *signal, uint64_t time)
     return signal->held ? 0 : (unsigned)((time - signal->start) / WIRE_BIT);
 }
 
-/* The level at `time`, without what `station` sends itself. */
-static bool level(const struct wire *wire, unsigned station, uint64_t time)
+static bool level(const struct wire *wire, uint64_t time)
 {
     for (unsigned i = 0; i < wire->count; i++) {
         const struct wire_signal *signal = &wire->signal[i];
-        if (signal->station != station && signal->start <= time && time < signal->end &&
-            (signal->bits >> bit_at(signal, time) & 1u) == 0)
+        if (signal->start <= time && time < signal->end && (signal->bits >> bit_at(signal, time) & 1u) == 0)
             return false;
     }
     return true;
@@ -34,8 +32,7 @@ static bool level(const struct wire *wire, unsigned station, uint64_t time)
 /* ---- Where the line falls ------------------------------------------------------------------------------------------- */
 
 /* The first time after `after` and before `before` at which a signal goes to 0 by itself and finds the line at 1. */
-static uint64_t signal_falls(const struct wire *wire, unsigned station, const struct wire_signal *signal, uint64_t after,
-                             uint64_t before)
+static uint64_t signal_falls(const struct wire *wire, const struct wire_signal *signal, uint64_t after, uint64_t before)
 {
     unsigned bit = after < signal->start ? 0 : bit_at(signal, after) + 1u;
     for (; bit < (signal->held ? 1u : STOP_BIT); bit++) {
@@ -43,24 +40,23 @@ static uint64_t signal_falls(const struct wire *wire, unsigned station, const st
         bool falls = (signal->bits >> bit & 1u) == 0 && (bit == 0 || (signal->bits >> (bit - 1u) & 1u) != 0);
         if (time >= before || time >= signal->end)
             break;
-        if (falls && time > after && (time == 0 || level(wire, station, time - 1u)))
+        if (falls && time > after && (time == 0 || level(wire, time - 1u)))
             return time;
     }
     return RKM04_NEVER;
 }
 
-/* The first time from `from` on at which a station that sends nothing hears the line fall. `high`: whatever went before, it has
- * heard a 1. */
-static uint64_t line_falls(const struct wire *wire, unsigned station, uint64_t from, bool high)
+/* The first time from `from` on at which the line falls. `high`: whatever went before, it was at 1. */
+static uint64_t line_falls(const struct wire *wire, uint64_t from, bool high)
 {
-    if ((high || from == 0 || level(wire, station, from - 1u)) && !level(wire, station, from))
+    if ((high || from == 0 || level(wire, from - 1u)) && !level(wire, from))
         return from;
     uint64_t first = RKM04_NEVER;
     for (unsigned i = 0; i < wire->count; i++) {
         const struct wire_signal *signal = &wire->signal[i];
-        if (signal->station == station || signal->end <= from)
+        if (signal->end <= from)
             continue;
-        uint64_t time = signal_falls(wire, station, signal, from, first);
+        uint64_t time = signal_falls(wire, signal, from, first);
         if (time < first)
             first = time;
     }
@@ -78,7 +74,7 @@ static uint64_t own_end(const struct wire *wire, unsigned station, uint64_t from
     return RKM04_NEVER;
 }
 
-/* Find the beginning of the next byte that an ear hears: one within which it does not begin to send itself. */
+/* Find the beginning of the next byte that an ear hears: one during which it does not send itself. */
 static void listen(struct wire *wire, unsigned ear)
 {
     uint64_t from = wire->ear[ear].from, fall = RKM04_NEVER, end;
@@ -89,8 +85,8 @@ static void listen(struct wire *wire, unsigned ear)
                 from = end;
                 high = true;
             }
-            fall = line_falls(wire, ear, from, high);
-            end = own_end(wire, ear, from, fall == RKM04_NEVER ? RKM04_NEVER : fall + DECIDED);
+            fall = line_falls(wire, from, high);
+            end = own_end(wire, ear, from, fall == RKM04_NEVER ? RKM04_NEVER : fall + DECIDED + 1u);
             from = end;
             high = true;
         } while (end != RKM04_NEVER);
@@ -251,18 +247,18 @@ static uint32_t senders(const struct wire *wire, uint64_t start, uint64_t end)
 static bool sample(const struct wire *wire, unsigned ear, struct wire_byte *heard)
 {
     uint64_t start = wire->ear[ear].fall;
-    if (level(wire, ear, start + MIDDLE))
+    if (level(wire, start + MIDDLE))
         return false;
     unsigned byte = 0;
     for (unsigned bit = 1; bit < STOP_BIT; bit++)
-        byte |= (unsigned)level(wire, ear, start + bit * WIRE_BIT + MIDDLE) << (bit - 1u);
+        byte |= (unsigned)level(wire, start + bit * WIRE_BIT + MIDDLE) << (bit - 1u);
     *heard = (struct wire_byte){
         .start = start,
         .end = start + WIRE_BYTE,
         .ear = ear,
         .senders = senders(wire, start, start + WIRE_BYTE),
         .byte = (uint8_t)byte,
-        .lost = !level(wire, ear, start + DECIDED),
+        .lost = !level(wire, start + DECIDED),
     };
     return true;
 }
