@@ -294,15 +294,22 @@ static struct wide square_of(struct rkm04_fixed w)
     return wide_sum(square, (struct wide){0, wide_high(w.part, (uint64_t)w.whole * 2)});
 }
 
+/* w at `tick`, and y counted from the last whole step instead of the next one: 0 <= y < RAMP_STEP. */
+static void look_behind_step(const struct rkm04_motion *motion, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
+{
+    ramp_look(&motion->ramp, tick, y, w);
+    if (y->whole >= 0)
+        *y = (struct rkm04_fixed){-1, 0};
+    y->whole += RAMP_STEP;
+}
+
 /* The place and speed at `tick`, from the pulse generator. */
 static struct state present(const struct rkm04_motion *motion, uint64_t tick)
 {
     struct rkm04_fixed y, w;
-    ramp_look(&motion->ramp, tick, &y, &w);
-    if (y.whole >= 0)
-        y = (struct rkm04_fixed){-1, 0};
+    look_behind_step(motion, tick, &y, &w);
     uint64_t rest;
-    uint64_t high = wide_divide((struct wide){(uint64_t)(y.whole + RAMP_STEP), y.part}, RAMP_STEP, &rest);
+    uint64_t high = wide_divide((struct wide){(uint64_t)y.whole, y.part}, RAMP_STEP, &rest);
     uint64_t low = wide_divide((struct wide){rest, 0}, RAMP_STEP, &rest);
     struct state state = {.moving = true};
     state.at = (struct rkm04_place){(uint64_t)motion->done << 32 | high >> 32, high << 32 | low >> 32};
@@ -342,11 +349,11 @@ void profile_change_speed(struct rkm04_motion *motion, uint64_t tick, uint16_t s
     ramp_go_on(&motion->ramp, &motion->profile, tick);
 }
 
-/* Where a stop ends, in exact arithmetic (R5). In units of 1/(8e12 * a) step the way is a whole number:
- * w^2 - (2e6 * S)^2 plus 4 * a * y, counted from the next pulse on. */
+/* Where a stop ends, in exact arithmetic (R5). In units of 1/(8e12 * a) step the way from a whole step is a whole number:
+ * w^2 - (2e6 * S)^2 plus 4 * a * y, with y counted from that step. */
 struct stop {
-    struct wide energy; /* w^2 - w_S^2 still to be lost */
-    int64_t offset;     /* 4 * a * y: where the motion is, from `step`; <= 0 */
+    struct wide energy; /* w^2 - w_S^2 still to be lost; 0 at a speed up to S */
+    uint64_t offset;    /* 4 * a * y: how far the motion is behind `step` */
     uint32_t step;
 };
 
@@ -364,38 +371,33 @@ static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint64_t un
 static uint32_t steps_of_stop(const struct rkm04_motion *motion, const struct stop *stop, uint16_t acceleration)
 {
     const uint64_t unit = (uint64_t)4 * acceleration * (uint64_t)RAMP_STEP;
-    const uint64_t tolerance = tolerance_of_stop(motion, unit);
-    uint64_t short_of = (uint64_t)-stop->offset;
-    if (stop->energy.high == 0 && stop->energy.low <= short_of)
-        return 0;
-    struct wide way = wide_difference(stop->energy, (struct wide){0, short_of});
+    struct wide way = wide_sum(stop->energy, (struct wide){0, stop->offset});
     uint64_t rest, steps = wide_divide(way, unit, &rest);
-    return (uint32_t)steps + (rest >= tolerance);
+    return (uint32_t)steps + (rest >= tolerance_of_stop(motion, unit));
 }
 
-/* The last step of a stop from `state`, and the break points of its ramp, one a segment. */
-static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, struct rkm04_fixed y, struct rkm04_fixed w)
+/* The last step of a stop from `state`, where 2e12 * position lies `y` behind the last whole step, and the break points of its
+ * ramp, one a segment. */
+static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, struct stop stop, struct rkm04_fixed y)
 {
-    const int64_t w_end = RAMP_SPEED * motion->start_speed;
-    struct stop stop = {.step = motion->done + 1};
-    stop.energy = wide_difference(square_of(w), wide_product((uint64_t)w_end, (uint64_t)w_end));
     for (;; state->segment++) {
         uint16_t acceleration = motion->segment[state->segment].acceleration;
         uint64_t factor = (uint64_t)4 * acceleration;
-        stop.offset = y.whole * (int64_t)factor + (int64_t)wide_high(y.part, factor);
+        stop.offset = (uint64_t)y.whole * factor + wide_high(y.part, factor);
         uint32_t last = stop.step + steps_of_stop(motion, &stop, acceleration);
-        add_break(&motion->profile, state->at, state->q, -(int32_t)acceleration);
+        bool falling = (stop.energy.high | stop.energy.low) != 0;
+        add_break(&motion->profile, state->at, state->q, falling ? -(int32_t)acceleration : 0);
         if (motion->kind != RKM04_MOTION_STEPS)
             return last;
         struct rkm04_place end = end_of(motion, state->segment);
-        if (last <= ramp_step_of(end))
+        if (last <= ramp_step_of(end) || !falling)
             return last;
         if (state->segment + 1u == motion->segments)
             return motion->total;
         struct wide lost = wide_product(factor * (uint64_t)RAMP_STEP, ramp_step_of(end) - stop.step);
-        lost = wide_sum(lost, (struct wide){0, (uint64_t)-stop.offset});
+        lost = wide_difference(lost, (struct wide){0, stop.offset});
         stop.energy = wide_difference(stop.energy, lost);
-        state->q -= lower(state->q, energy(acceleration, state->at, end));
+        state->q = lowered(state->q, energy(acceleration, state->at, end));
         state->at = end;
         stop.step = ramp_step_of(end);
         y = (struct rkm04_fixed){0, 0};
@@ -407,23 +409,20 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
     struct rkm04_profile *profile = &motion->profile;
     if (on_final_ramp(motion))
         return true;
-    struct rkm04_fixed y, w;
-    ramp_look(&motion->ramp, tick, &y, &w);
+    const int64_t w_end = RAMP_SPEED * motion->start_speed;
     struct state state = present(motion, tick);
-    uint64_t q_end = q_of(motion->start_speed);
+    struct stop stop = {.step = motion->done};
+    struct rkm04_fixed y, w;
+    look_behind_step(motion, tick, &y, &w);
+    if (state.q > q_of(motion->start_speed))
+        stop.energy = wide_difference(square_of(w), wide_product((uint64_t)w_end, (uint64_t)w_end));
+    uint64_t q_end = lower(state.q, q_of(motion->start_speed));
     mark_present(profile);
-    uint32_t last;
-    if (state.q <= q_end) {
-        last = (uint32_t)(state.at.high >> 32) + ((uint32_t)state.at.high != 0 || state.at.low != 0);
-        add_break(profile, state.at, state.q, 0);
-        q_end = state.q;
-    } else {
-        last = plan_stop(motion, &state, y, w);
-        uint16_t acceleration = motion->segment[state.segment].acceleration;
-        struct rkm04_place slow = ahead(state.at, lowered(state.q, q_end), acceleration);
-        if (stretches(acceleration, slow, place_at(last)))
-            add_break(profile, slow, q_end, 0);
-    }
+    uint32_t last = plan_stop(motion, &state, stop, y);
+    uint16_t acceleration = motion->segment[state.segment].acceleration;
+    struct rkm04_place slow = ahead(state.at, lowered(state.q, q_end), acceleration);
+    if (stretches(acceleration, slow, place_at(last)))
+        add_break(profile, slow, q_end, 0);
     profile->endless = false;
     add_end(profile, place_at(last), q_end);
     if (last == motion->done)
