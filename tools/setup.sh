@@ -5,7 +5,7 @@
 # Needed to build and run the emulator and its client.
 run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev)
 # Needed on top of that by the tests.
-test_packages=(check libgmp-dev socat procps dpkg-dev file gcc-arm-none-eabi libnewlib-arm-none-eabi)
+test_packages=(check libgmp-dev socat procps dpkg-dev file gcc-arm-none-eabi libnewlib-arm-none-eabi python3-serial gensio-bin)
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
