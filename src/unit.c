@@ -18,7 +18,7 @@ static const struct rkm04_framing *framing_of(const struct rkm04_unit *unit)
 
 void rkm04_init(struct rkm04_unit *unit, const struct rkm04_config *config, const struct rkm04_port *port, void *context)
 {
-    /* Field by field, not from a second unit on the stack: a unit is large. */
+    /* Byte by byte, not from a second unit on the stack: a unit is large, and memset() is not ours to ask for. */
     uint8_t *byte = (uint8_t *)unit;
     for (size_t i = 0; i < sizeof *unit; i++)
         byte[i] = 0;

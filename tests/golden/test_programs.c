@@ -1,6 +1,5 @@
-/* test_programs.c: the example programs of the manual's sections 4.6 and 7 (parameters, jumps,
- * compound motion), run as printed; where print, prose and figure
- * differ, section 7 of the specification says what counts.
+/* test_programs.c: the example programs of the manual's sections 4.6 and 7 (parameters, jumps, compound motion), run as
+ * printed; where print, prose and figure differ, section 7 of the specification says what counts.
  *
  * All times follow from three rules: a text that arrives at tick 0 begins in slot 1000, each command takes one slot, and the
  * command behind a motion is executed in the first slot at or after its last pulse + 10 us (K4). A motion of N steps takes
@@ -8,38 +7,7 @@
 #include <check.h>
 #include <string.h>
 
-#include "rig.h"
-
-static struct rig rig;
-static size_t seen; /* motions of motor 1 that a test has accounted for */
-
-static void setup(void)
-{
-    rig_power_up(&rig, NULL);
-    seen = 0;
-}
-
-static void teardown(void)
-{
-    rig_free(&rig);
-}
-
-/* The next motion of motor 1 began in this slot, at S100 A2000. Returns the slot of the command behind it. */
-static uint64_t moved(uint64_t slot, uint64_t v, size_t steps, bool forward)
-{
-    uint64_t end = slot + move_ticks(100, v, 2000, steps);
-    rig_expect_motion(&rig, 1, ++seen, slot, end, steps, forward);
-    return slot_behind(end);
-}
-
-/* The program is at its end, there were no other motions, and the counter shows this. */
-static void expect_rest(int32_t position)
-{
-    ck_assert_int_eq(rig_motor(&rig, 1).state, RKM04_IDLE);
-    ck_assert_uint_eq(rig_motions(&rig, 1), seen);
-    ck_assert_int_eq(rig_motor(&rig, 1).position, position);
-}
-
+#include "manual_rig.h"
 
 /* p^2 = 100^2 + 2000 * 1000: 3000 steps/s is not reached, each motion takes 2 (1417.7447 - 100) / 2000 s. */
 START_TEST(M4_6_three_motions_with_dwells_and_a_step_count_that_is_not_run)

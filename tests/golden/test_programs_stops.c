@@ -3,38 +3,7 @@
 #include <check.h>
 #include <string.h>
 
-#include "rig.h"
-
-static struct rig rig;
-static size_t seen; /* motions of motor 1 that a test has accounted for */
-
-static void setup(void)
-{
-    rig_power_up(&rig, NULL);
-    seen = 0;
-}
-
-static void teardown(void)
-{
-    rig_free(&rig);
-}
-
-/* The next motion of motor 1 began in this slot, at S100 A2000. Returns the slot of the command behind it. */
-static uint64_t moved(uint64_t slot, uint64_t v, size_t steps, bool forward)
-{
-    uint64_t end = slot + move_ticks(100, v, 2000, steps);
-    rig_expect_motion(&rig, 1, ++seen, slot, end, steps, forward);
-    return slot_behind(end);
-}
-
-/* The program is at its end, there were no other motions, and the counter shows this. */
-static void expect_rest(int32_t position)
-{
-    ck_assert_int_eq(rig_motor(&rig, 1).state, RKM04_IDLE);
-    ck_assert_uint_eq(rig_motions(&rig, 1), seen);
-    ck_assert_int_eq(rig_motor(&rig, 1).position, position);
-}
-
+#include "manual_rig.h"
 
 START_TEST(M7_17_K_stops_on_a_ramp_and_C75_does_the_rest)
 {
