@@ -146,6 +146,10 @@ static int open_tcp(const char *port, unsigned timeout_ms)
     char *host = strndup(name + bracketed, (size_t)(colon - name) - 2u * bracketed);
     int unknown = host != NULL ? getaddrinfo(host, colon + 1, &hints, &list) : EAI_MEMORY;
     free(host);
+    if (unknown == EAI_SERVICE) {
+        warnx("cannot find %s: `%s' is not a TCP port: expected a number from 1 to 65535", port, colon + 1);
+        return -1;
+    }
     if (unknown != 0) {
         warnx("cannot find %s: %s", port, unknown == EAI_SYSTEM ? strerror(errno) : gai_strerror(unknown));
         return -1;
