@@ -1,0 +1,346 @@
+#include "condition.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "condition_term.h"
+
+/* ---- What there is -------------------------------------------------------------------------------------------------- */
+
+static bool motor_is_idle(const struct rkm04_unit *unit, unsigned motor)
+{
+    struct rkm04_motor_state state;
+    rkm04_motor_state(unit, motor, &state);
+    return state.state == RKM04_IDLE || state.state == RKM04_ENDED;
+}
+
+static bool is_idle(const struct rkm04_unit *unit, unsigned motor)
+{
+    if (motor != 0)
+        return motor_is_idle(unit, motor);
+    for (motor = 1; motor <= RKM04_MOTORS; motor++) {
+        if (!motor_is_idle(unit, motor))
+            return false;
+    }
+    return true;
+}
+
+static int64_t motor_value(const struct term *term, struct sim *sim)
+{
+    struct rkm04_motor_state state = {0};
+    int64_t true_position;
+    const struct plant *plant = sim->unit[term->unit - 1].plant;
+    rkm04_motor_state(sim_core(sim, term->unit), term->motor, &state);
+    switch ((enum term_kind)term->kind) {
+    case TERM_TRUE_POSITION:
+        if (plant != NULL && plant_position(plant, term->motor, &true_position))
+            return true_position;
+        return state.position;
+    case TERM_STEPS:
+        return state.steps;
+    case TERM_INDEX:
+        return state.index;
+    case TERM_COMMANDS:
+        return state.commands;
+    case TERM_STATE:
+        return state.state;
+    case TERM_LED:
+        return state.led;
+    case TERM_FAULT:
+        return state.fault;
+    default:
+        return state.position;
+    }
+}
+
+static int64_t value(const struct term *term, struct sim *sim)
+{
+    switch ((enum term_kind)term->kind) {
+    case TERM_TIME:
+        return (int64_t)sim_now(sim);
+    case TERM_IDLE:
+        return is_idle(sim_core(sim, term->unit), term->motor);
+    case TERM_INPUT:
+        return rkm04_inputs(sim_core(sim, term->unit)) >> (term->number - 1) & 1;
+    case TERM_OUTPUT:
+        return rkm04_outputs(sim_core(sim, term->unit)) >> (term->number - 1) & 1;
+    case TERM_VARIABLE:
+        return rkm04_variables(sim_core(sim, term->unit)) >> (term->number - RKM04_FIRST_VARIABLE) & 1;
+    case TERM_POWERED:
+        return sim_powered(sim, term->unit);
+    default:
+        return motor_value(term, sim);
+    }
+}
+
+static bool compares(int64_t is, enum term_relation relation, int64_t wanted)
+{
+    switch (relation) {
+    case TERM_EQUAL:
+        return is == wanted;
+    case TERM_UNEQUAL:
+        return is != wanted;
+    case TERM_LESS:
+        return is < wanted;
+    case TERM_LESS_EQUAL:
+        return is <= wanted;
+    case TERM_GREATER:
+        return is > wanted;
+    default:
+        return is >= wanted;
+    }
+}
+
+static bool holds(const struct term *term, struct sim *sim)
+{
+    if (term->kind == TERM_MESSAGE)
+        return term->message.seen;
+    if (term->kind != TERM_ALL && term->kind != TERM_ANY)
+        return compares(value(term, sim), (enum term_relation)term->relation, term->value);
+    bool any = term->kind == TERM_ANY;
+    for (size_t i = 0; i < term->subs; i++) {
+        if (holds(&term->sub[i], sim) == any)
+            return any;
+    }
+    return !any;
+}
+
+bool condition_holds(struct condition *condition)
+{
+    return holds(&condition->root, condition->sim);
+}
+
+/* ---- Messages ------------------------------------------------------------------------------------------------------- */
+
+static bool is_meant(const struct term_message *wanted, const struct wire_message *message)
+{
+    if (wanted->dropped != (message->dropped != NULL))
+        return false;
+    if (wanted->from == 0 && message->answer)
+        return false;
+    if (wanted->from == TERM_ANY_UNIT && !message->answer)
+        return false;
+    if (wanted->from > 0 && wanted->from != TERM_ANY_UNIT && (message->senders >> wanted->from & 1) == 0)
+        return false;
+    if (wanted->number >= 0 && (message->length < 1 || message->message[0] != wanted->number))
+        return false;
+    return wanted->motor < 0 || (message->length >= 2 && message->message[1] == wanted->motor);
+}
+
+static void see(struct term *term, const struct wire_message *message)
+{
+    if (term->kind == TERM_MESSAGE && is_meant(&term->message, message))
+        term->message.seen = true;
+    for (size_t i = 0; i < term->subs; i++)
+        see(&term->sub[i], message);
+}
+
+static void see_event(void *context, const struct watch_event *event)
+{
+    struct condition *condition = context;
+    see(&condition->root, event->message);
+}
+
+static void forget(struct term *term)
+{
+    term->message.seen = false;
+    for (size_t i = 0; i < term->subs; i++)
+        forget(&term->sub[i]);
+}
+
+void condition_arm(struct condition *condition)
+{
+    forget(&condition->root);
+    if (!condition->messages || condition->armed)
+        return;
+    condition->armed = true;
+    condition->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_MESSAGE), .see = see_event, .context = condition};
+    sim_watch(condition->sim, &condition->watcher);
+}
+
+void condition_free(struct condition *condition)
+{
+    if (condition == NULL)
+        return;
+    if (condition->armed)
+        sim_unwatch(condition->sim, &condition->watcher);
+    term_clear(&condition->root);
+    free(condition);
+}
+
+/* ---- Time ----------------------------------------------------------------------------------------------------------- */
+
+/* The next tick, of those after `now`, from which a term about time may turn out otherwise. */
+static uint64_t next_time(const struct term *term, uint64_t now)
+{
+    uint64_t next = RKM04_NEVER;
+    if (term->kind == TERM_TIME && term->value >= 0) {
+        uint64_t at = (uint64_t)term->value;
+        if (at > now)
+            next = at;
+        else if (at == now) /* it is no longer equal, no longer less or equal, but greater */
+            next = now + 1;
+    }
+    for (size_t i = 0; i < term->subs; i++) {
+        uint64_t sub = next_time(&term->sub[i], now);
+        next = sub < next ? sub : next;
+    }
+    return next;
+}
+
+/* Does a term ask for anything but time? */
+static bool asks_units(const struct term *term)
+{
+    if (term->kind != TERM_ALL && term->kind != TERM_ANY)
+        return term->kind != TERM_TIME;
+    for (size_t i = 0; i < term->subs; i++) {
+        if (asks_units(&term->sub[i]))
+            return true;
+    }
+    return false;
+}
+
+uint64_t condition_next(const struct condition *condition)
+{
+    struct sim *sim = condition->sim;
+    uint64_t now = sim_now(sim), next = next_time(&condition->root, now);
+    if (!asks_units(&condition->root))
+        return next;
+    uint64_t event = sim_next_event(sim), due = sim_due(sim);
+    if (event != RKM04_NEVER && event + 1 < next)
+        next = event + 1; /* it is over then */
+    if (due < next)
+        next = due > now ? due : now + 1;
+    if (condition->messages && sim->watch.count > 0) /* a message of this tick is handed out when the tick is over */
+        next = now + 1;
+    return next > now ? next : now + 1;
+}
+
+bool condition_step(struct condition *condition, uint64_t limit)
+{
+    uint64_t next = condition_next(condition);
+    if (next > limit)
+        next = limit;
+    if (next != RKM04_NEVER && next > sim_now(condition->sim))
+        sim_advance(condition->sim, next);
+    return condition_holds(condition);
+}
+
+bool condition_run(struct condition *condition, uint64_t limit)
+{
+    bool held = condition_holds(condition);
+    while (!held && sim_now(condition->sim) < limit) {
+        if (limit == RKM04_NEVER && condition_next(condition) == RKM04_NEVER)
+            break; /* nothing will ever happen */
+        held = condition_step(condition, limit);
+    }
+    return held;
+}
+
+/* ---- For people ----------------------------------------------------------------------------------------------------- */
+
+static const char *term_name(enum term_kind kind)
+{
+    static const char *const names[] = {
+        [TERM_TIME] = "t", [TERM_POSITION] = "position", [TERM_TRUE_POSITION] = "true position", [TERM_STEPS] = "steps",
+        [TERM_INDEX] = "index", [TERM_COMMANDS] = "commands", [TERM_STATE] = "state", [TERM_LED] = "led",
+        [TERM_FAULT] = "fault", [TERM_IDLE] = "idle", [TERM_INPUT] = "DI", [TERM_OUTPUT] = "DO", [TERM_VARIABLE] = "VAR",
+        [TERM_POWERED] = "powered",
+    };
+    return names[kind];
+}
+
+static void print_value(FILE *out, const struct term *term, int64_t number)
+{
+    switch ((enum term_kind)term->kind) {
+    case TERM_TIME:
+        fprintf(out, "%" PRId64 ".%06" PRId64 " s", number / RKM04_TICKS_PER_SECOND, number % RKM04_TICKS_PER_SECOND);
+        break;
+    case TERM_STATE:
+        fputs(rkm04_state_name((enum rkm04_state)number), out);
+        break;
+    case TERM_LED:
+        fputs(rkm04_led_name((enum rkm04_led)number), out);
+        break;
+    case TERM_FAULT:
+        fputs(rkm04_fault_name((enum rkm04_fault)number), out);
+        break;
+    case TERM_IDLE:
+    case TERM_POWERED:
+        fputs(number != 0 ? "true" : "false", out);
+        break;
+    default:
+        fprintf(out, "%" PRId64, number);
+    }
+}
+
+static void print_message(FILE *out, const struct term_message *message, struct sim *sim)
+{
+    fputs(message->dropped ? "a dropped message" : "a message", out);
+    if (message->number >= 0)
+        fprintf(out, " %d", message->number);
+    if (message->motor >= 0)
+        fprintf(out, " for motor %c", message->motor);
+    if (message->from == 0)
+        fputs(" from the master", out);
+    else if (message->from == TERM_ANY_UNIT)
+        fputs(" from a unit", out);
+    else if (message->from > 0)
+        fprintf(out, " from unit %s", sim->unit[message->from - 1].name);
+    fputs(message->seen ? " (one has passed)" : " (none has passed)", out);
+}
+
+static void print_term(FILE *out, const struct term *term, struct sim *sim)
+{
+    bool bit = term->kind == TERM_INPUT || term->kind == TERM_OUTPUT || term->kind == TERM_VARIABLE;
+    if (term->kind == TERM_MESSAGE) {
+        print_message(out, &term->message, sim);
+        return;
+    }
+    if (term->unit != 0 && sim_units(sim) > 1)
+        fprintf(out, "unit %s ", sim->unit[term->unit - 1].name);
+    if (term->motor != 0)
+        fprintf(out, "motor %u ", term->motor);
+    fputs(term_name((enum term_kind)term->kind), out);
+    if (bit)
+        fprintf(out, " %02u", term->number);
+    fprintf(out, " %s ", term_relation_name((enum term_relation)term->relation));
+    print_value(out, term, term->value);
+    fputs(" (is ", out);
+    print_value(out, term, value(term, sim));
+    fputc(')', out);
+}
+
+static void print(FILE *out, const struct term *term, struct sim *sim, bool inside)
+{
+    if (term->kind != TERM_ALL && term->kind != TERM_ANY) {
+        print_term(out, term, sim);
+        return;
+    }
+    bool brackets = inside && term->subs > 1;
+    if (brackets)
+        fputc('(', out);
+    for (size_t i = 0; i < term->subs; i++) {
+        if (i > 0)
+            fputs(term->kind == TERM_ANY ? " or " : " and ", out);
+        print(out, &term->sub[i], sim, inside || term->subs > 1);
+    }
+    if (brackets)
+        fputc(')', out);
+}
+
+char *condition_text(struct condition *condition)
+{
+    char *text = NULL;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    if (out == NULL)
+        return NULL;
+    print(out, &condition->root, condition->sim, false);
+    if (fclose(out) != 0) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}

@@ -1,0 +1,351 @@
+/* Conditions from JSON. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "condition_term.h"
+#include "time_value.h"
+
+#define DEPTH_MAX 8 /* of all and any inside one another */
+
+struct reader {
+    struct sim *sim;
+    struct refusal *refusal;
+    unsigned depth;
+    bool messages;
+};
+
+static const char *const relation_names[] = {
+    [TERM_EQUAL] = "==", [TERM_UNEQUAL] = "!=",  [TERM_LESS] = "<",
+    [TERM_LESS_EQUAL] = "<=", [TERM_GREATER] = ">", [TERM_GREATER_EQUAL] = ">=",
+};
+#define RELATIONS (sizeof relation_names / sizeof relation_names[0])
+
+const char *term_relation_name(enum term_relation relation)
+{
+    return relation_names[relation];
+}
+
+void term_clear(struct term *term)
+{
+    for (size_t i = 0; i < term->subs; i++)
+        term_clear(&term->sub[i]);
+    free(term->sub);
+    *term = (struct term){0};
+}
+
+/* ---- Building ------------------------------------------------------------------------------------------------------- */
+
+/* Refuse, for readers that return bool. */
+#define REFUSE(...) (refuse(r->refusal, REFUSED_PARAMS, __VA_ARGS__), false)
+
+/* Put a copy of `term` behind the others of `group`, which owns what hangs on it then. */
+static bool add(struct reader *r, struct term *group, const struct term *term)
+{
+    struct term *sub = realloc(group->sub, (group->subs + 1) * sizeof *sub);
+    if (sub == NULL) {
+        refuse(r->refusal, REFUSED_MEMORY, "memory is short");
+        return false;
+    }
+    group->sub = sub;
+    sub[group->subs++] = *term;
+    return true;
+}
+
+static bool is_flag(const json_t *json, int64_t *value)
+{
+    if (json_is_boolean(json))
+        *value = json_is_true(json);
+    else if (json_is_integer(json) && (json_integer_value(json) == 0 || json_integer_value(json) == 1))
+        *value = json_integer_value(json);
+    else
+        return false;
+    return true;
+}
+
+/* ---- Numbers -------------------------------------------------------------------------------------------------------- */
+
+static bool is_whole(const json_t *json, const struct term *term, int64_t *value)
+{
+    if (json_is_integer(json)) {
+        *value = json_integer_value(json);
+        return true;
+    }
+    size_t wrong;
+    uint64_t ticks;
+    if (term->kind != TERM_TIME || !json_is_string(json) ||
+        time_value_read(json_string_value(json), json_string_length(json), &ticks, &wrong) != NULL)
+        return false;
+    *value = (int64_t)ticks;
+    return true;
+}
+
+/* A number, or an object of relations with numbers: a term each. */
+static bool read_number(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+{
+    const char *what = term.kind == TERM_TIME ? "a time as in \"2.5s\" or in us" : "a whole number";
+    const char *name;
+    json_t *bound;
+    if (!json_is_object(json)) {
+        if (!is_whole(json, &term, &term.value))
+            return REFUSE("%s: expected %s, or {\">=\": …} with one of ==, !=, <, <=, >, >=", key, what);
+        /* time that has been leapt over would never be again */
+        term.relation = term.kind == TERM_TIME ? TERM_GREATER_EQUAL : TERM_EQUAL;
+        return add(r, group, &term);
+    }
+    if (json_object_size(json) == 0)
+        return REFUSE("%s: expected %s, found {}", key, what);
+    json_object_foreach((json_t *)json, name, bound) {
+        size_t relation = 0;
+        while (relation < RELATIONS && strcmp(name, relation_names[relation]) != 0)
+            relation++;
+        if (relation == RELATIONS)
+            return REFUSE("%s: expected one of ==, !=, <, <=, >, >=, found \"%.20s\"", key, name);
+        if (!is_whole(bound, &term, &term.value))
+            return REFUSE("%s: expected %s behind \"%s\"", key, what, name);
+        term.relation = (uint8_t)relation;
+        if (!add(r, group, &term))
+            return false;
+    }
+    return true;
+}
+
+/* ---- Names ---------------------------------------------------------------------------------------------------------- */
+
+static const char *name_of(enum term_kind kind, unsigned value)
+{
+    switch (kind) {
+    case TERM_STATE:
+        return value <= RKM04_FAULTY ? rkm04_state_name((enum rkm04_state)value) : NULL;
+    case TERM_LED:
+        return value <= RKM04_LED_BLINK ? rkm04_led_name((enum rkm04_led)value) : NULL;
+    default:
+        return value <= RKM04_FAULT_MOTION ? rkm04_fault_name((enum rkm04_fault)value) : NULL;
+    }
+}
+
+/* The names that may stand there: "idle, ready, …". */
+static void list_names(enum term_kind kind, char list[200])
+{
+    size_t length = 0;
+    const char *name;
+    for (unsigned i = 0; (name = name_of(kind, i)) != NULL; i++)
+        length += (size_t)snprintf(list + length, 200 - length, "%s%s", i > 0 ? ", " : "", name);
+}
+
+static bool read_name(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+{
+    const char *name, *wanted = json_string_value(json);
+    char list[200];
+    if (term.kind == TERM_FAULT && json_is_null(json))
+        wanted = rkm04_fault_name(RKM04_FAULT_NONE);
+    for (unsigned i = 0; wanted != NULL && (name = name_of((enum term_kind)term.kind, i)) != NULL; i++) {
+        if (strcmp(name, wanted) == 0) {
+            term.value = i;
+            return add(r, group, &term);
+        }
+    }
+    list_names((enum term_kind)term.kind, list);
+    if (wanted == NULL)
+        return REFUSE("%s: expected one of %s", key, list);
+    return REFUSE("%s: expected one of %s, found \"%.40s\"", key, list, wanted);
+}
+
+/* ---- Flags and bits ------------------------------------------------------------------------------------------------- */
+
+static bool read_flag(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+{
+    if (!is_flag(json, &term.value))
+        return REFUSE("%s: expected true or false", key);
+    return add(r, group, &term);
+}
+
+/* Read "8", "08", "80". Returns 0 if it is no number low..high. */
+static uint8_t read_bit_number(const char *text, unsigned low, unsigned high)
+{
+    unsigned number = 0;
+    size_t length = strlen(text);
+    if (length < 1 || length > 2 || strspn(text, "0123456789") != length)
+        return 0;
+    for (; *text != '\0'; text++)
+        number = number * 10 + (unsigned)(*text - '0');
+    return number >= low && number <= high ? (uint8_t)number : 0;
+}
+
+static bool read_bits(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+{
+    bool variables = term.kind == TERM_VARIABLE;
+    unsigned low = variables ? RKM04_FIRST_VARIABLE : 1;
+    unsigned high = variables ? RKM04_FIRST_VARIABLE + RKM04_VARIABLES - 1 : RKM04_INPUTS;
+    const char *name;
+    json_t *level;
+    if (!json_is_object(json) || json_object_size(json) == 0)
+        return REFUSE("%s: expected numbers with levels, as in {\"%02u\": 1}", key, low);
+    json_object_foreach((json_t *)json, name, level) {
+        term.number = read_bit_number(name, low, high);
+        if (term.number == 0)
+            return REFUSE("%s: expected a number %02u to %02u, found \"%.20s\"", key, low, high, name);
+        if (!is_flag(level, &term.value))
+            return REFUSE("%s: expected 0 or 1 for %02u", key, term.number);
+        if (!add(r, group, &term))
+            return false;
+    }
+    return true;
+}
+
+/* ---- Messages ------------------------------------------------------------------------------------------------------- */
+
+static bool read_from(struct reader *r, const json_t *json, int *from)
+{
+    char text[24];
+    const char *name = json_string_value(json);
+    if (json_is_integer(json)) {
+        snprintf(text, sizeof text, "%lld", (long long)json_integer_value(json));
+        name = text;
+    }
+    *from = name == NULL ? 0 : (int)sim_unit_named(r->sim, name);
+    if (*from > 0)
+        return true;
+    if (name == NULL || (strcmp(name, "master") != 0 && strcmp(name, "unit") != 0))
+        return REFUSE("message: from: expected \"master\", \"unit\" or the name of a unit");
+    *from = name[0] == 'm' ? 0 : TERM_ANY_UNIT;
+    return true;
+}
+
+static bool read_message(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+{
+    static const char *const known[] = {"number", "motor", "from", "dropped", NULL};
+    const json_t *from = json_object_get(json, "from"), *dropped = json_object_get(json, "dropped");
+    int64_t number, motor, flag = 0;
+    if (!json_is_object(json))
+        return REFUSE("%s: expected an object, as in {\"number\": 4, \"from\": \"unit\"}", key);
+    if (!params_known(json, known, r->refusal) || !param_integer_or(json, "number", 0, 255, -1, &number, r->refusal) ||
+        !param_integer_or(json, "motor", 0, RKM04_MOTORS, -1, &motor, r->refusal))
+        return false;
+    term.message = (struct term_message){.number = (int)number, .motor = motor < 0 ? -1 : '0' + (int)motor, .from = -1};
+    if (from != NULL && !read_from(r, from, &term.message.from))
+        return false;
+    if (dropped != NULL && !is_flag(dropped, &flag))
+        return REFUSE("message: dropped: expected true or false");
+    term.message.dropped = flag != 0;
+    if (term.message.dropped && (number >= 0 || motor >= 0))
+        return REFUSE("message: a dropped one has no number and no motor");
+    r->messages = true;
+    return add(r, group, &term);
+}
+
+/* ---- The whole ------------------------------------------------------------------------------------------------------ */
+
+static bool read_object(struct reader *r, struct term *group, const json_t *json);
+
+static bool read_list(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+{
+    size_t index;
+    json_t *item;
+    if (!json_is_array(json) || json_array_size(json) == 0)
+        return REFUSE("%s: expected a list of conditions", key);
+    if (r->depth >= DEPTH_MAX)
+        return REFUSE("%s: more than %d inside one another", key, DEPTH_MAX);
+    r->depth++;
+    term = (struct term){.kind = term.kind};
+    json_array_foreach((json_t *)json, index, item) {
+        struct term sub = {.kind = TERM_ALL};
+        if (!read_object(r, &sub, item) || !add(r, &term, &sub)) {
+            term_clear(&sub);
+            term_clear(&term);
+            return false;
+        }
+    }
+    r->depth--;
+    if (add(r, group, &term))
+        return true;
+    term_clear(&term);
+    return false;
+}
+
+typedef bool key_reader(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json);
+
+enum needs { NEEDS_NOTHING, NEEDS_UNIT, NEEDS_MOTOR };
+
+static const struct {
+    const char *key;
+    uint8_t kind, needs;
+    key_reader *read;
+} keys[] = {
+    {"t", TERM_TIME, NEEDS_NOTHING, read_number},
+    {"position", TERM_POSITION, NEEDS_MOTOR, read_number},
+    {"true_position", TERM_TRUE_POSITION, NEEDS_MOTOR, read_number},
+    {"steps", TERM_STEPS, NEEDS_MOTOR, read_number},
+    {"index", TERM_INDEX, NEEDS_MOTOR, read_number},
+    {"commands", TERM_COMMANDS, NEEDS_MOTOR, read_number},
+    {"state", TERM_STATE, NEEDS_MOTOR, read_name},
+    {"led", TERM_LED, NEEDS_MOTOR, read_name},
+    {"fault", TERM_FAULT, NEEDS_MOTOR, read_name},
+    {"idle", TERM_IDLE, NEEDS_UNIT, read_flag},
+    {"di", TERM_INPUT, NEEDS_UNIT, read_bits},
+    {"do", TERM_OUTPUT, NEEDS_UNIT, read_bits},
+    {"var", TERM_VARIABLE, NEEDS_UNIT, read_bits},
+    {"powered", TERM_POWERED, NEEDS_UNIT, read_flag},
+    {"message", TERM_MESSAGE, NEEDS_NOTHING, read_message},
+    {"all", TERM_ALL, NEEDS_NOTHING, read_list},
+    {"any", TERM_ANY, NEEDS_NOTHING, read_list},
+};
+#define KEYS (sizeof keys / sizeof keys[0])
+
+static bool read_key(struct reader *r, struct term *group, const json_t *object, const char *key, const json_t *json)
+{
+    size_t i = 0;
+    int64_t motor = 0;
+    struct term term = {0};
+    while (i < KEYS && strcmp(key, keys[i].key) != 0)
+        i++;
+    if (i == KEYS)
+        return REFUSE("unknown condition \"%.40s\": expected t, position, true_position, steps, index, commands, state, led, "
+                      "fault, idle, di, do, var, powered, message, all or any, with unit and motor",
+                      key);
+    term.kind = keys[i].kind;
+    if (keys[i].needs != NEEDS_NOTHING) {
+        term.unit = (uint8_t)param_unit(r->sim, object, r->refusal);
+        if (term.unit == 0)
+            return false;
+    }
+    if (keys[i].needs == NEEDS_MOTOR && !param_integer(object, "motor", 1, RKM04_MOTORS, &motor, r->refusal))
+        return false;
+    if (term.kind == TERM_IDLE && !param_integer_or(object, "motor", 1, RKM04_MOTORS, 0, &motor, r->refusal))
+        return false;
+    term.motor = (uint8_t)motor;
+    return keys[i].read(r, group, term, key, json);
+}
+
+static bool read_object(struct reader *r, struct term *group, const json_t *json)
+{
+    const char *key;
+    json_t *value;
+    if (!json_is_object(json))
+        return REFUSE("condition: expected an object, as in {\"motor\": 1, \"position\": 5000}");
+    json_object_foreach((json_t *)json, key, value) {
+        if (strcmp(key, "unit") != 0 && strcmp(key, "motor") != 0 && !read_key(r, group, json, key, value))
+            return false;
+    }
+    if (group->subs == 0)
+        return REFUSE("condition: nothing to wait for: expected something as in {\"motor\": 1, \"position\": 5000}");
+    return true;
+}
+
+struct condition *condition_read(struct sim *sim, const json_t *json, struct refusal *refusal)
+{
+    struct reader reader = {.sim = sim, .refusal = refusal};
+    struct condition *condition = calloc(1, sizeof *condition);
+    if (condition == NULL) {
+        refuse(refusal, REFUSED_MEMORY, "memory is short");
+        return NULL;
+    }
+    condition->sim = sim;
+    condition->root.kind = TERM_ALL;
+    if (!read_object(&reader, &condition->root, json)) {
+        condition_free(condition);
+        return NULL;
+    }
+    condition->messages = reader.messages;
+    return condition;
+}
