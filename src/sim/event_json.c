@@ -1,0 +1,134 @@
+#include "event_json.h"
+
+#include "digits.h"
+
+#define PLAIN_ROOM 192u                                  /* every member with a number or a name */
+#define SENDERS_ROOM ((SEGMENT_UNITS + 1u) * (NODE_NAME_SIZE + 3u)) /* `from` */
+#define ESCAPED 6u                                       /* characters for one of a text, as in \u001F */
+
+static size_t text_room(const char *text)
+{
+    return text ? ESCAPED * strlen(text) + 2u : 4u;
+}
+
+size_t event_json_room(const struct watch_event *event)
+{
+    size_t room = PLAIN_ROOM;
+    switch ((enum watch_kind)event->kind) {
+    case WATCH_BYTE:
+        return room + SENDERS_ROOM;
+    case WATCH_MESSAGE:
+        room += SENDERS_ROOM + PLAIN_ROOM + 2u * (event->message->raw_length + event->message->length);
+        return room + text_room(event->message->dropped) + text_room(event->message->refused);
+    case WATCH_PLANT:
+    case WATCH_INJECTED:
+        return room + text_room(event->text);
+    default:
+        return room;
+    }
+}
+
+/* A text in quotes; NULL: null. */
+static char *put_string(char *at, const char *text)
+{
+    if (!text)
+        return put_text(at, "null");
+    *at++ = '"';
+    for (; *text; text++) {
+        uint8_t character = (uint8_t)*text;
+        if (character < ' ') {
+            at = put_hex(put_text(at, "\\u00"), &character, 1);
+            continue;
+        }
+        if (character == '"' || character == '\\')
+            *at++ = '\\';
+        *at++ = *text;
+    }
+    *at++ = '"';
+    return at;
+}
+
+static char *put_senders(char *at, const struct sim *sim, uint32_t senders)
+{
+    at = put_text(at, ",\"from\":[");
+    const char *between = "";
+    if ((senders & 1u) != 0) {
+        at = put_text(at, "\"master\"");
+        between = ",";
+    }
+    for (unsigned number = 1; number <= sim_units(sim); number++) {
+        if ((senders >> number & 1u) == 0)
+            continue;
+        at = put_string(put_text(at, between), sim->unit[number - 1u].name);
+        between = ",";
+    }
+    *at++ = ']';
+    return at;
+}
+
+static const char *truth(bool holds)
+{
+    return holds ? "true" : "false";
+}
+
+static char *put_byte(char *at, const struct sim *sim, const struct segment_byte *byte)
+{
+    at = put_number(at, byte->byte);
+    at = put_senders(at, sim, byte->senders);
+    return put_text(put_text(at, ",\"lost\":"), truth(byte->lost));
+}
+
+static char *put_message(char *at, const struct sim *sim, const struct wire_message *message)
+{
+    at = message->length > 0 ? put_number(at, message->message[0]) : put_text(at, "null");
+    at = put_senders(at, sim, message->senders);
+    at = put_number(put_text(at, ",\"dnode\":"), message->dnode);
+    at = put_number(put_text(at, ",\"snode\":"), message->snode);
+    at = put_text(put_text(at, ",\"answer\":"), truth(message->answer));
+    at = put_number(put_text(at, ",\"start_us\":"), message->start);
+    at = put_hex(put_text(at, ",\"bytes\":\""), message->raw, message->raw_length);
+    at = put_hex(put_text(at, "\",\"message\":\""), message->message, message->length);
+    at = put_string(put_text(at, "\",\"dropped\":"), message->dropped);
+    return put_string(put_text(at, ",\"refused\":"), message->refused);
+}
+
+static const char *news_name(int32_t news)
+{
+    static const char *const names[] = {
+        [PLANT_STALL] = "stall", [PLANT_END_STOP] = "end_stop", [PLANT_JAM] = "jam", [PLANT_FREE] = "free"};
+    return news >= 0 && (size_t)news < sizeof names / sizeof names[0] ? names[news] : "?";
+}
+
+static char *put_value(char *at, const struct sim *sim, const struct watch_event *event)
+{
+    switch ((enum watch_kind)event->kind) {
+    case WATCH_LED:
+        return put_string(at, rkm04_led_name((enum rkm04_led)event->value));
+    case WATCH_FAULT:
+        return put_string(at, rkm04_fault_name((enum rkm04_fault)event->value));
+    case WATCH_BYTE:
+        return put_byte(at, sim, &event->byte);
+    case WATCH_MESSAGE:
+        return put_message(at, sim, event->message);
+    case WATCH_PLANT:
+        return put_string(put_text(put_string(at, news_name(event->value)), ",\"text\":"), event->text);
+    case WATCH_INJECTED:
+        return put_string(put_text(put_signed(at, event->value), ",\"text\":"), event->text);
+    default:
+        return put_signed(at, event->value);
+    }
+}
+
+char *event_json(char *at, const struct sim *sim, const struct watch_event *event)
+{
+    at = put_number(put_text(at, "\"t_us\":"), event->tick);
+    at = put_text(put_text(at, ",\"kind\":\""), watch_kind_name((enum watch_kind)event->kind));
+    *at++ = '"';
+    if (event->unit != 0)
+        at = put_string(put_text(at, ",\"unit\":"), sim->unit[event->unit - 1u].name);
+    if (event->motor != 0) {
+        at = put_text(at, ",\"motor\":");
+        *at++ = (char)('0' + event->motor);
+    }
+    return put_value(put_text(at, ",\"value\":"), sim, event);
+}
