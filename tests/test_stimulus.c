@@ -7,7 +7,7 @@
 #include <rkm04/limits.h>
 
 #include "host/stimulus.h"
-#include "host/time_value.h"
+#include "sim/time_value.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

@@ -6,7 +6,7 @@
 
 #include <rkm04/unit.h>
 
-#include "host/trace.h"
+#include "sim/trace.h"
 
 #define HEADER "t_us,source,event,value\n"
 

@@ -11,7 +11,7 @@ static struct virtual_clock clock_at(const char *text)
 {
     struct virtual_clock clock;
     ck_assert_msg(virtual_clock_read(&clock, text), "%s was refused", text);
-    virtual_clock_start(&clock, BEGIN);
+    virtual_clock_start(&clock, BEGIN, 0);
     return clock;
 }
 

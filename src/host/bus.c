@@ -1,28 +1,15 @@
 #include "bus.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include "log.h"
 
-#define NS_PER_MS 1000000u
-#define NS_PER_SECOND 1000000000u
-#define REST (100u * NS_PER_MS)  /* longest sleep while motors or programs run */
-#define STINT (5u * NS_PER_MS)   /* longest time without a look at the line and at signals */
-#define STEP 100000u             /* ticks that the units are advanced at once while they are at work */
-#define LEAP 10000u              /* ticks: shortest leap of --clock max; less would cost more than it shows */
-#define FRAME_SILENCE (100u * NS_PER_MS) /* --clock max: how long the rest of a frame is waited for (L2) */
-
-uint64_t bus_present(const struct bus *bus)
-{
-    return bus->running ? virtual_clock_tick(&bus->clock, uv_hrtime()) : 0;
-}
+/* ---- The log -------------------------------------------------------------------------------------------------------- */
 
 static void say(const struct bus *bus, uint64_t tick, const char *format, va_list list)
 {
@@ -42,77 +29,111 @@ void bus_log(const struct bus *bus, const char *format, ...)
     va_end(list);
 }
 
-/* ---- The units' port ------------------------------------------------------------------------------------------------ */
-
-static void unit_log(const struct bus_unit *unit, uint64_t tick, const char *format, ...)
+void bus_say(const struct bus *bus, uint64_t tick, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    say(unit->bus, segment_since(&unit->bus->segment, unit->number) + tick, format, list);
+    say(bus, tick, format, list);
     va_end(list);
 }
 
-static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_event what, uint32_t value)
+static void tell_fault(struct bus *bus, const struct watch_event *event)
 {
-    struct bus_unit *unit = context;
-    if (what == RKM04_EVENT_COMMAND && value != 0)
-        unit->place[motor - 1] = value;
-    if (what != RKM04_EVENT_FAULT || value == RKM04_FAULT_NONE)
+    enum rkm04_fault fault = (enum rkm04_fault)event->value;
+    struct rkm04_motor_state state;
+    if (fault == RKM04_FAULT_NONE)
         return;
-    unit_log(unit, tick, "unit %s, motor %u: fault %s at command %" PRIu32, unit->name, motor,
-             rkm04_fault_name((enum rkm04_fault)value), unit->place[motor - 1]);
-    if (unit->bus->coverage)
-        coverage_fault(unit->bus->coverage, (enum rkm04_fault)value);
+    rkm04_motor_state(sim_core(&bus->sim, event->unit), event->motor, &state);
+    bus_say(bus, event->tick, "unit %s, motor %u: fault %s at command %u", bus->sim.unit[event->unit - 1u].name, event->motor,
+            rkm04_fault_name(fault), (unsigned)state.index);
+    if (bus->coverage)
+        coverage_fault(bus->coverage, fault);
 }
 
-static int flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
+static void on_news(void *context, const struct watch_event *event)
 {
-    struct bus_unit *unit = context;
-    return flash_file_read(&unit->flash, block, offset, data, length);
+    struct bus *bus = context;
+    const char *unit = event->unit > 0 ? bus->sim.unit[event->unit - 1u].name : "";
+    if (event->kind == WATCH_FAULT)
+        tell_fault(bus, event);
+    else if (event->kind == WATCH_BYTE)
+        bus_listener_hear(&bus->listener, &event->byte);
+    else if (event->kind == WATCH_POWER)
+        bus_say(bus, event->tick, "unit %s: power %s", unit, event->value ? "on" : "off");
+    else if (event->kind == WATCH_PLANT)
+        bus_say(bus, event->tick, "unit %s: plant: %s", unit, event->text);
+    else
+        bus_say(bus, event->tick, "fault %d: %s", (int)event->value, event->text);
 }
 
-static int flash_erase(void *context, unsigned block)
+static void watch_for_log(struct bus *bus)
 {
-    struct bus_unit *unit = context;
-    return flash_file_erase(&unit->flash, block);
+    bus->news = (struct watcher){
+        .kinds = WATCH_BIT(WATCH_FAULT) | WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_PLANT) | WATCH_BIT(WATCH_INJECTED) |
+                 (bus->coverage ? WATCH_BIT(WATCH_BYTE) : 0),
+        .see = on_news,
+        .context = bus,
+    };
+    sim_watch(&bus->sim, &bus->news);
 }
 
-static int flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
+/* ---- Flash ---------------------------------------------------------------------------------------------------------- */
+
+static struct flash_file *flash_of(struct bus *bus, unsigned number)
 {
-    struct bus_unit *unit = context;
-    return flash_file_program(&unit->flash, block, offset, data, length);
+    return &bus->unit[number - 1u].flash;
 }
 
-static const struct rkm04_port port = {
-    .event = on_event,
-    .flash_read = flash_read,
-    .flash_erase = flash_erase,
-    .flash_program = flash_program,
-};
+static int flash_read(void *context, unsigned number, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    return flash_file_read(flash_of(context, number), block, offset, data, length);
+}
+
+static int flash_erase(void *context, unsigned number, unsigned block)
+{
+    return flash_file_erase(flash_of(context, number), block);
+}
+
+static int flash_program(void *context, unsigned number, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    return flash_file_program(flash_of(context, number), block, offset, data, length);
+}
+
+static bool open_flash(struct bus *bus)
+{
+    const struct serve_options *options = bus->options;
+    for (unsigned at = 0; options->flash && at < options->nodes.count; at++) {
+        struct bus_unit *unit = &bus->unit[at];
+        char path[PATH_MAX], name[NODE_NAME_SIZE];
+        node_list_name(&options->nodes, at, name);
+        if (!name_expand(options->flash, name, bus->number, path)) {
+            log_error("--flash: the path is too long");
+            return false;
+        }
+        unit->flash_path = strdup(path);
+        if (!flash_file_open(&unit->flash, unit->flash_path))
+            return false;
+        unit->open = true;
+    }
+    return true;
+}
 
 /* ---- Bytes ---------------------------------------------------------------------------------------------------------- */
 
 size_t bus_room(const struct bus *bus)
 {
-    return segment_room(&bus->segment);
+    return sim_room(&bus->sim);
 }
 
 void bus_take(struct bus *bus, const uint8_t *bytes, size_t length, uint64_t tick)
 {
     bus->heard = uv_hrtime();
-    uint64_t present = virtual_clock_tick(&bus->clock, bus->heard);
+    uint64_t present = bus_stepped(bus) ? sim_now(&bus->sim) : virtual_clock_tick(&bus->clock, bus->heard);
     if (bus->taken < present)
         bus->taken = present;
     if (bus->taken < tick)
         bus->taken = tick;
-    segment_take(&bus->segment, bytes, length, bus->taken);
-}
-
-static void send_gathered(struct bus *bus)
-{
-    if (bus->gathered > 0)
-        bus_ports_send(bus, bus->out, bus->gathered);
-    bus->gathered = 0;
+    sim_take(&bus->sim, bytes, length, bus->taken);
 }
 
 /* On a real wire bytes take their time outside, so the units' line takes none; the turnaround is kept here. */
@@ -120,154 +141,70 @@ static void gather(void *context, const uint8_t *bytes, size_t length)
 {
     struct bus *bus = context;
     if (bus->gathered == 0)
-        bus->answered = segment_now(&bus->segment) + (bus->ports.line.is_wire ? bus->options->turnaround : 0);
-    if (length > sizeof bus->out - bus->gathered)
-        send_gathered(bus);
+        bus->answered = sim_now(&bus->sim) + (bus->ports.line.is_wire ? bus->options->turnaround : 0);
+    if (length > sizeof bus->out - bus->gathered) {
+        bus_ports_send(bus, bus->out, bus->gathered);
+        bus->gathered = 0;
+    }
     memcpy(bus->out + bus->gathered, bytes, length);
     bus->gathered += length;
 }
 
-static void hear(void *context, const struct segment_byte *byte)
-{
-    struct bus *bus = context;
-    bus_listener_hear(&bus->listener, byte);
-}
-
-/* ---- Time ----------------------------------------------------------------------------------------------------------- */
-
-/* The earliest tick at which a byte is to be moved. */
-static uint64_t due(const struct bus *bus)
-{
-    uint64_t tick = segment_due(&bus->segment);
-    return bus->gathered > 0 && bus->answered < tick ? bus->answered : tick;
-}
-
-/* --clock max: the tick to leap to at `now` (ns): that of the next byte under way; else, unless the rest of a frame is on its
- * way, past the next thing that happens. RKM04_NEVER: no reason to leap. */
-static uint64_t leap_to(const struct bus *bus, uint64_t now)
-{
-    if (!bus->clock.runs_ahead)
-        return RKM04_NEVER;
-    uint64_t byte = due(bus);
-    if (byte != RKM04_NEVER)
-        return byte;
-    if (segment_in_frame(&bus->segment) && now - bus->heard < FRAME_SILENCE)
-        return RKM04_NEVER;
-    uint64_t event = segment_next_event(&bus->segment), least = segment_now(&bus->segment) + LEAP;
-    return event == RKM04_NEVER ? RKM04_NEVER : event < least ? least : event + 1;
-}
-
-/* Up to which tick the units are to be at `now` (ns). */
-static uint64_t goal(struct bus *bus, uint64_t now)
-{
-    uint64_t tick = virtual_clock_tick(&bus->clock, now), leap = leap_to(bus, now);
-    if (leap == RKM04_NEVER || leap <= tick)
-        return tick;
-    virtual_clock_leap(&bus->clock, now, leap);
-    return leap;
-}
-
-/* One step towards `tick`: a span in which nothing happens, or STEP. Anything may be reached in one call of the segment, but
- * then nobody would look at the line and at signals for a long while. */
-static void step(struct bus *bus, uint64_t tick)
-{
-    uint64_t end = segment_now(&bus->segment) + STEP;
-    if (end < tick) {
-        uint64_t event = segment_next_event(&bus->segment);
-        if (end <= event)
-            end = event == RKM04_NEVER ? RKM04_NEVER : event + 1;
-    }
-    segment_advance(&bus->segment, tick < end ? tick : end);
-}
-
-/* When (ns) there will be something to do; 0: not before bytes come. */
-static uint64_t next_wake(const struct bus *bus, uint64_t now)
-{
-    uint64_t byte = due(bus), event = segment_next_event(&bus->segment), when = 0;
-    if (leap_to(bus, now) != RKM04_NEVER)
-        return now;
-    if (byte != RKM04_NEVER) {
-        when = virtual_clock_when(&bus->clock, byte);
-        when = when > 0 ? when : now;
-    }
-    if (event != RKM04_NEVER) {
-        uint64_t look = virtual_clock_when(&bus->clock, event + 1);
-        if (look < now + REST)
-            look = now + REST;
-        if (when == 0 || look < when)
-            when = look;
-    }
-    return when;
-}
-
-static void set_timer(struct bus *bus, uint64_t when)
-{
-    struct itimerspec spec = {
-        .it_value = {.tv_sec = (time_t)(when / NS_PER_SECOND), .tv_nsec = (long)(when % NS_PER_SECOND)},
-    };
-    timerfd_settime(bus->timer_fd, TFD_TIMER_ABSTIME, &spec, NULL);
-}
-
-void bus_catch_up(struct bus *bus)
-{
-    uint64_t start = uv_hrtime(), now = start, tick;
-    bus->busy = true;
-    do {
-        tick = goal(bus, now);
-        step(bus, tick);
-        now = uv_hrtime();
-    } while (now - start < STINT && (segment_now(&bus->segment) < tick || leap_to(bus, now) != RKM04_NEVER));
-    if (bus->answered <= segment_now(&bus->segment))
-        send_gathered(bus);
-    if (segment_idle(&bus->segment))
-        bus_ports_silence(bus);
-    bus_ports_listen(bus);
-    bus->busy = false;
-    set_timer(bus, segment_now(&bus->segment) < tick ? now : next_wake(bus, now));
-}
-
-static void on_timer(uv_poll_t *handle, int status, int events)
-{
-    (void)status;
-    (void)events;
-    bus_catch_up(handle->data);
-}
-
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
-static bool add_unit(struct bus *bus, unsigned at)
+/* Read a whole file. Returns a string to be freed; NULL: reported. */
+static char *read_text(const char *path)
 {
-    const struct serve_options *options = bus->options;
-    struct bus_unit *unit = &bus->unit[at];
-    char path[PATH_MAX];
-    unit->bus = bus;
-    unit->number = at + 1;
-    unit->flash.fd = -1;
-    node_list_name(&options->nodes, at, unit->name);
-    if (options->flash) {
-        if (!name_expand(options->flash, unit->name, bus->number, path)) {
-            log_error("--flash: the path is too long");
-            return false;
-        }
-        unit->flash_path = strdup(path);
+    FILE *file = fopen(path, "r");
+    char *text = NULL;
+    size_t room = 0;
+    ssize_t length = file ? getdelim(&text, &room, EOF, file) : -1;
+    if (file && length < 0 && !ferror(file)) { /* empty */
+        free(text);
+        text = strdup("");
+    } else if (length < 0) {
+        log_error("cannot read %s: %m", path);
+        free(text);
+        text = NULL;
     }
-    if (!flash_file_open(&unit->flash, unit->flash_path))
-        return false;
-    struct rkm04_config config = options->config;
-    config.node = options->nodes.node[at];
-    return segment_add_unit(&bus->segment, &config, &port, unit) != 0;
+    if (file)
+        fclose(file);
+    return text;
 }
 
-static bool start_timer(struct bus *bus, uv_loop_t *loop)
+static bool configure_plant(struct bus *bus)
 {
-    bus->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    int error = bus->timer_fd < 0 ? -errno : uv_poll_init(loop, &bus->timer, bus->timer_fd);
-    bus->timer.data = bus;
-    if (error == 0)
-        error = uv_poll_start(&bus->timer, UV_READABLE, on_timer);
-    if (error != 0)
-        log_error("cannot make a timer: %s", uv_strerror(error));
-    return error == 0;
+    const char *path = bus->options->plant;
+    char *text = path ? read_text(path) : NULL;
+    bool well = !path || (text && plant_configure(&bus->sim, path, text, strlen(text), stderr));
+    free(text);
+    return well;
+}
+
+static void unplug(void *context, bool plugged)
+{
+    bus_ports_plug(context, plugged);
+}
+
+static bool begin_sim(struct bus *bus)
+{
+    const struct serve_options *options = bus->options;
+    struct sim_config config = {
+        .unit = options->config,
+        .nodes = options->nodes,
+        .timed = options->baud != 0 && !bus->ports.line.is_wire && !bus_stepped(bus),
+        .turnaround = options->turnaround,
+        .seed = options->seed,
+        .out = gather,
+        .adapter = unplug,
+        .context = bus,
+    };
+    if (options->flash)
+        config.flash = (struct sim_flash){.read = flash_read, .erase = flash_erase, .program = flash_program, .context = bus};
+    if (sim_begin(&bus->sim, &config))
+        return true;
+    log_error("out of memory");
+    return false;
 }
 
 bool bus_begin(struct bus *bus, unsigned number, const struct serve_options *options, uv_loop_t *loop, struct line_watch *watch,
@@ -281,31 +218,22 @@ bool bus_begin(struct bus *bus, unsigned number, const struct serve_options *opt
     bus->timer_fd = bus->ports.lower_fd = bus->ports.link.lock = -1;
     line_none(&bus->ports.line);
     bus->clock = options->clock;
+    snprintf(bus->clock_text, sizeof bus->clock_text, "%s", options->clock_text);
     if (!bus_listener_begin(&bus->listener, coverage, options->config.framing, &options->nodes)) {
         log_error("out of memory");
         return false;
     }
-    if (!bus_ports_open(bus, loop, watch))
+    if (!bus_ports_open(bus, loop, watch) || !open_flash(bus) || !begin_sim(bus))
         return false;
-    struct segment_config config = {
-        .timed = options->baud != 0 && !bus->ports.line.is_wire,
-        .turnaround = options->turnaround,
-        .out = gather,
-        .monitor = coverage ? hear : NULL,
-        .context = bus,
-    };
-    segment_begin(&bus->segment, &config);
-    for (unsigned at = 0; at < options->nodes.count; at++)
-        if (!add_unit(bus, at))
-            return false;
-    return start_timer(bus, loop);
+    watch_for_log(bus);
+    return bus_files_begin(bus) && configure_plant(bus) && bus_time_begin(bus, loop);
 }
 
 bool bus_start(struct bus *bus)
 {
     if (!bus_ports_publish(bus))
         return false;
-    virtual_clock_start(&bus->clock, uv_hrtime());
+    virtual_clock_start(&bus->clock, uv_hrtime(), 0);
     bus->running = true;
     bus_catch_up(bus);
     return true;
@@ -313,31 +241,33 @@ bool bus_start(struct bus *bus)
 
 bool bus_power(struct bus *bus, const char *name, bool on)
 {
-    for (unsigned at = 0; at < bus->segment.units; at++) {
-        if (strcmp(bus->unit[at].name, name) != 0)
-            continue;
-        bus_catch_up(bus);
-        segment_power(&bus->segment, bus->unit[at].number, on);
-        bus_log(bus, "unit %s: power %s", name, on ? "on" : "off");
-        bus_catch_up(bus);
-        return true;
-    }
-    return false;
+    unsigned number = sim_unit_named(&bus->sim, name);
+    struct refusal refusal;
+    json_t *params = json_pack("{s:s, s:b}", "unit", name, "on", on);
+    json_t *result = number > 0 ? sim_command(bus_sim(bus), "power", params, &refusal) : NULL;
+    bool well = result != NULL;
+    json_decref(params);
+    json_decref(result);
+    bus_changed(bus);
+    return well;
 }
 
 bool bus_end(struct bus *bus)
 {
     bool well = true;
     bus_ports_close(bus);
+    if (!bus_files_end(bus))
+        well = false;
     bus_listener_end(&bus->listener);
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
-        if (bus->unit[at].bus && !flash_file_close(&bus->unit[at].flash))
+        if (bus->unit[at].open && !flash_file_close(&bus->unit[at].flash))
             well = false;
     return well;
 }
 
 void bus_free(struct bus *bus)
 {
+    sim_end(&bus->sim);
     if (bus->timer_fd >= 0)
         close(bus->timer_fd);
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)

@@ -153,7 +153,7 @@ void bus_ports_send(struct bus *bus, const uint8_t *bytes, size_t length)
         return;
     }
     for (size_t i = 0; i < length; i++)
-        send_heard(bus, heard, line_ear_byte(&bus->ports.to_client, bytes[i], segment_now(&bus->segment), heard));
+        send_heard(bus, heard, line_ear_byte(&bus->ports.to_client, bytes[i], sim_now(&bus->sim), heard));
 }
 
 void bus_ports_silence(struct bus *bus)
@@ -315,7 +315,7 @@ static void net_break(void *context, bool on)
 {
     struct bus *bus = context;
     bus_catch_up(bus);
-    segment_break(&bus->segment, on);
+    sim_break(&bus->sim, on);
     bus_catch_up(bus);
 }
 
@@ -323,7 +323,7 @@ static void net_purge(void *context)
 {
     struct bus *bus = context;
     bus_catch_up(bus);
-    segment_purge(&bus->segment);
+    sim_purge(&bus->sim);
     bus_catch_up(bus);
 }
 
@@ -419,4 +419,10 @@ void bus_ports_close(struct bus *bus)
         net_port_close(bus->ports.tcp);
     if (bus->ports.rfc2217)
         net_port_close(bus->ports.rfc2217);
+}
+
+void bus_ports_plug(struct bus *bus, bool plugged)
+{
+    (void)bus;
+    (void)plugged;
 }

@@ -37,6 +37,10 @@ bool bus_ports_publish(struct bus *bus);
 
 void bus_ports_close(struct bus *bus);
 
+/* The adapter is pulled out: the pty goes away with its link, network clients are hung up; or put in again: a new pty under the
+ * same link. A serial device stays. */
+void bus_ports_plug(struct bus *bus, bool plugged);
+
 /* How many clients are there; a device counts as none. */
 unsigned bus_ports_clients(const struct bus *bus);
 

@@ -13,10 +13,14 @@ const char *argp_program_version = "rkm04 " RKM04_VERSION;
 static const char help[] =
     "Usage: rkm04 serve [OPTION...]\n"
     "  or:  rkm04 exec [OPTION...] [M=]FILE...\n"
+    "  or:  rkm04 test [OPTION...] SCENARIO...\n"
+    "  or:  rkm04 replay [OPTION...] RECORD\n"
     "A virtual RKM04, the unit for four stepper motors on RS485.\n"
     "\n"
     "  serve      units on a line: pseudo terminal, serial device or TCP, in real time\n"
     "  exec       run programs in virtual time, as fast as the machine can\n"
+    "  test       run scenarios in virtual time and say which expectations hold\n"
+    "  replay     do again what a record of `serve' or `test' holds, and compare\n"
     "\n"
     "      --help      give this help; `rkm04 serve --help' tells more about serve\n"
     "      --version   print the program's version\n"
@@ -24,9 +28,11 @@ static const char help[] =
     "Examples:\n"
     "  rkm04 serve --node 3 --flash unit3.flash\n"
     "  rkm04 serve --node 1-16 --tcp 4001\n"
-    "  rkm04 exec --trace pulses.csv program.rks\n"
+    "  rkm04 exec --trace pulses.vcd program.rks\n"
+    "  rkm04 test --junit report.xml homing.yaml\n"
+    "  rkm04 replay --trace pulses.vcd session.record\n"
     "\n"
-    "Exit status: 0 well, 1 failure at run time, 2 usage, 4 less than --min-coverage of serve, 124 --until of exec reached "
+    "Exit status: 0 well, 1 failure at run time, 2 usage, 3 a scenario has failed, 4 less than --min-coverage of serve, 124 --until of exec reached "
     "with a motor still running.\n";
 
 static const struct {
@@ -35,6 +41,8 @@ static const struct {
 } subcommands[] = {
     {"serve", "rkm04 serve", serve_main},
     {"exec", "rkm04 exec", exec_main},
+    {"test", "rkm04 test", test_main},
+    {"replay", "rkm04 replay", replay_main},
 };
 
 /* Whoever starts us with a standard stream closed shall not have a device or file of ours in its place. Writing to the
@@ -51,7 +59,7 @@ int main(int argc, char **argv)
     fill_standard_streams();
     argp_err_exit_status = STATUS_USAGE;
     if (argc < 2) {
-        fputs("rkm04: no sub-command: expected `rkm04 serve' or `rkm04 exec'; `rkm04 --help' tells more\n", stderr);
+        fputs("rkm04: no sub-command: expected `rkm04 serve', `exec', `test' or `replay'; `rkm04 --help' tells more\n", stderr);
         return STATUS_USAGE;
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-?") == 0 || strcmp(argv[1], "help") == 0) {

@@ -10,6 +10,7 @@
 #include <uv.h>
 
 #include "bus.h"
+#include "control.h"
 #include "coverage.h"
 #include "log.h"
 #include "notify.h"
@@ -30,6 +31,8 @@ struct serve {
     struct line_watch watch;
     struct coverage coverage;
     struct serve_commands commands;
+    struct control *control; /* NULL: none */
+    char *control_path;
     enum exit_status status;
 
     uv_loop_t loop;
@@ -78,7 +81,18 @@ static void on_presence(void *context)
             return;
         }
     }
+    if (control_clients(serve->control) > 0) {
+        uv_timer_stop(&serve->idle);
+        return;
+    }
     uv_timer_start(&serve->idle, on_idle, serve->options.idle_seconds * UINT64_C(1000), 0);
+}
+
+static void on_shutdown(void *context)
+{
+    struct serve *serve = context;
+    log_at(bus_present(serve->bus[0]), "ended through the control socket");
+    uv_stop(&serve->loop);
 }
 
 static const struct bus_calls calls = {.failed = on_failed, .presence = on_presence};
@@ -155,6 +169,22 @@ static bool start_buses(struct serve *serve)
     return true;
 }
 
+/* Beside the link of the first line, unless told otherwise. Without a link there is none unless asked for. */
+static bool start_control(struct serve *serve)
+{
+    const struct serve_options *options = &serve->options;
+    const struct control_calls control_calls = {.shutdown = on_shutdown, .presence = on_presence, .context = serve};
+    if (options->no_control || (!options->control && !options->pty))
+        return true;
+    if (!options->control && asprintf(&serve->control_path, "%s.control", serve->bus[0]->ports.link.path) < 0) {
+        log_error("out of memory");
+        return false;
+    }
+    serve->control = control_open(&serve->loop, options->control ? options->control : serve->control_path, serve->bus,
+                                  options->lines, &control_calls);
+    return serve->control != NULL;
+}
+
 static bool start(struct serve *serve)
 {
     const struct serve_options *options = &serve->options;
@@ -164,9 +194,9 @@ static bool start(struct serve *serve)
         return false;
     serve->idle.data = serve;
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
-        !start_signals(serve) ||
+        !start_signals(serve) || !start_control(serve) ||
         (options->commands && !serve_commands_start(&serve->commands, &serve->loop, options, serve->bus)) ||
-        !serve_report_ready(options, serve->bus))
+        !serve_report_ready(options, serve->bus, control_path(serve->control)))
         return false;
     on_presence(serve);
     return true;
@@ -198,12 +228,15 @@ static void report_coverage(struct serve *serve)
 
 static void end(struct serve *serve)
 {
+    control_close(serve->control);
     for (unsigned i = 0; i < serve->options.lines; i++)
         if (serve->bus[i] && !bus_end(serve->bus[i]))
             serve->status = STATUS_FAILURE;
     uv_walk(&serve->loop, close_handle, NULL);
     uv_run(&serve->loop, UV_RUN_DEFAULT);
     uv_loop_close(&serve->loop);
+    control_free(serve->control);
+    free(serve->control_path);
     for (unsigned i = 0; i < serve->options.lines; i++)
         if (serve->bus[i])
             bus_free(serve->bus[i]);

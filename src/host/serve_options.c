@@ -10,6 +10,8 @@
 #include "net_port.h"
 #include "notify.h"
 #include "segment.h"
+#include "trace_file.h"
+#include "wire_file.h"
 
 #define LATENCY_MAX 2000 /* ms (C4) */
 #define VERSION_TEXT_MAX 255
@@ -37,7 +39,15 @@ enum key {
     KEY_READY_FD,
     KEY_COMMANDS,
     KEY_COVERAGE,
-    KEY_MIN_COVERAGE
+    KEY_MIN_COVERAGE,
+    KEY_LATE,
+    KEY_SEED,
+    KEY_PLANT,
+    KEY_TRACE,
+    KEY_WIRE,
+    KEY_RECORD,
+    KEY_CONTROL,
+    KEY_NO_CONTROL
 };
 
 static const struct argp_option table[] = {
@@ -76,8 +86,23 @@ static const struct argp_option table[] = {
     {NULL, 0, NULL, 0, "Time:", 3},
     {"clock", KEY_CLOCK, "CLOCK", 0,
      "real (default); xN: N times as fast, 0.001 to 10000; max: as real, but what is due comes at once, bytes first, without "
-     "waiting for its time", 0},
-    {NULL, 0, NULL, 0, "Begin, end and report:", 4},
+     "waiting for its time; stepped: time stands until it is advanced through the control socket, and bytes take none", 0},
+    {"late", KEY_LATE, "WHAT", 0,
+     "What happens after the process was stopped for a while: catch-up (default), the units make up for it; skip: their time has "
+     "stood", 0},
+    {NULL, 0, NULL, 0, "From a test:", 4},
+    {"control", KEY_CONTROL, "PATH", 0,
+     "Unix socket through which a test sees and changes everything (JSON-RPC; rkmctl --control); default: the link's name and "
+     ".control", 0},
+    {"no-control", KEY_NO_CONTROL, NULL, 0, "No control socket", 0},
+    {"plant", KEY_PLANT, "FILE", 0, "What the motors move: true positions, end stops, switches that drive inputs", 0},
+    {"trace", KEY_TRACE, "FILE", 0,
+     "Take down pulses, inputs, outputs and all that happens: FILE.vcd for GTKWave and PulseView, FILE.csv, FILE.jsonl; may be "
+     "given up to eight times. %l in it stands for the number of the line", 0},
+    {"wire", KEY_WIRE, "FILE", 0, "Take down what passes on the wires: FILE.log to read, FILE.pcapng for Wireshark; likewise", 0},
+    {"record", KEY_RECORD, "FILE", 0, "Record all that comes in, so that `rkm04 replay FILE' does it again", 0},
+    {"seed", KEY_SEED, "N", 0, "Of faults on demand that have a probability; default 1", 0},
+    {NULL, 0, NULL, 0, "Begin, end and report:", 5},
     {"ready-fd", KEY_READY_FD, "FD", 0, "Write the READY line to this file descriptor, too, and close it", 0},
     {"exit-when-idle", KEY_EXIT_WHEN_IDLE, "SECONDS", OPTION_ARG_OPTIONAL,
      "End when nobody has had the line open for so many seconds of real time, 0 to 86400; default 10. With --port: when "
@@ -104,6 +129,8 @@ static const char doc[] =
     "  rkm04 serve --tcp 4000 --rfc2217 4001\n"
     "  rkm04 serve --port /dev/ttyUSB0 --framing plain\n"
     "  rkm04 serve --clock x20 --baud 0\n"
+    "  rkm04 serve --clock stepped --control test.control --plant axis.yaml\n"
+    "  rkm04 serve --trace pulses.vcd --wire line.pcapng --record session.record\n"
     "  rkm04 serve --exit-when-idle=2 --coverage covered.txt --min-coverage 80\n"
     "\n"
     "Exit status: 0 ended by a signal or --exit-when-idle, 1 failure at run time, 2 usage, 4 less than --min-coverage.";
@@ -211,6 +238,43 @@ static const char *read_pattern(const char *name, const char *text, struct argp_
     return text;
 }
 
+/* Add a file of --trace or --wire. */
+static void add_file(const char *name, const char *text, bool known, const char *expected, const char **list,
+                     struct argp_state *state)
+{
+    unsigned at = 0;
+    read_pattern(name, text, state);
+    if (!known)
+        argp_error(state, "--%s: `%s' is wrong: expected %s", name, text, expected);
+    while (at < SERVE_FILES_MAX && list[at])
+        at++;
+    if (at == SERVE_FILES_MAX)
+        argp_error(state, "--%s: expected at most %u files", name, SERVE_FILES_MAX);
+    list[at] = text;
+}
+
+static bool read_late(const char *text, struct argp_state *state)
+{
+    if (strcmp(text, "catch-up") != 0 && strcmp(text, "skip") != 0)
+        argp_error(state, "--late: `%s' is unknown: expected catch-up or skip", text);
+    return strcmp(text, "skip") == 0;
+}
+
+/* A file for each line needs a name for each. */
+static void check_patterns(const struct serve_options *options, struct argp_state *state)
+{
+    const char *const *lists[] = {options->trace, options->wire, &options->record};
+    static const char *const names[] = {"trace", "wire", "record"};
+    for (size_t which = 0; which < sizeof lists / sizeof lists[0]; which++) {
+        for (unsigned at = 0; at < (which < 2 ? SERVE_FILES_MAX : 1) && lists[which][at]; at++) {
+            if (name_pattern_has(lists[which][at], 'n'))
+                argp_error(state, "--%s: %%n names a unit, but the file is about the line: expected %%l", names[which]);
+            if (options->lines > 1 && !name_pattern_has(lists[which][at], 'l'))
+                argp_error(state, "--%s: expected %%l in the name, for the number of the line, with --lines", names[which]);
+        }
+    }
+}
+
 /* What does not go together. */
 static void check_together(struct serve_options *options, struct argp_state *state)
 {
@@ -235,6 +299,9 @@ static void check_together(struct serve_options *options, struct argp_state *sta
         argp_error(state, "--turnaround is a time on the line: expected it without --baud 0");
     if (options->turnaround == NO_TURNAROUND)
         options->turnaround = options->baud != 0 ? SEGMENT_TURNAROUND : 0;
+    if (options->control && options->no_control)
+        argp_error(state, "expected either --control or --no-control");
+    check_patterns(options, state);
     options->pty = !options->port && (!net || options->link);
     options->config.node = options->nodes.node[0];
 }
@@ -310,6 +377,40 @@ static error_t read_line_option(int key, char *text, struct argp_state *state)
     }
 }
 
+/* Options for tests. */
+static error_t read_test_option(int key, char *text, struct argp_state *state)
+{
+    struct serve_options *options = state->input;
+    switch (key) {
+    case KEY_LATE:
+        options->late_skips = read_late(text, state);
+        return 0;
+    case KEY_SEED:
+        options->seed = number("seed", text, 0, UINT32_MAX / 2, "", state);
+        return 0;
+    case KEY_PLANT:
+        options->plant = read_path("plant", text, state);
+        return 0;
+    case KEY_TRACE:
+        add_file("trace", text, trace_file_named(text), TRACE_FILE_EXPECTED, options->trace, state);
+        return 0;
+    case KEY_WIRE:
+        add_file("wire", text, wire_file_named(text), WIRE_FILE_EXPECTED, options->wire, state);
+        return 0;
+    case KEY_RECORD:
+        options->record = read_pattern("record", text, state);
+        return 0;
+    case KEY_CONTROL:
+        options->control = read_path("control", text, state);
+        return 0;
+    case KEY_NO_CONTROL:
+        options->no_control = true;
+        return 0;
+    default:
+        return read_line_option(key, text, state);
+    }
+}
+
 static error_t read_option(int key, char *text, struct argp_state *state)
 {
     struct serve_options *options = state->input;
@@ -339,7 +440,7 @@ static error_t read_option(int key, char *text, struct argp_state *state)
         check_together(options, state);
         return 0;
     default:
-        return read_line_option(key, text, state);
+        return read_test_option(key, text, state);
     }
 }
 
@@ -354,6 +455,7 @@ void serve_options_read(struct serve_options *options, int argc, char **argv)
         .baud = 19200,
         .turnaround = NO_TURNAROUND,
         .min_coverage = -1,
+        .seed = 1,
         .ready_fd = -1,
     };
     virtual_clock_read(&options->clock, "real");

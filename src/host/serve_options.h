@@ -11,6 +11,7 @@
 #include "virtual_clock.h"
 
 #define SERVE_LINES_MAX 256u
+#define SERVE_FILES_MAX 8u /* traces, and logs of the wires */
 
 struct serve_options {
     struct rkm04_config config; /* --framing, --version-text, --speed-change-latency; node: of the first unit */
@@ -24,7 +25,7 @@ struct serve_options {
     const char *flash;          /* NULL: memory only */
     const char *coverage;       /* NULL: no report */
     int min_coverage;           /* tenths of a per cent; -1: not asked for */
-    const char *clock_text;     /* as given: "real", "x10", "max" */
+    const char *clock_text;     /* as given: "real", "x10", "max", "stepped" */
     struct virtual_clock clock;
     unsigned baud;              /* 19200, or 0: bytes take no time */
     uint32_t turnaround;        /* us */
@@ -32,6 +33,13 @@ struct serve_options {
     bool strict_line;
     bool exit_when_idle;
     unsigned idle_seconds;      /* of --exit-when-idle */
+    bool late_skips;            /* --late */
+    uint64_t seed;              /* of faults on demand */
+    const char *plant;          /* file; NULL: none */
+    const char *trace[SERVE_FILES_MAX], *wire[SERVE_FILES_MAX]; /* patterns; NULL: no more */
+    const char *record;         /* pattern; NULL: none */
+    const char *control;        /* socket; NULL: beside the link */
+    bool no_control;
     bool commands;              /* on stdin */
     int ready_fd;               /* -1: none */
 };

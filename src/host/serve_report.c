@@ -40,18 +40,18 @@ static void tell_ports(const struct bus *bus)
 
 static void tell_flash(struct bus *bus)
 {
-    for (unsigned at = 0; at < bus->segment.units; at++) {
-        const struct bus_unit *unit = &bus->unit[at];
-        if (unit->flash_path)
-            bus_log(bus, "unit %s: flash image %s", unit->name, unit->flash_path);
+    for (unsigned at = 0; at < sim_units(&bus->sim); at++) {
+        const char *name = bus->sim.unit[at].name;
+        if (bus->unit[at].flash_path)
+            bus_log(bus, "unit %s: flash image %s", name, bus->unit[at].flash_path);
         for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
             struct rkm04_motor_state state;
-            rkm04_motor_state(segment_unit(&bus->segment, unit->number), motor, &state);
+            rkm04_motor_state(sim_core(&bus->sim, at + 1u), motor, &state);
             if (state.slot == RKM04_SLOT_LOADED)
-                bus_log(bus, "unit %s, motor %u: starts the program of %u commands from flash", unit->name, motor,
+                bus_log(bus, "unit %s, motor %u: starts the program of %u commands from flash", name, motor,
                         state.commands);
             else if (state.slot == RKM04_SLOT_UNTRUSTED)
-                bus_log(bus, "unit %s, motor %u: its flash slot holds no whole program and counts as empty", unit->name, motor);
+                bus_log(bus, "unit %s, motor %u: its flash slot holds no whole program and counts as empty", name, motor);
         }
     }
 }
@@ -96,12 +96,13 @@ static json_t *ports_json(const struct bus *bus)
 }
 
 /* With several lines the ports at the top are those of line 0, and `lines` has all. */
-static json_t *ready_json(const struct serve_options *options, struct bus *const *buses)
+static json_t *ready_json(const struct serve_options *options, struct bus *const *buses, const char *control)
 {
     json_t *ready = ports_json(buses[0]), *lines = NULL;
-    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:s?}", "node", (int)options->config.node, "nodes",
+    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:s?, s:s?}", "node", (int)options->config.node, "nodes",
                              nodes_json(&options->nodes), "framing", options->config.framing->name, "baud", (int)options->baud,
-                             "turnaround", (int)options->turnaround, "clock", options->clock_text, "flash", options->flash);
+                             "turnaround", (int)options->turnaround, "clock", options->clock_text, "flash", options->flash,
+                             "control", control);
     bool well = ready && rest && json_object_update(ready, rest) == 0;
     json_decref(rest);
     if (well && options->lines > 1) {
@@ -116,9 +117,9 @@ static json_t *ready_json(const struct serve_options *options, struct bus *const
     return NULL;
 }
 
-bool serve_report_ready(const struct serve_options *options, struct bus *const *buses)
+bool serve_report_ready(const struct serve_options *options, struct bus *const *buses, const char *control)
 {
-    json_t *ready = ready_json(options, buses);
+    json_t *ready = ready_json(options, buses, control);
     char *text = ready ? json_dumps(ready, JSON_COMPACT) : NULL, *line = NULL;
     char units[NODES_TEXT_SIZE], status[NODES_TEXT_SIZE + 32];
     json_decref(ready);
@@ -143,9 +144,9 @@ bool serve_report_ready(const struct serve_options *options, struct bus *const *
 void serve_report_end(struct bus *bus)
 {
     struct rkm04_counters sum = {0};
-    struct segment_counters line = segment_counters(&bus->segment);
-    for (unsigned number = 1; number <= bus->segment.units; number++) {
-        struct rkm04_counters counters = rkm04_counters(segment_unit(&bus->segment, number));
+    struct segment_counters line = segment_counters(&bus->sim.segment);
+    for (unsigned number = 1; number <= sim_units(&bus->sim); number++) {
+        struct rkm04_counters counters = rkm04_counters(sim_core(&bus->sim, number));
         sum.requests += counters.requests;
         sum.answers += counters.answers;
         sum.dropped += counters.dropped;

@@ -8,7 +8,7 @@
 void serve_report_start(const struct serve_options *options, struct bus *const *buses);
 
 /* The READY line on stdout, on --ready-fd and to the service manager. Returns false if it could not be told (reported). */
-bool serve_report_ready(const struct serve_options *options, struct bus *const *buses);
+bool serve_report_ready(const struct serve_options *options, struct bus *const *buses, const char *control);
 
 /* Counters of a line, for the log. */
 void serve_report_end(struct bus *bus);

@@ -37,23 +37,27 @@ bool virtual_clock_read(struct virtual_clock *clock, const char *text)
         clock->runs_ahead = true;
         return true;
     }
+    if (strcmp(text, "stepped") == 0) {
+        clock->stands = true;
+        return true;
+    }
     if (text[0] != 'x' || text[1] == '.')
         return false;
     clock->thousandths = read_thousandths(text + 1);
     return clock->thousandths != 0;
 }
 
-void virtual_clock_start(struct virtual_clock *clock, uint64_t now)
+void virtual_clock_start(struct virtual_clock *clock, uint64_t now, uint64_t tick)
 {
     clock->start = now;
-    clock->leapt = 0;
+    clock->leapt = tick;
 }
 
 /* Both ways divide first and multiply the rest apart: no overflow within 50 years at the highest speed. */
 uint64_t virtual_clock_tick(const struct virtual_clock *clock, uint64_t now)
 {
     const uint64_t unit = (uint64_t)NS_PER_TICK * REAL;
-    uint64_t passed = now - clock->start;
+    uint64_t passed = clock->stands ? 0 : now - clock->start;
     return passed / unit * clock->thousandths + passed % unit * clock->thousandths / unit + clock->leapt;
 }
 
@@ -62,6 +66,8 @@ uint64_t virtual_clock_when(const struct virtual_clock *clock, uint64_t tick)
     const uint64_t unit = (uint64_t)NS_PER_TICK * REAL;
     if (tick <= clock->leapt)
         return clock->start;
+    if (clock->stands)
+        return RKM04_NEVER;
     uint64_t ticks = tick - clock->leapt;
     uint64_t rest = ticks % clock->thousandths * unit;
     return clock->start + ticks / clock->thousandths * unit + (rest + clock->thousandths - 1) / clock->thousandths;
@@ -70,4 +76,9 @@ uint64_t virtual_clock_when(const struct virtual_clock *clock, uint64_t tick)
 void virtual_clock_leap(struct virtual_clock *clock, uint64_t now, uint64_t tick)
 {
     clock->leapt += tick - virtual_clock_tick(clock, now);
+}
+
+void virtual_clock_skip(struct virtual_clock *clock, uint64_t nanoseconds)
+{
+    clock->start += nanoseconds;
 }

@@ -5,28 +5,34 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define VIRTUAL_CLOCK_EXPECTED "real, max, or xN with N from 0.001 to 10000 (as in x10 or x0.25)"
+#include <rkm04/limits.h>
+
+#define VIRTUAL_CLOCK_EXPECTED "real, max, stepped, or xN with N from 0.001 to 10000 (as in x10 or x0.25)"
 
 struct virtual_clock {
     uint32_t thousandths; /* of the speed of real time, 1..10 000 000 */
     bool runs_ahead;      /* max: leaps may be added */
-    uint64_t start;       /* ns at tick 0 */
-    uint64_t leapt;       /* ticks added by virtual_clock_leap() */
+    bool stands;          /* stepped: only leaps move it */
+    uint64_t start;       /* ns from which it counts */
+    uint64_t leapt;       /* the tick at that moment, and ticks added by virtual_clock_leap() */
 };
 
-/* Read "real", "max" or "xN". Returns false if it is none of VIRTUAL_CLOCK_EXPECTED. */
+/* Read "real", "max", "stepped" or "xN". Returns false if it is none of VIRTUAL_CLOCK_EXPECTED. */
 bool virtual_clock_read(struct virtual_clock *clock, const char *text);
 
-/* Tick 0 is at `now` (ns). */
-void virtual_clock_start(struct virtual_clock *clock, uint64_t now);
+/* Tick `tick` is at `now` (ns). */
+void virtual_clock_start(struct virtual_clock *clock, uint64_t now, uint64_t tick);
 
 /* The tick at `now` (ns, not before the start). */
 uint64_t virtual_clock_tick(const struct virtual_clock *clock, uint64_t now);
 
-/* The first ns at which virtual_clock_tick() is at least `tick`. */
+/* The first ns at which virtual_clock_tick() is at least `tick`; RKM04_NEVER: it stands. */
 uint64_t virtual_clock_when(const struct virtual_clock *clock, uint64_t tick);
 
 /* From `now` (ns) on, count from `tick`; must not be before virtual_clock_tick(). */
 void virtual_clock_leap(struct virtual_clock *clock, uint64_t now, uint64_t tick);
+
+/* `nanoseconds` of the machine's time have not been. */
+void virtual_clock_skip(struct virtual_clock *clock, uint64_t nanoseconds);
 
 #endif

@@ -24,6 +24,7 @@
 #define WIRE_STATIONS (1u + RKM04_NODE_MAX)
 #define WIRE_MONITOR WIRE_STATIONS              /* an ear that never sends: it hears everything */
 #define WIRE_EARS (WIRE_STATIONS + 1u)
+#define WIRE_NOISE WIRE_EARS                    /* no station: something that disturbs the line, for wire_hold() */
 #define WIRE_SIGNALS 80u /* signals that matter at a time: of each station those of the last three bytes' time, and spare ones */
 
 /* A byte on the wire, or a break. */
@@ -73,6 +74,9 @@ void wire_send(struct wire *wire, unsigned station, uint8_t byte, uint64_t start
 
 /* A station holds the line at 0 (break), or lets it go. */
 void wire_hold(struct wire *wire, unsigned station, bool on, uint64_t time);
+
+/* Make all times later by `parts`. */
+void wire_shift(struct wire *wire, uint64_t parts);
 
 /* When the next byte will have been heard if nobody sends anything more; RKM04_NEVER: never. */
 uint64_t wire_due(const struct wire *wire);

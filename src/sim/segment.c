@@ -21,11 +21,13 @@ static void bring(struct segment *segment, uint64_t tick)
 {
     if (tick <= segment->now)
         return;
+    segment->advancing = true;
     for (unsigned i = 0; i < segment->units; i++) {
         struct segment_unit *unit = &segment->unit[i];
         if (unit->powered)
             rkm04_advance(&unit->unit, tick - unit->since - rkm04_now(&unit->unit));
     }
+    segment->advancing = false;
     segment->now = tick;
 }
 
@@ -34,6 +36,62 @@ static void give_master(struct segment *segment, const uint8_t *bytes, size_t le
     if (segment->config.out)
         segment->config.out(segment->config.context, bytes, length);
 }
+
+/* ---- What goes wrong ------------------------------------------------------------------------------------------------ */
+
+static bool hears(const struct segment *segment, unsigned station, uint32_t senders)
+{
+    const struct segment_hooks *hooks = segment->config.hooks;
+    return !hooks || !hooks->hears || hooks->hears(segment->config.context, station, senders);
+}
+
+static bool echoes(const struct segment *segment, uint32_t senders, uint8_t byte)
+{
+    const struct segment_hooks *hooks = segment->config.hooks;
+    if (segment->config.echo)
+        return true;
+    return hooks && hooks->echoes && (senders & 1u) != 0 && hooks->echoes(segment->config.context, byte);
+}
+
+static void obeyed(struct segment *segment, const struct segment_unit *unit)
+{
+    const struct segment_hooks *hooks = segment->config.hooks;
+    if (hooks && hooks->obeyed)
+        hooks->obeyed(segment->config.context, (unsigned)(unit - segment->unit) + 1u);
+}
+
+/* What passes on the line in the place of a byte: the first bytes of *more. */
+static void change(struct segment *segment, unsigned station, uint8_t byte, struct segment_more *more)
+{
+    const struct segment_hooks *hooks = segment->config.hooks;
+    more->at = 0;
+    more->count = 1;
+    more->byte[0] = byte;
+    if (hooks && hooks->send)
+        more->count = (uint8_t)hooks->send(segment->config.context, station, byte, more->byte);
+}
+
+/* How much later than now a unit begins with its answer; ticks. 0 in the middle of one. */
+static uint64_t delay(struct segment *segment, struct segment_unit *unit)
+{
+    const struct segment_hooks *hooks = segment->config.hooks;
+    if (unit->begun)
+        return 0;
+    unit->begun = true;
+    return hooks && hooks->answer ? hooks->answer(segment->config.context, (unsigned)(unit - segment->unit) + 1u) : 0;
+}
+
+/* Fetch the next byte of a unit's answer. Returns false if there is none. */
+static bool fetch(struct segment_unit *unit, uint8_t *byte)
+{
+    uint32_t answers = rkm04_counters(&unit->unit).answers;
+    bool fetched = rkm04_send(&unit->unit, byte, 1) == 1;
+    if (rkm04_counters(&unit->unit).answers != answers)
+        unit->begun = false; /* the next byte is another answer's (P10) */
+    return fetched;
+}
+
+/* ---- Stations ------------------------------------------------------------------------------------------------------- */
 
 static void tell_monitor(struct segment *segment, const struct segment_byte *byte)
 {
@@ -51,6 +109,7 @@ static void give_unit(struct segment *segment, struct segment_unit *unit, uint8_
     uint32_t frames = counters.requests + counters.others + counters.dropped;
     unit->in_frame = frames == unit->frames;
     unit->frames = frames;
+    obeyed(segment, unit);
 }
 
 /* Take the first byte of the queue. */
@@ -64,10 +123,23 @@ static uint8_t take_first(struct segment *segment)
 
 /* ---- Bytes that take time ------------------------------------------------------------------------------------------- */
 
+static bool has_more(const struct segment *segment, unsigned station)
+{
+    return segment->more[station].at < segment->more[station].count;
+}
+
+/* When (parts) the next start bit of the master is due; RKM04_NEVER: none. */
+static uint64_t next_of_master(const struct segment *segment)
+{
+    if (has_more(segment, WIRE_MASTER))
+        return segment->more_start;
+    return segment->count > 0 ? segment->queue[segment->head].start : RKM04_NEVER;
+}
+
 /* When (parts) the next start bit is due, and of which station; RKM04_NEVER: none. */
 static uint64_t next_start(const struct segment *segment, unsigned *station)
 {
-    uint64_t start = segment->count > 0 ? segment->queue[segment->head].start : RKM04_NEVER;
+    uint64_t start = next_of_master(segment);
     *station = WIRE_MASTER;
     for (unsigned i = 0; i < segment->units; i++) {
         if (segment->unit[i].next < start) {
@@ -78,39 +150,87 @@ static uint64_t next_start(const struct segment *segment, unsigned *station)
     return start;
 }
 
-static void start_byte(struct segment *segment, unsigned station, uint64_t start)
+/* The master's bytes have to wait until `time`: those behind them, too, as far as there is no gap. */
+static void push_queue(struct segment *segment, uint64_t time)
 {
-    if (station == WIRE_MASTER) {
-        wire_send(&segment->wire, station, take_first(segment), start);
-        return;
+    for (size_t i = 0; i < segment->count; i++) {
+        uint64_t *start = &segment->queue[(segment->head + i) % SEGMENT_ROOM].start;
+        if (*start >= time)
+            return;
+        *start = time;
+        time += WIRE_BYTE;
     }
+    if (segment->master_free < time)
+        segment->master_free = time;
+}
+
+static void send_more(struct segment *segment, unsigned station, uint64_t start)
+{
+    struct segment_more *more = &segment->more[station];
+    if (has_more(segment, station))
+        wire_send(&segment->wire, station, more->byte[more->at++], start);
+}
+
+static void start_of_master(struct segment *segment, uint64_t start)
+{
+    const struct segment_more *more = &segment->more[WIRE_MASTER];
+    if (!has_more(segment, WIRE_MASTER)) {
+        change(segment, WIRE_MASTER, take_first(segment), &segment->more[WIRE_MASTER]);
+        push_queue(segment, start + WIRE_BYTE * (more->count > 0 ? more->count : 1u));
+    }
+    send_more(segment, WIRE_MASTER, start);
+    segment->more_start = start + WIRE_BYTE;
+}
+
+static void start_of_unit(struct segment *segment, unsigned station, uint64_t start)
+{
     struct segment_unit *unit = &segment->unit[station - 1u];
     uint8_t byte;
-    if (rkm04_send(&unit->unit, &byte, 1) == 1)
-        wire_send(&segment->wire, station, byte, start);
-    unit->next = rkm04_sending(&unit->unit) ? start + WIRE_BYTE : RKM04_NEVER;
+    if (!has_more(segment, station)) {
+        uint64_t later = delay(segment, unit);
+        if (later > 0) {
+            unit->next = start + later * WIRE_TICK;
+            return;
+        }
+        if (fetch(unit, &byte))
+            change(segment, station, byte, &segment->more[station]);
+    }
+    send_more(segment, station, start);
+    unit->next = has_more(segment, station) || rkm04_sending(&unit->unit) ? start + WIRE_BYTE : RKM04_NEVER;
+    obeyed(segment, unit);
+}
+
+static void start_byte(struct segment *segment, unsigned station, uint64_t start)
+{
+    if (station == WIRE_MASTER)
+        start_of_master(segment, start);
+    else
+        start_of_unit(segment, station, start);
 }
 
 static void end_byte(struct segment *segment, const struct wire_byte *heard)
 {
+    uint32_t senders = heard->senders & ((UINT32_C(1) << WIRE_STATIONS) - 1u);
     if (heard->ear == WIRE_MONITOR) {
         struct segment_byte byte = {
             .start = heard->start / WIRE_TICK,
             .tick = segment->now,
-            .senders = heard->senders,
+            .senders = senders,
             .byte = heard->byte,
             .lost = heard->lost,
         };
-        if (segment->config.echo && !heard->lost)
+        if (!heard->lost && echoes(segment, senders, heard->byte) && hears(segment, WIRE_MASTER, senders))
             give_master(segment, &heard->byte, 1);
         tell_monitor(segment, &byte);
+    } else if (!hears(segment, heard->ear, senders)) {
+        return;
     } else if (heard->ear == WIRE_MASTER) {
         if (!segment->config.echo) /* with an echo it hears what the monitor hears */
             give_master(segment, &heard->byte, 1);
     } else {
         struct segment_unit *unit = &segment->unit[heard->ear - 1u];
         give_unit(segment, unit, heard->byte);
-        if (unit->next == RKM04_NEVER && rkm04_sending(&unit->unit))
+        if (unit->powered && unit->next == RKM04_NEVER && rkm04_sending(&unit->unit))
             unit->next = heard->end + segment->config.turnaround * (uint64_t)WIRE_TICK;
     }
 }
@@ -140,14 +260,43 @@ static bool answers(const struct segment_unit *unit)
     return unit->powered && rkm04_sending(&unit->unit);
 }
 
-/* Let the byte of a station be heard by the units in `ears` (bit n: unit n) and the monitor. */
+/* Let the byte of a station be heard by the units in `ears` (bit n: unit n), the monitor, and the master if it is a unit's. */
 static void pass(struct segment *segment, unsigned station, uint32_t ears, uint8_t byte)
 {
-    for (unsigned i = 0; i < segment->units; i++)
-        if (segment->unit[i].powered && (ears >> (i + 1u) & 1u) != 0)
-            give_unit(segment, &segment->unit[i], byte);
+    uint32_t sender = UINT32_C(1) << station;
     segment->quiet_bytes++;
-    tell_monitor(segment, &(struct segment_byte){segment->now, segment->now, UINT32_C(1) << station, byte, false});
+    if (!segment->disturbed && hears(segment, WIRE_MASTER, sender) &&
+        (station != WIRE_MASTER || echoes(segment, sender, byte)))
+        give_master(segment, &byte, 1);
+    for (unsigned i = 0; i < segment->units && !segment->disturbed; i++)
+        if (segment->unit[i].powered && (ears >> (i + 1u) & 1u) != 0 && hears(segment, i + 1u, sender))
+            give_unit(segment, &segment->unit[i], byte);
+    tell_monitor(segment, &(struct segment_byte){segment->now, segment->now, sender, byte, segment->disturbed});
+}
+
+static void pass_changed(struct segment *segment, unsigned station, uint32_t ears, uint8_t byte)
+{
+    struct segment_more changed;
+    change(segment, station, byte, &changed);
+    for (unsigned i = 0; i < changed.count; i++)
+        pass(segment, station, ears, changed.byte[i]);
+}
+
+/* Let a unit send its answer, and what it has to answer then (P10). */
+static void pass_answer(struct segment *segment, unsigned station, uint32_t ears)
+{
+    struct segment_unit *unit = &segment->unit[station - 1u];
+    uint8_t byte;
+    while (answers(unit)) {
+        uint64_t later = delay(segment, unit);
+        if (later > 0) {
+            unit->next = parts_of(segment->now + later);
+            return;
+        }
+        if (fetch(unit, &byte))
+            pass_changed(segment, station, ears, byte);
+        obeyed(segment, unit);
+    }
 }
 
 /* Let all who have an answer now send it. Units that take an answer for a request (L2 with the same address twice) go on in the
@@ -155,23 +304,21 @@ static void pass(struct segment *segment, unsigned station, uint32_t ears, uint8
 static void pass_answers(struct segment *segment)
 {
     uint32_t ears = 0;
-    uint8_t bytes[256];
-    size_t length;
-    for (unsigned i = 0; i < segment->units; i++)
-        ears |= (uint32_t)!answers(&segment->unit[i]) << (i + 1u);
     for (unsigned i = 0; i < segment->units; i++) {
-        if ((ears >> (i + 1u) & 1u) != 0)
-            continue;
-        while ((length = rkm04_send(&segment->unit[i].unit, bytes, sizeof bytes)) > 0) {
-            give_master(segment, bytes, length);
-            for (size_t at = 0; at < length; at++)
-                pass(segment, i + 1u, ears, bytes[at]);
-        }
+        struct segment_unit *unit = &segment->unit[i];
+        if (unit->next != RKM04_NEVER && unit->next <= parts_of(segment->now))
+            unit->next = RKM04_NEVER; /* it has waited long enough */
+        ears |= (uint32_t)(!answers(unit) || unit->next != RKM04_NEVER) << (i + 1u);
     }
-    segment->again = RKM04_NEVER;
     for (unsigned i = 0; i < segment->units; i++)
-        if (answers(&segment->unit[i]))
-            segment->again = segment->now + 1u;
+        if ((ears >> (i + 1u) & 1u) == 0)
+            pass_answer(segment, i + 1u, ears);
+    segment->again = RKM04_NEVER;
+    for (unsigned i = 0; i < segment->units; i++) {
+        const struct segment_unit *unit = &segment->unit[i];
+        if (answers(unit))
+            segment->again = earlier(segment->again, unit->next == RKM04_NEVER ? segment->now + 1u : tick_of(unit->next));
+    }
 }
 
 static uint64_t untimed_due(const struct segment *segment)
@@ -184,12 +331,8 @@ static void advance_untimed(struct segment *segment, uint64_t tick)
 {
     for (uint64_t due; (due = untimed_due(segment)) <= tick && due != RKM04_NEVER;) {
         bring(segment, due);
-        if (segment->again > segment->now) {
-            uint8_t byte = take_first(segment);
-            if (segment->config.echo)
-                give_master(segment, &byte, 1);
-            pass(segment, WIRE_MASTER, UINT32_MAX, byte);
-        }
+        if (segment->again > segment->now)
+            pass_changed(segment, WIRE_MASTER, UINT32_MAX, take_first(segment));
         pass_answers(segment);
     }
 }
@@ -200,11 +343,15 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
 {
     segment->config = *config;
     segment->now = 0;
+    segment->advancing = false;
     segment->units = 0;
     segment->quiet_bytes = segment->overruns = 0;
     segment->again = RKM04_NEVER;
     segment->master_free = 0;
     segment->head = segment->count = 0;
+    segment->disturbed = false;
+    for (unsigned station = 0; station < WIRE_STATIONS; station++)
+        segment->more[station] = (struct segment_more){0};
     wire_begin(&segment->wire);
 }
 
@@ -217,6 +364,7 @@ static void power_up(struct segment *segment, unsigned number, const struct rkm0
     unit->powered = true;
     unit->in_frame = false;
     unit->frames = 0;
+    unit->begun = false;
     unit->next = RKM04_NEVER;
     wire_join(&segment->wire, number, parts_of(segment->now));
 }
@@ -245,11 +393,19 @@ void segment_power(struct segment *segment, unsigned number, bool on)
     struct segment_unit *unit = &segment->unit[number - 1u];
     unit->powered = unit->in_frame = false;
     unit->next = RKM04_NEVER;
+    segment->more[number].count = 0;
     wire_leave(&segment->wire, number, parts_of(segment->now));
     if (!on)
         return;
     struct rkm04_config config = unit->unit.config;
     power_up(segment, number, &config, unit->unit.port, unit->unit.context);
+}
+
+void segment_set_timed(struct segment *segment, bool timed)
+{
+    segment->config.timed = timed;
+    wire_hold(&segment->wire, WIRE_NOISE, timed && segment->disturbed, parts_of(segment->now));
+    segment->master_free = parts_of(segment->now);
 }
 
 size_t segment_room(const struct segment *segment)
@@ -276,8 +432,8 @@ size_t segment_purge(struct segment *segment)
 {
     size_t count = segment->count;
     if (count > 0)
-        segment->master_free = segment->queue[segment->head].start;
-    segment->count = 0;
+        segment->master_free = next_of_master(segment);
+    segment->count = segment->more[WIRE_MASTER].count = 0;
     return count;
 }
 
@@ -285,6 +441,13 @@ void segment_break(struct segment *segment, bool on)
 {
     if (segment->config.timed)
         wire_hold(&segment->wire, WIRE_MASTER, on, parts_of(segment->now));
+}
+
+void segment_disturb(struct segment *segment, bool on)
+{
+    segment->disturbed = on;
+    if (segment->config.timed)
+        wire_hold(&segment->wire, WIRE_NOISE, on, parts_of(segment->now));
 }
 
 uint64_t segment_now(const struct segment *segment)
@@ -300,6 +463,29 @@ void segment_advance(struct segment *segment, uint64_t tick)
     else
         advance_untimed(segment, goal);
     bring(segment, goal);
+}
+
+/* A time later by `by`; RKM04_NEVER stays. */
+static void postpone(uint64_t *time, uint64_t by)
+{
+    if (*time != RKM04_NEVER)
+        *time += by;
+}
+
+void segment_shift(struct segment *segment, uint64_t ticks)
+{
+    uint64_t parts = ticks * WIRE_TICK;
+    segment->now += ticks;
+    postpone(&segment->again, ticks);
+    segment->master_free += parts;
+    segment->more_start += parts;
+    for (size_t i = 0; i < segment->count; i++)
+        segment->queue[(segment->head + i) % SEGMENT_ROOM].start += parts;
+    for (unsigned i = 0; i < segment->units; i++) {
+        segment->unit[i].since += ticks;
+        postpone(&segment->unit[i].next, parts);
+    }
+    wire_shift(&segment->wire, parts);
 }
 
 uint64_t segment_due(const struct segment *segment)

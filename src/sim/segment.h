@@ -43,7 +43,7 @@
 struct segment_byte {
     uint64_t start;   /* tick at which its start bit began, rounded down */
     uint64_t tick;    /* at which it had passed, rounded up: the present one */
-    uint32_t senders; /* bit 0: the master; bit n: unit n; several bits: a collision */
+    uint32_t senders; /* bit 0: the master; bit n: unit n; several bits: a collision; none: segment_disturb() */
     uint8_t byte;     /* as heard by someone who sends nothing */
     bool lost;        /* framing error: nobody has got it */
 };
@@ -54,13 +54,35 @@ typedef void segment_out(void *context, const uint8_t *bytes, size_t length);
 /* Gets every byte on the line when it has passed, after the stations. The same restriction. */
 typedef void segment_monitor(void *context, const struct segment_byte *byte);
 
+#define SEGMENT_CHANGED_MAX 4u /* bytes that may be sent in place of one */
+
+/* What may go wrong, for somebody who wants it to. Any may be NULL. All are called at the tick segment_now(), and must not call
+ * back into the segment, but for reading. */
+struct segment_hooks {
+    /* Unit `number` is to begin with its answer now. Returns by how many ticks later it will, at most SEGMENT_DELAY_MAX. */
+    uint64_t (*answer)(void *context, unsigned number);
+    /* `station` (0: the master, n: unit n) sends a byte. Writes what passes on the line instead. Returns its length, at most
+     * SEGMENT_CHANGED_MAX; 0: silence for as long as the byte would have taken. */
+    size_t (*send)(void *context, unsigned station, uint8_t byte, uint8_t *bytes);
+    /* Does `station` get what `senders` (as in struct segment_byte) have sent? */
+    bool (*hears)(void *context, unsigned station, uint32_t senders);
+    /* Does the master hear this byte, which it has sent itself? */
+    bool (*echoes)(void *context, uint8_t byte);
+    /* Unit `number` has looked at a byte, or fetched one to send: it may have obeyed a request. This one may switch the unit off
+     * or on (segment_power()). */
+    void (*obeyed)(void *context, unsigned number);
+};
+
+#define SEGMENT_DELAY_MAX UINT64_C(1000000000000) /* ticks */
+
 struct segment_config {
     bool timed;             /* false: bytes take no time (--baud 0) */
     bool echo;              /* the master hears its own bytes, too (a two-wire adapter with local echo) */
     uint32_t turnaround;    /* ticks, 0..SEGMENT_TURNAROUND_MAX, from the end of a request to the start bit of the answer */
     segment_out *out;       /* NULL: nobody */
     segment_monitor *monitor; /* NULL: nobody */
-    void *context;          /* of both */
+    const struct segment_hooks *hooks; /* NULL: nothing goes wrong */
+    void *context;          /* of all three */
 };
 
 /* A unit on the line. Who may read it: all. */
@@ -70,7 +92,14 @@ struct segment_unit {
     bool powered;
     bool in_frame;          /* what it has heard so far does not end with a whole frame */
     uint32_t frames;        /* seen by the unit */
+    bool begun;             /* its answer has begun to go out: the hook has been asked */
     uint64_t next;          /* parts (wire.h): start bit of the next byte of its answer; RKM04_NEVER: no answer goes out */
+};
+
+/* Bytes that a hook has put in the place of one, and that have not set out. */
+struct segment_more {
+    uint8_t at, count;
+    uint8_t byte[SEGMENT_CHANGED_MAX];
 };
 
 struct segment_counters {
@@ -83,6 +112,7 @@ struct segment_counters {
 struct segment {
     struct segment_config config;
     uint64_t now;            /* first tick that is not yet done */
+    bool advancing;          /* what units do now comes of time going on; else of what they are given */
     unsigned units;
     struct segment_unit unit[SEGMENT_UNITS]; /* unit n is unit[n - 1] */
 
@@ -90,7 +120,10 @@ struct segment {
     struct wire wire;
     uint64_t quiet_bytes;    /* sent, without time */
     uint64_t overruns;
-    uint64_t again;          /* without time: tick at which units go on answering one another; RKM04_NEVER: they do not */
+    uint64_t again;          /* without time: tick at which units answer without being asked once more; RKM04_NEVER: they do not */
+    bool disturbed;          /* segment_disturb() */
+    uint64_t more_start;     /* parts: start bit of the next of the master's more[0] */
+    struct segment_more more[WIRE_STATIONS];
     uint64_t master_free;    /* parts: when the master's last byte will have passed */
     size_t head, count;      /* of the queue */
     struct {
@@ -109,6 +142,9 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
  * address. Returns its number on the line, 1..16 in the order of adding; 0: no place is left. */
 unsigned segment_add_unit(struct segment *segment, const struct rkm04_config *config, const struct rkm04_port *port,
                           void *context);
+
+/* Let bytes take time from now on, or none. None may be under way (segment_idle()). */
+void segment_set_timed(struct segment *segment, bool timed);
 
 /* ---- Units: `number` is 1..segment->units ------------------------------------------------------------------------------ */
 
@@ -137,6 +173,10 @@ size_t segment_purge(struct segment *segment);
 /* The master holds the line at 0 from the present tick on, or lets it go (break). Nothing without `timed`. */
 void segment_break(struct segment *segment, bool on);
 
+/* Something that is no station holds the line at 0 from the present tick on, or lets it go. Without `timed`: no byte gets
+ * through. */
+void segment_disturb(struct segment *segment, bool on);
+
 /* ---- Time ------------------------------------------------------------------------------------------------------------- */
 
 /* The first tick that is not yet done. */
@@ -145,6 +185,10 @@ uint64_t segment_now(const struct segment *segment);
 /* Do all ticks before `tick`, and move every byte that is due by `tick`. Does nothing if `tick` < segment_now(), apart from
  * moving what is due. */
 void segment_advance(struct segment *segment, uint64_t tick);
+
+/* Make everything later by `ticks`, the present tick included: what follows is what would have followed, so much later. For
+ * snapshots. */
+void segment_shift(struct segment *segment, uint64_t ticks);
 
 /* A tick before which no byte reaches anybody if the master hands over nothing more: advancing in one go up to it changes nothing
  * that can be seen on the line. Mostly the tick of the next byte; RKM04_NEVER: nothing is under way. May lie before

@@ -216,6 +216,20 @@ void wire_hold(struct wire *wire, unsigned station, bool on, uint64_t time)
         listen_all(wire);
 }
 
+void wire_shift(struct wire *wire, uint64_t parts)
+{
+    for (unsigned i = 0; i < wire->count; i++) {
+        wire->signal[i].start += parts;
+        if (wire->signal[i].end != HELD_END)
+            wire->signal[i].end += parts;
+    }
+    for (unsigned ear = 0; ear < WIRE_EARS; ear++) {
+        wire->ear[ear].from += parts;
+        if (wire->ear[ear].fall != RKM04_NEVER)
+            wire->ear[ear].fall += parts;
+    }
+}
+
 /* ---- Hearing -------------------------------------------------------------------------------------------------------- */
 
 /* The ear that hears a byte next. */

@@ -1,0 +1,113 @@
+#include "bus_files.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bus.h"
+#include "log.h"
+
+/* The name for this line; NULL: too long (reported). */
+static const char *path_of(const struct bus *bus, const char *pattern, char path[PATH_MAX])
+{
+    if (name_expand(pattern, NULL, bus->number, path))
+        return path;
+    log_error("%s: the path is too long", pattern);
+    return NULL;
+}
+
+static bool complain(char *error)
+{
+    log_error("%s", error ? error : "out of memory");
+    free(error);
+    return false;
+}
+
+static bool begin_record(struct bus *bus)
+{
+    struct bus_files *files = &bus->files;
+    char path[PATH_MAX];
+    if (!bus->options->record)
+        return true;
+    if (!path_of(bus, bus->options->record, path))
+        return false;
+    files->record_stream = fopen(path, "we");
+    if (!files->record_stream) {
+        log_error("cannot write %s: %s", path, strerror(errno));
+        return false;
+    }
+    files->record = record_begin(&bus->sim, files->record_stream);
+    return files->record || complain(NULL);
+}
+
+bool bus_files_begin(struct bus *bus)
+{
+    const struct serve_options *options = bus->options;
+    struct bus_files *files = &bus->files;
+    char path[PATH_MAX], *error = NULL;
+    if (!begin_record(bus))
+        return false;
+    for (unsigned i = 0; i < SERVE_FILES_MAX && options->trace[i]; i++) {
+        if (!path_of(bus, options->trace[i], path))
+            return false;
+        files->trace[i] = trace_file_begin(&bus->sim, path, &error);
+        if (!files->trace[i])
+            return complain(error);
+    }
+    for (unsigned i = 0; i < SERVE_FILES_MAX && options->wire[i]; i++) {
+        if (!path_of(bus, options->wire[i], path))
+            return false;
+        files->wire[i] = wire_file_begin(&bus->sim, path, &error);
+        if (!files->wire[i])
+            return complain(error);
+    }
+    return true;
+}
+
+/* Close a file that could not be written; `error` is why. Returns true if it could. */
+static bool check(const char *path, int error)
+{
+    if (error != 0)
+        log_error("cannot write %s: %s", path, strerror(error));
+    return error == 0;
+}
+
+void bus_files_look(struct bus *bus)
+{
+    const struct serve_options *options = bus->options;
+    struct bus_files *files = &bus->files;
+    for (unsigned i = 0; i < SERVE_FILES_MAX; i++) {
+        if (files->trace[i] && trace_file_failed(files->trace[i]) != 0) {
+            check(options->trace[i], trace_file_end(files->trace[i]));
+            files->trace[i] = NULL;
+            files->failed = true;
+        }
+        if (files->wire[i] && wire_file_failed(files->wire[i]) != 0) {
+            check(options->wire[i], wire_file_end(files->wire[i]));
+            files->wire[i] = NULL;
+            files->failed = true;
+        }
+    }
+}
+
+bool bus_files_end(struct bus *bus)
+{
+    const struct serve_options *options = bus->options;
+    struct bus_files *files = &bus->files;
+    bool well = !files->failed;
+    for (unsigned i = 0; i < SERVE_FILES_MAX; i++) {
+        if (files->trace[i])
+            well = check(options->trace[i], trace_file_end(files->trace[i])) && well;
+        if (files->wire[i])
+            well = check(options->wire[i], wire_file_end(files->wire[i])) && well;
+        files->trace[i] = NULL;
+        files->wire[i] = NULL;
+    }
+    if (files->record)
+        well = check(options->record, record_end(files->record)) && well;
+    if (files->record_stream && fclose(files->record_stream) != 0)
+        well = check(options->record, errno);
+    files->record = NULL;
+    files->record_stream = NULL;
+    return well;
+}

@@ -1,0 +1,32 @@
+/* bus_files.h: what is written down about a line: traces, logs of the wires, a record. */
+#ifndef RKM04_HOST_BUS_FILES_H
+#define RKM04_HOST_BUS_FILES_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "record.h"
+#include "serve_options.h"
+#include "trace_file.h"
+#include "wire_file.h"
+
+struct bus;
+
+struct bus_files {
+    struct trace_file *trace[SERVE_FILES_MAX];
+    struct wire_file *wire[SERVE_FILES_MAX];
+    FILE *record_stream;
+    struct record *record; /* NULL: none */
+    bool failed;           /* one could not be written (reported) */
+};
+
+/* Open what the options ask for. Failures are reported. Returns false if it did not work. */
+bool bus_files_begin(struct bus *bus);
+
+/* One could not be written any more: report it, once. */
+void bus_files_look(struct bus *bus);
+
+/* Close them all. Returns false if one could not be written (reported). */
+bool bus_files_end(struct bus *bus);
+
+#endif

@@ -1,0 +1,284 @@
+/* bus_time.c: how a line follows its clock: catches up, sleeps, waits, steps. */
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/timerfd.h>
+
+#include "bus.h"
+#include "log.h"
+
+#define NS_PER_MS 1000000u
+#define NS_PER_SECOND 1000000000u
+#define REST (100u * NS_PER_MS)  /* longest sleep while motors or programs run */
+#define REST_WATCHED (10u * NS_PER_MS) /* while somebody watches what they do */
+#define LATE (500u * NS_PER_MS)  /* so much behind, and the process was stopped */
+#define STINT (5u * NS_PER_MS)   /* longest time without a look at the line and at signals */
+#define STEP 100000u             /* ticks that the units are advanced at once while they are at work */
+#define LEAP 10000u              /* ticks: shortest leap of --clock max; less would cost more than it shows */
+#define FRAME_SILENCE (100u * NS_PER_MS) /* --clock max: how long the rest of a frame is waited for (L2) */
+
+bool bus_stepped(const struct bus *bus)
+{
+    return bus->clock.stands;
+}
+
+uint64_t bus_present(const struct bus *bus)
+{
+    return !bus->running ? 0 : bus_stepped(bus) ? sim_now(&bus->sim) : virtual_clock_tick(&bus->clock, uv_hrtime());
+}
+
+/* ---- Who waits ------------------------------------------------------------------------------------------------------ */
+
+static void take_off(struct bus *bus, struct bus_waiter *waiter)
+{
+    for (struct bus_waiter **at = &bus->waiters; *at; at = &(*at)->next) {
+        if (*at == waiter) {
+            *at = waiter->next;
+            break;
+        }
+    }
+    if (bus->advancing == waiter) {
+        bus->advancing = NULL;
+        bus->goal = sim_now(&bus->sim);
+    }
+}
+
+/* Tell those who have waited long enough. A waiter who is told may wait again, or take others off. */
+static void serve_waiters(struct bus *bus)
+{
+    for (struct bus_waiter *waiter = bus->waiters; waiter;) {
+        bool holds = waiter->condition && condition_holds(waiter->condition);
+        if (!holds && sim_now(&bus->sim) < waiter->limit) {
+            waiter = waiter->next;
+            continue;
+        }
+        take_off(bus, waiter);
+        waiter->done(waiter, holds);
+        waiter = bus->waiters;
+    }
+}
+
+/* The tick up to which nobody who waits has to look. */
+static uint64_t waiters_next(const struct bus *bus)
+{
+    uint64_t next = RKM04_NEVER, now = sim_now(&bus->sim);
+    for (const struct bus_waiter *waiter = bus->waiters; waiter; waiter = waiter->next) {
+        uint64_t when = waiter->condition ? condition_next(waiter->condition) : RKM04_NEVER;
+        if (waiter->limit < when)
+            when = waiter->limit;
+        if (when <= now)
+            when = now + 1u;
+        if (when < next)
+            next = when;
+    }
+    return next;
+}
+
+void bus_wait(struct bus *bus, struct bus_waiter *waiter)
+{
+    waiter->next = bus->waiters;
+    bus->waiters = waiter;
+    if (!bus->busy)
+        bus_catch_up(bus);
+}
+
+void bus_wait_cancel(struct bus *bus, struct bus_waiter *waiter)
+{
+    take_off(bus, waiter);
+}
+
+bool bus_advance(struct bus *bus, struct bus_waiter *waiter)
+{
+    if (!bus_stepped(bus) || bus->advancing)
+        return false;
+    bus->advancing = waiter;
+    bus->goal = waiter->limit;
+    bus_wait(bus, waiter);
+    return true;
+}
+
+/* ---- Where time goes ------------------------------------------------------------------------------------------------ */
+
+/* The earliest tick at which a byte is to be moved. */
+static uint64_t due(const struct bus *bus)
+{
+    uint64_t tick = sim_due(&bus->sim);
+    return bus->gathered > 0 && bus->answered < tick ? bus->answered : tick;
+}
+
+/* --clock max: the tick to leap to at `now` (ns): that of the next byte under way; else, unless the rest of a frame is on its
+ * way, past the next thing that happens. RKM04_NEVER: no reason to leap. */
+static uint64_t leap_to(const struct bus *bus, uint64_t now)
+{
+    if (!bus->clock.runs_ahead)
+        return RKM04_NEVER;
+    uint64_t byte = due(bus);
+    if (byte != RKM04_NEVER)
+        return byte;
+    if (segment_in_frame(&bus->sim.segment) && now - bus->heard < FRAME_SILENCE)
+        return RKM04_NEVER;
+    uint64_t event = sim_next_event(&bus->sim), least = sim_now(&bus->sim) + LEAP;
+    return event == RKM04_NEVER ? RKM04_NEVER : event < least ? least : event + 1;
+}
+
+/* Up to which tick the units are to be at `now` (ns). */
+static uint64_t goal(struct bus *bus, uint64_t now)
+{
+    if (bus_stepped(bus))
+        return bus->goal;
+    uint64_t tick = virtual_clock_tick(&bus->clock, now), leap = leap_to(bus, now);
+    if (leap == RKM04_NEVER || leap <= tick)
+        return tick;
+    virtual_clock_leap(&bus->clock, now, leap);
+    return leap;
+}
+
+/* One step towards `tick`: a span in which nothing happens, or STEP, and no further than somebody waits for. Anything may be
+ * reached in one call of the sim, but then nobody would look at the line and at signals for a long while. */
+static void step(struct bus *bus, uint64_t tick)
+{
+    uint64_t end = sim_now(&bus->sim) + STEP, wanted = waiters_next(bus);
+    if (end < tick) {
+        uint64_t event = sim_next_event(&bus->sim);
+        if (end <= event)
+            end = event == RKM04_NEVER ? RKM04_NEVER : event + 1;
+    }
+    if (wanted < end)
+        end = wanted;
+    sim_advance(&bus->sim, tick < end ? tick : end);
+    serve_waiters(bus);
+}
+
+static bool is_watched(const struct bus *bus)
+{
+    return bus->waiters || (bus->sim.watch.kinds & ~bus->news.kinds) != 0;
+}
+
+/* When (ns) there will be something to do; 0: not before bytes come. */
+static uint64_t next_wake(const struct bus *bus, uint64_t now)
+{
+    uint64_t byte = due(bus), event = sim_next_event(&bus->sim), wanted = waiters_next(bus), when = 0;
+    if (bus_stepped(bus))
+        return 0;
+    if (leap_to(bus, now) != RKM04_NEVER)
+        return now;
+    if (wanted < byte)
+        byte = wanted;
+    if (byte != RKM04_NEVER) {
+        when = virtual_clock_when(&bus->clock, byte);
+        when = when > 0 ? when : now;
+    }
+    if (event != RKM04_NEVER) {
+        uint64_t look = virtual_clock_when(&bus->clock, event + 1), rest = is_watched(bus) ? REST_WATCHED : REST;
+        if (look < now + rest)
+            look = now + rest;
+        if (when == 0 || look < when)
+            when = look;
+    }
+    return when;
+}
+
+static void set_timer(struct bus *bus, uint64_t when)
+{
+    struct itimerspec spec = {
+        .it_value = {.tv_sec = (time_t)(when / NS_PER_SECOND), .tv_nsec = (long)(when % NS_PER_SECOND)},
+    };
+    timerfd_settime(bus->timer_fd, TFD_TIMER_ABSTIME, &spec, NULL);
+    bus->wake = when;
+}
+
+/* The process has slept for much longer than it wanted to: it was stopped, or the machine was. */
+static void look_if_late(struct bus *bus, uint64_t now)
+{
+    if (bus->wake == 0 || now < bus->wake + LATE)
+        return;
+    uint64_t late = now - bus->wake;
+    if (bus->options->late_skips)
+        virtual_clock_skip(&bus->clock, late);
+    bus_log(bus, "late by %" PRIu64 ".%03" PRIu64 " s: was the process stopped? %s", late / NS_PER_SECOND,
+            late % NS_PER_SECOND / NS_PER_MS,
+            bus->options->late_skips ? "the units' time has not gone on meanwhile (--late skip)"
+                                     : "the units catch up (--late catch-up)");
+}
+
+void bus_catch_up(struct bus *bus)
+{
+    uint64_t start = uv_hrtime(), now = start, tick;
+    if (!bus_stepped(bus))
+        look_if_late(bus, now);
+    bus->busy = true;
+    do {
+        tick = goal(bus, now);
+        step(bus, tick);
+        if (bus->answered <= sim_now(&bus->sim) && bus->gathered > 0) {
+            bus_ports_send(bus, bus->out, bus->gathered);
+            bus->gathered = 0;
+        }
+        now = uv_hrtime();
+    } while (now - start < STINT && (sim_now(&bus->sim) < tick || leap_to(bus, now) != RKM04_NEVER));
+    if (segment_idle(&bus->sim.segment))
+        bus_ports_silence(bus);
+    bus_ports_listen(bus);
+    bus_files_look(bus);
+    bus->busy = false;
+    if (bus_stepped(bus))
+        tick = bus->goal; /* whoever it was advanced for may be content */
+    set_timer(bus, sim_now(&bus->sim) < tick ? now : next_wake(bus, now));
+}
+
+static void on_timer(uv_poll_t *handle, int status, int events)
+{
+    (void)status;
+    (void)events;
+    bus_catch_up(handle->data);
+}
+
+bool bus_time_begin(struct bus *bus, uv_loop_t *loop)
+{
+    bus->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    int error = bus->timer_fd < 0 ? -errno : uv_poll_init(loop, &bus->timer, bus->timer_fd);
+    bus->timer.data = bus;
+    if (error == 0)
+        error = uv_poll_start(&bus->timer, UV_READABLE, on_timer);
+    if (error != 0)
+        log_error("cannot make a timer: %s", uv_strerror(error));
+    return error == 0;
+}
+
+/* ---- From outside --------------------------------------------------------------------------------------------------- */
+
+struct sim *bus_sim(struct bus *bus)
+{
+    if (!bus->busy)
+        bus_catch_up(bus);
+    return &bus->sim;
+}
+
+void bus_changed(struct bus *bus)
+{
+    if (!bus->busy)
+        bus_catch_up(bus);
+}
+
+bool bus_set_clock(struct bus *bus, const char *text, struct refusal *refusal)
+{
+    struct virtual_clock clock;
+    if (strlen(text) >= sizeof bus->clock_text || !virtual_clock_read(&clock, text)) {
+        refuse(refusal, REFUSED_PARAMS, "clock: `%.40s' is wrong: expected " VIRTUAL_CLOCK_EXPECTED, text);
+        return false;
+    }
+    if (bus->advancing) {
+        refuse(refusal, REFUSED_STATE, "the clock is being advanced: change it when that has ended");
+        return false;
+    }
+    bus_sim(bus);
+    sim_set_timed(&bus->sim, bus->options->baud != 0 && !bus->ports.line.is_wire && !clock.stands);
+    bus->goal = sim_now(&bus->sim);
+    bus->clock = clock;
+    virtual_clock_start(&bus->clock, uv_hrtime(), bus->goal);
+    snprintf(bus->clock_text, sizeof bus->clock_text, "%s", text);
+    bus_log(bus, "clock %s", text);
+    bus_changed(bus);
+    return true;
+}

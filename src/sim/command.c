@@ -1,0 +1,162 @@
+#include "command.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "time_value.h"
+
+static const struct method {
+    const char *name;
+    command_function *function;
+    bool changes; /* something: the journal takes it down */
+} methods[] = {
+    {"state", command_state, false},
+    {"di.set", command_di_set, true},
+    {"reset", command_reset, true},
+    {"power", command_power, true},
+    {"switch", command_switch, true},
+    {"plant.get", command_plant_get, false},
+    {"plant.set", command_plant_set, true},
+    {"snapshot", command_snapshot, true},
+    {"restore", command_restore, true},
+    {"fault.inject", command_fault_inject, true},
+    {"fault.clear", command_fault_clear, true},
+    {"fault.list", command_fault_list, false},
+};
+
+static const struct method *find(const char *name)
+{
+    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
+        if (strcmp(methods[i].name, name) == 0)
+            return &methods[i];
+    return NULL;
+}
+
+bool sim_command_known(const char *method)
+{
+    return find(method) != NULL;
+}
+
+json_t *sim_command(struct sim *sim, const char *name, const json_t *params, struct refusal *refusal)
+{
+    const struct method *method = find(name);
+    if (!method)
+        return refuse(refusal, REFUSED_METHOD, "there is no method `%s'", name);
+    if (params && !json_is_object(params))
+        return refuse(refusal, REFUSED_PARAMS, "params: expected an object, as in {\"unit\": 1}");
+    uint64_t now = sim_now(sim);
+    json_t *result = method->function(sim, params, refusal);
+    if (result && method->changes && sim->journal)
+        sim->journal->command(sim->journal->context, now, name, params);
+    return result;
+}
+
+json_t *refuse(struct refusal *refusal, int code, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    refusal->code = code;
+    vsnprintf(refusal->text, sizeof refusal->text, format, list);
+    va_end(list);
+    return NULL;
+}
+
+/* ---- Parameters ----------------------------------------------------------------------------------------------------- */
+
+/* The names there are, as in "1, 2, 5-2". */
+static void list_units(const struct sim *sim, char *text, size_t size)
+{
+    size_t length = 0;
+    text[0] = '\0';
+    for (unsigned number = 1; number <= sim_units(sim) && length < size; number++)
+        length += (size_t)snprintf(text + length, size - length, number > 1 ? ", %s" : "%s", sim->unit[number - 1u].name);
+}
+
+unsigned param_unit(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    const json_t *value = json_object_get(params, "unit");
+    char name[NODE_NAME_SIZE] = "", units[160];
+    if (!value && sim_units(sim) == 1)
+        return 1;
+    if (json_is_integer(value) && json_integer_value(value) >= 1 && json_integer_value(value) <= RKM04_NODE_MAX)
+        snprintf(name, sizeof name, "%d", (int)json_integer_value(value));
+    else if (json_is_string(value) && json_string_length(value) < sizeof name)
+        memcpy(name, json_string_value(value), json_string_length(value) + 1);
+    unsigned number = sim_unit_named(sim, name);
+    if (number > 0)
+        return number;
+    list_units(sim, units, sizeof units);
+    refuse(refusal, REFUSED_PARAMS, value ? "unit: there is no such unit: expected one of %s" : "unit: missing: expected one of %s",
+           units);
+    return 0;
+}
+
+static bool read_integer(const json_t *value, const char *name, int64_t low, int64_t high, int64_t *number,
+                         struct refusal *refusal)
+{
+    if (json_is_integer(value) && json_integer_value(value) >= low && json_integer_value(value) <= high) {
+        *number = json_integer_value(value);
+        return true;
+    }
+    refuse(refusal, REFUSED_PARAMS, "%s: expected a whole number from %lld to %lld", name, (long long)low, (long long)high);
+    return false;
+}
+
+bool param_integer(const json_t *params, const char *name, int64_t low, int64_t high, int64_t *value, struct refusal *refusal)
+{
+    return read_integer(json_object_get(params, name), name, low, high, value, refusal);
+}
+
+bool param_integer_or(const json_t *params, const char *name, int64_t low, int64_t high, int64_t missing, int64_t *value,
+                      struct refusal *refusal)
+{
+    const json_t *given = json_object_get(params, name);
+    *value = missing;
+    return !given || read_integer(given, name, low, high, value, refusal);
+}
+
+bool param_time(const json_t *params, const char *name, uint64_t missing, uint64_t *ticks, struct refusal *refusal)
+{
+    const json_t *value = json_object_get(params, name);
+    size_t wrong;
+    if (!value && missing != RKM04_NEVER) {
+        *ticks = missing;
+        return true;
+    }
+    if (json_is_integer(value) && json_integer_value(value) >= 0 && (uint64_t)json_integer_value(value) <= TIME_VALUE_MAX) {
+        *ticks = (uint64_t)json_integer_value(value);
+        return true;
+    }
+    if (json_is_string(value) && !time_value_read(json_string_value(value), json_string_length(value), ticks, &wrong))
+        return true;
+    refuse(refusal, REFUSED_PARAMS, "%s: expected a time: a whole number of us, or as in \"250us\", \"1500ms\", \"2.5s\"", name);
+    return false;
+}
+
+const char *param_string(const json_t *params, const char *name, struct refusal *refusal)
+{
+    const char *text = json_string_value(json_object_get(params, name));
+    if (!text)
+        refuse(refusal, REFUSED_PARAMS, "%s: expected a string", name);
+    return text;
+}
+
+bool params_known(const json_t *params, const char *const *names, struct refusal *refusal)
+{
+    const char *key;
+    const json_t *value;
+    char list[200] = "";
+    for (size_t i = 0; names[i]; i++)
+        snprintf(list + strlen(list), sizeof list - strlen(list), i > 0 ? ", %s" : "%s", names[i]);
+    json_object_foreach((json_t *)params, key, value) {
+        size_t i = 0;
+        while (names[i] && strcmp(names[i], key) != 0)
+            i++;
+        if (names[i])
+            continue;
+        refuse(refusal, REFUSED_PARAMS, "`%.60s' is no parameter of this method: expected %s", key, *list ? list : "none");
+        return false;
+    }
+    return true;
+}

@@ -1,0 +1,63 @@
+/* command.h: what can be done to a line and asked of it from outside, at the present tick, by name and JSON parameters. The
+ * control socket, scenarios and replays all go this way; docs/CONTROL.md describes each method.
+ *
+ * One table, in command.c, is the only place to add one: name, function, whether it changes anything (then the journal takes it
+ * down). Parameters: `unit`, a name as in "3" or 3, may be left out where there is one unit. */
+#ifndef RKM04_SIM_COMMAND_H
+#define RKM04_SIM_COMMAND_H
+
+#include <jansson.h>
+#include <stdbool.h>
+
+#include "sim.h"
+
+/* Why a command was refused: codes of JSON-RPC 2.0. */
+enum refusal_code {
+    REFUSED_METHOD = -32601, /* no such method */
+    REFUSED_PARAMS = -32602, /* wrong parameters: text says which, and what was expected */
+    REFUSED_MEMORY = -32603,
+    REFUSED_STATE = -32000   /* cannot be done now: text says why and what to do */
+};
+
+struct refusal {
+    int code;
+    char text[320];
+};
+
+/* Do it. `params`: an object or NULL. Returns the result, a new reference; NULL: refused, nothing was changed. */
+json_t *sim_command(struct sim *sim, const char *method, const json_t *params, struct refusal *refusal);
+
+/* Is there such a method? */
+bool sim_command_known(const char *method);
+
+/* ---- For the functions behind it (command_*.c, plant_command.c, …) ---------------------------------------------------- */
+
+typedef json_t *command_function(struct sim *sim, const json_t *params, struct refusal *refusal);
+
+/* Refuse; always returns NULL. */
+json_t *refuse(struct refusal *refusal, int code, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Read `unit` (string or number; may be left out where there is one unit). Returns its number on the line; 0: refused. */
+unsigned param_unit(struct sim *sim, const json_t *params, struct refusal *refusal);
+
+/* Read a whole number low..high. Returns false if it is missing or wrong: refused. With `missing` it may be left out. */
+bool param_integer(const json_t *params, const char *name, int64_t low, int64_t high, int64_t *value, struct refusal *refusal);
+bool param_integer_or(const json_t *params, const char *name, int64_t low, int64_t high, int64_t missing, int64_t *value,
+                      struct refusal *refusal);
+
+/* Read a time: a whole number of us, or a string as in time_value.h ("1.5s"). Refused as above; `missing`: RKM04_NEVER must be
+ * given. */
+bool param_time(const json_t *params, const char *name, uint64_t missing, uint64_t *ticks, struct refusal *refusal);
+
+/* Read a string. Returns NULL if it is missing or no string: refused. */
+const char *param_string(const json_t *params, const char *name, struct refusal *refusal);
+
+/* Refuse every parameter that is not in the list, which ends with NULL: a typing error must not go unnoticed. */
+bool params_known(const json_t *params, const char *const *names, struct refusal *refusal);
+
+command_function command_state, command_di_set, command_reset, command_power, command_switch; /* command_unit.c */
+command_function command_plant_get, command_plant_set;                                      /* plant_command.c */
+command_function command_snapshot, command_restore;                                         /* snapshot.c */
+command_function command_fault_inject, command_fault_clear, command_fault_list;             /* fault_command.c */
+
+#endif

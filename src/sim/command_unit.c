@@ -1,0 +1,146 @@
+/* What hands do to a unit, and what there is to be seen of it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "unit_json.h"
+
+/* "1", "01", … "08" -> 1..8; 0: no input. */
+static unsigned input_named(const char *name)
+{
+    size_t length = strlen(name);
+    if (length == 2 && name[0] == '0')
+        name++;
+    else if (length != 1)
+        return 0;
+    return name[0] >= '1' && name[0] < '1' + (int)RKM04_INPUTS ? (unsigned)(name[0] - '0') : 0;
+}
+
+/* 0, 1, false, true -> 0, 1; -1: none of these. */
+static int level_of(const json_t *value)
+{
+    if (json_is_boolean(value))
+        return json_is_true(value);
+    return json_is_integer(value) && (json_integer_value(value) == 0 || json_integer_value(value) == 1)
+               ? (int)json_integer_value(value)
+               : -1;
+}
+
+json_t *command_state(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {"unit", NULL};
+    unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
+    if (number == 0)
+        return NULL;
+    json_t *state = unit_json(sim, number);
+    return state ? state : refuse(refusal, REFUSED_MEMORY, "memory is short");
+}
+
+/* ---- Inputs --------------------------------------------------------------------------------------------------------- */
+
+/* Read the inputs named in `di` into `given`, and their levels. */
+static bool read_inputs(const json_t *di, uint8_t *given, uint8_t *levels, struct refusal *refusal)
+{
+    const char *name;
+    const json_t *value;
+    json_object_foreach((json_t *)di, name, value) {
+        unsigned input = input_named(name);
+        int level = level_of(value);
+        if (input == 0) {
+            refuse(refusal, REFUSED_PARAMS, "di: `%.40s' is no input: expected 1 to %u", name, RKM04_INPUTS);
+            return false;
+        }
+        uint8_t bit = (uint8_t)(1u << (input - 1));
+        if (level < 0) {
+            refuse(refusal, REFUSED_PARAMS, "di: input %u: expected 0 or 1", input);
+            return false;
+        }
+        if (*given & bit) {
+            refuse(refusal, REFUSED_PARAMS, "di: input %u is named twice", input);
+            return false;
+        }
+        *given |= bit;
+        *levels = (uint8_t)(level ? *levels | bit : *levels & ~bit);
+    }
+    return true;
+}
+
+static bool read_di(const json_t *params, uint8_t *given, uint8_t *levels, struct refusal *refusal)
+{
+    const json_t *di = json_object_get(params, "di"), *mask = json_object_get(params, "mask");
+    int64_t value;
+    if (json_is_object(di) && json_object_size(di) > 0 && !mask)
+        return read_inputs(di, given, levels, refusal);
+    if (di || !mask) {
+        refuse(refusal, REFUSED_PARAMS, "expected either di, an object as in {\"3\": 1, \"08\": 0}, or mask, a number");
+        return false;
+    }
+    if (!param_integer(params, "mask", 0, UINT8_MAX, &value, refusal))
+        return false;
+    *given = UINT8_MAX;
+    *levels = (uint8_t)value;
+    return true;
+}
+
+json_t *command_di_set(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {"di", "mask", "unit", NULL};
+    unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
+    if (number == 0)
+        return NULL;
+    uint8_t given = 0, levels = sim->unit[number - 1].di;
+    if (!read_di(params, &given, &levels, refusal))
+        return NULL;
+    sim_set_di(sim, number, levels);
+    uint8_t inputs = rkm04_inputs(sim_core(sim, number));
+    json_t *overridden = json_array();
+    for (unsigned input = 1; input <= RKM04_INPUTS; input++)
+        if (((inputs ^ levels) & given) >> (input - 1) & 1)
+            json_array_append_new(overridden, json_integer((json_int_t)input));
+    return json_pack("{s:I, s:i, s:o}", "t_us", (json_int_t)sim_now(sim), "di", (int)inputs, "overridden", overridden);
+}
+
+/* ---- Power and address ---------------------------------------------------------------------------------------------- */
+
+json_t *command_reset(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {"unit", NULL};
+    unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
+    if (number == 0)
+        return NULL;
+    if (!sim_powered(sim, number))
+        return refuse(refusal, REFUSED_STATE, "unit %s has no power: switch it on with power", sim->unit[number - 1].name);
+    sim_power(sim, number, true);
+    return json_pack("{s:I}", "t_us", (json_int_t)sim_now(sim));
+}
+
+json_t *command_power(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {"on", "unit", NULL};
+    unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
+    if (number == 0)
+        return NULL;
+    const json_t *on = json_object_get(params, "on");
+    if (!json_is_boolean(on))
+        return refuse(refusal, REFUSED_PARAMS, "on: expected true or false");
+    if (json_is_true(on) != sim_powered(sim, number))
+        sim_power(sim, number, json_is_true(on));
+    return json_pack("{s:I, s:b}", "t_us", (json_int_t)sim_now(sim), "powered", json_is_true(on));
+}
+
+json_t *command_switch(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {"node", "reset", "unit", NULL};
+    unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
+    const json_t *reset = json_object_get(params, "reset");
+    int64_t node;
+    if (number == 0 || !param_integer(params, "node", 1, RKM04_NODE_MAX, &node, refusal))
+        return NULL;
+    if (reset && !json_is_boolean(reset))
+        return refuse(refusal, REFUSED_PARAMS, "reset: expected true or false");
+    sim->config.nodes.node[number - 1] = (uint8_t)node; /* read at power-up (U4) */
+    if (json_is_true(reset) && sim_powered(sim, number))
+        sim_power(sim, number, true);
+    return json_pack("{s:I, s:i, s:i}", "t_us", (json_int_t)sim_now(sim), "switch", (int)node, "node",
+                     (int)sim_core(sim, number)->config.node);
+}

@@ -1,0 +1,44 @@
+/* condition.h: something to wait for, from JSON: control methods `wait` and `advance`, and scenarios.
+ *
+ *     {"unit": 3, "motor": 1, "position": 5000}          the counter is there; or ">=": {"position": {">=": 5000}}
+ *     {"motor": 2, "true_position": {"<=": 0}}           of the plant
+ *     {"motor": 1, "state": "idle"} {"idle": true}       one motor; all motors of the unit
+ *     {"motor": 1, "led": "blink"} {"motor": 1, "fault": "no_label"} {"motor": 1, "steps": {">": 10}}
+ *     {"do": {"3": 1}} {"di": {"08": 0}} {"var": {"80": 1}}
+ *     {"message": {"number": 2, "from": "master"}}       one that passes from now on
+ *     {"t": "2.5s"}                                      the line's time
+ *     {"all": [ … ]} {"any": [ … ]}                      of several
+ *
+ * Plain: condition_read(), condition_arm(), then condition_holds() after each step of time; or condition_run(). */
+#ifndef RKM04_SIM_CONDITION_H
+#define RKM04_SIM_CONDITION_H
+
+#include "command.h"
+#include "sim.h"
+
+struct condition;
+
+/* Read and check all of it. Returns NULL if it is wrong: refused. */
+struct condition *condition_read(struct sim *sim, const json_t *json, struct refusal *refusal);
+void condition_free(struct condition *condition);
+
+/* Begin: messages count from now on. The sim must outlive the condition. */
+void condition_arm(struct condition *condition);
+
+/* Does it hold at the present tick? A pulse at tick t counts from t + 1 on. */
+bool condition_holds(struct condition *condition);
+
+/* When it may hold next if nothing comes from outside: no need to look before. RKM04_NEVER: never of itself. */
+uint64_t condition_next(const struct condition *condition);
+
+/* One step of time towards `limit`, no further than to where the condition may have come to hold. Returns whether it holds. */
+bool condition_step(struct condition *condition, uint64_t limit);
+
+/* Advance the sim until it holds, to the tick, or up to `limit`. Returns true if it holds. */
+bool condition_run(struct condition *condition, uint64_t limit);
+
+/* What it says and what there is instead, for messages: "motor 1 position >= 5000 (is 1200)". Returns a string to be freed;
+ * NULL: memory is short. */
+char *condition_text(struct condition *condition);
+
+#endif

@@ -1,0 +1,65 @@
+/* plant.h: what the motors of a unit move: a true mechanical position a motor, which follows the pulses, end stops, and switches
+ * that drive inputs. Off unless configured; it never changes what the firmware does, only what happens at its pins.
+ *
+ * A plant is fed with pulses as they come (each motor's in order of time, T41: none come) and gives changes of inputs back. It
+ * lives in ticks of the line. */
+#ifndef RKM04_SIM_PLANT_H
+#define RKM04_SIM_PLANT_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <rkm04/limits.h>
+
+struct sim;
+struct sim_unit;
+struct plant;
+
+enum plant_news {
+    PLANT_STALL,   /* steps are being lost: too fast, too steep; text says which motor and where */
+    PLANT_END_STOP, /* the axis stands at an end stop and loses steps */
+    PLANT_JAM,
+    PLANT_FREE     /* steps count again */
+};
+
+/* A change of an input that the plant drives. */
+struct plant_change {
+    uint64_t tick; /* of the line, at which it may be seen: one after the pulse that led to it, later with bouncing */
+    uint8_t input; /* 1..8 */
+    bool level;
+};
+
+/* Configure the plants of all units from a YAML text: replaces those there are, true positions begin at the counters plus the
+ * configured offset. NULL: no plant. Errors are written to `errors` as NAME:LINE:COLUMN: error: expected …, and nothing is
+ * changed. Returns false then. Inputs follow at once. */
+bool plant_configure(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors);
+
+/* Every unit's plant is gone. */
+void plant_free(struct plant *plant);
+
+/* Inputs it drives, mask; and their levels now. */
+uint8_t plant_mask(const struct plant *plant);
+uint8_t plant_levels(const struct plant *plant);
+
+/* A pulse. Called from within the unit: must not change the unit. */
+void plant_step(struct plant *plant, uint64_t tick, unsigned motor, bool forward);
+
+/* The next change with a tick before `tick`, in order of time; it counts for plant_levels() from now on. Returns false if there
+ * is none. */
+bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *change);
+
+/* When something changes without a pulse (the end of bouncing, a jam begins or ends); RKM04_NEVER: never. */
+uint64_t plant_next(const struct plant *plant);
+
+/* True position of motor 1..4, in steps. Motors without a plant follow their counter; then false. */
+bool plant_position(const struct plant *plant, unsigned motor, int64_t *position);
+
+/* The plant as it stands, for `state` and plant.get. New reference; NULL: memory is short. */
+json_t *plant_json(const struct plant *plant);
+
+/* A copy with all times `shift` ticks later, for snapshots. NULL: memory is short. */
+struct plant *plant_copy(const struct plant *plant, uint64_t shift);
+
+#endif

@@ -1,0 +1,440 @@
+#include "sim.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "snapshot.h"
+
+#define LONGEST_ANSWER 20000000u /* ticks: more than the longest answer takes */
+
+static uint64_t earlier(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* ---- Telling -------------------------------------------------------------------------------------------------------- */
+
+void sim_tell(struct sim *sim, enum watch_phase phase, const struct watch_event *event)
+{
+    watch_add(&sim->watch, phase, *event);
+}
+
+void sim_tell_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
+{
+    struct watch_event copy = *event;
+    va_list list;
+    if ((sim->watch.kinds & WATCH_BIT(event->kind)) == 0)
+        return;
+    va_start(list, format);
+    char *text;
+    int length = vasprintf(&text, format, list);
+    va_end(list);
+    if (length < 0)
+        return;
+    copy.text = text;
+    watch_add(&sim->watch, phase, copy);
+}
+
+/* What a unit does at `tick` of its own time. */
+static void tell(const struct sim_unit *unit, uint64_t tick, enum watch_phase phase, enum watch_kind kind, unsigned motor,
+                 int32_t value)
+{
+    struct watch_event event = {
+        .tick = segment_since(&unit->sim->segment, unit->number) + tick,
+        .value = value,
+        .kind = (uint8_t)kind,
+        .unit = (uint8_t)unit->number,
+        .motor = (uint8_t)motor,
+    };
+    watch_add(&unit->sim->watch, phase, event);
+}
+
+/* ---- The units' port ------------------------------------------------------------------------------------------------ */
+
+static enum watch_phase phase_of(const struct sim_unit *unit)
+{
+    return unit->sim->segment.advancing ? WATCH_TURNS : WATCH_DELIVERED;
+}
+
+static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
+{
+    struct sim_unit *unit = context;
+    tell(unit, tick, WATCH_PULSES, WATCH_STEP, motor, position);
+    if (unit->plant)
+        plant_step(unit->plant, segment_since(&unit->sim->segment, unit->number) + tick, motor,
+                   ((unsigned)unit->forward >> (motor - 1u) & 1u) != 0);
+}
+
+static void on_direction(void *context, uint64_t tick, unsigned motor, bool forward)
+{
+    struct sim_unit *unit = context;
+    uint8_t bit = (uint8_t)(1u << (motor - 1u));
+    unit->forward = forward ? (uint8_t)(unit->forward | bit) : (uint8_t)(unit->forward & ~bit);
+    tell(unit, tick, phase_of(unit), WATCH_DIRECTION, motor, forward);
+}
+
+static void on_outputs(void *context, uint64_t tick, uint8_t mask)
+{
+    const struct sim_unit *unit = context;
+    tell(unit, tick, phase_of(unit), WATCH_OUTPUTS, 0, mask);
+}
+
+static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_event what, uint32_t value)
+{
+    static const enum watch_kind kinds[] = {
+        [RKM04_EVENT_MOTION] = WATCH_MOTION,     [RKM04_EVENT_COMMAND] = WATCH_COMMAND, [RKM04_EVENT_LED] = WATCH_LED,
+        [RKM04_EVENT_VARIABLE] = WATCH_VARIABLES, [RKM04_EVENT_FAULT] = WATCH_FAULT,
+    };
+    tell(context, tick, phase_of(context), kinds[what], motor, (int32_t)value);
+}
+
+static int on_flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    return sim_flash_read(context, block, offset, data, length);
+}
+
+static int on_flash_erase(void *context, unsigned block)
+{
+    return sim_flash_erase(context, block);
+}
+
+static int on_flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    return sim_flash_program(context, block, offset, data, length);
+}
+
+/* Pulses cost time: they are asked for while somebody wants them. */
+static void look_who_watches(struct sim *sim)
+{
+    for (unsigned number = 1; number <= sim->segment.units; number++) {
+        struct sim_unit *unit = &sim->unit[number - 1u];
+        bool pulses = (sim->watch.kinds & WATCH_BIT(WATCH_STEP)) != 0 || unit->plant;
+        unit->port.step = pulses ? on_step : NULL;
+    }
+}
+
+/* ---- Flash ---------------------------------------------------------------------------------------------------------- */
+
+/* The memory holds every byte inverted: what has not been written is 0 and costs nothing until it is touched. */
+static void invert(uint8_t *to, const uint8_t *from, unsigned length)
+{
+    for (unsigned i = 0; i < length; i++)
+        to[i] = (uint8_t)~from[i];
+}
+
+static uint8_t *memory_of(struct sim_unit *unit)
+{
+    if (!unit->memory)
+        unit->memory = calloc(RKM04_FLASH_BLOCKS, RKM04_FLASH_BLOCK_SIZE);
+    return unit->memory;
+}
+
+static bool within(unsigned block, unsigned offset, unsigned length)
+{
+    return block < RKM04_FLASH_BLOCKS && offset <= RKM04_FLASH_BLOCK_SIZE && length <= RKM04_FLASH_BLOCK_SIZE - offset;
+}
+
+int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    const struct sim_flash *flash = &unit->sim->config.flash;
+    if (flash->read)
+        return flash->read(flash->context, unit->number, block, offset, data, length);
+    if (!within(block, offset, length) || !memory_of(unit))
+        return 1;
+    invert(data, unit->memory + block * RKM04_FLASH_BLOCK_SIZE + offset, length);
+    return 0;
+}
+
+int sim_flash_erase(struct sim_unit *unit, unsigned block)
+{
+    const struct sim_flash *flash = &unit->sim->config.flash;
+    if (flash->erase)
+        return flash->erase(flash->context, unit->number, block);
+    if (!within(block, 0, RKM04_FLASH_BLOCK_SIZE) || !memory_of(unit))
+        return 1;
+    memset(unit->memory + block * RKM04_FLASH_BLOCK_SIZE, 0, RKM04_FLASH_BLOCK_SIZE);
+    return 0;
+}
+
+int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    const struct sim_flash *flash = &unit->sim->config.flash;
+    if (flash->program)
+        return flash->program(flash->context, unit->number, block, offset, data, length);
+    if (!within(block, offset, length) || !memory_of(unit))
+        return 1;
+    invert(unit->memory + block * RKM04_FLASH_BLOCK_SIZE + offset, data, length);
+    return 0;
+}
+
+/* ---- Inputs --------------------------------------------------------------------------------------------------------- */
+
+/* What holds an input comes before what drives it, and that before what was set by hand. */
+static uint8_t inputs_of(struct sim *sim, const struct sim_unit *unit)
+{
+    uint8_t mask = unit->plant ? plant_mask(unit->plant) : 0;
+    uint8_t levels = (uint8_t)((unit->di & ~mask) | (unit->plant ? plant_levels(unit->plant) & mask : 0));
+    return faults_hold_inputs(sim, unit->number, levels);
+}
+
+static void set_inputs(struct sim *sim, struct sim_unit *unit, uint64_t tick)
+{
+    struct rkm04_unit *core = segment_unit(&sim->segment, unit->number);
+    uint8_t levels = inputs_of(sim, unit);
+    if (levels == rkm04_inputs(core))
+        return;
+    rkm04_set_inputs(core, levels);
+    struct watch_event event = {.tick = tick, .value = levels, .kind = WATCH_INPUTS, .unit = (uint8_t)unit->number};
+    watch_add(&sim->watch, WATCH_DELIVERED, event);
+}
+
+void sim_look_at_inputs(struct sim *sim, unsigned number)
+{
+    set_inputs(sim, &sim->unit[number - 1u], sim_now(sim));
+    look_who_watches(sim); /* a plant may have come or gone */
+}
+
+void sim_set_di(struct sim *sim, unsigned number, uint8_t mask)
+{
+    sim->unit[number - 1u].di = mask;
+    sim_look_at_inputs(sim, number);
+}
+
+/* The plants' changes before the present tick. They are told with the tick at which they came about. */
+static void take_changes(struct sim *sim)
+{
+    struct plant_change change;
+    for (unsigned at = 0; at < sim->segment.units; at++) {
+        struct sim_unit *unit = &sim->unit[at];
+        while (unit->plant && plant_take_change(unit->plant, sim_now(sim) + 1u, &change))
+            set_inputs(sim, unit, change.tick);
+    }
+}
+
+/* ---- Bytes ---------------------------------------------------------------------------------------------------------- */
+
+static void on_byte(void *context, const struct segment_byte *byte)
+{
+    struct sim *sim = context;
+    struct watch_event event = {.tick = byte->tick, .value = byte->byte, .kind = WATCH_BYTE, .byte = *byte};
+    watch_add(&sim->watch, WATCH_DELIVERED, event);
+    wire_monitor_hear(sim, byte);
+}
+
+static void on_out(void *context, const uint8_t *bytes, size_t length)
+{
+    struct sim *sim = context;
+    if (sim->config.out && !fault_lasts(sim, FAULT_CABLE, 0) && !fault_lasts(sim, FAULT_UNPLUGGED, 0))
+        sim->config.out(sim->config.context, bytes, length);
+}
+
+size_t sim_room(const struct sim *sim)
+{
+    return segment_room(&sim->segment);
+}
+
+void sim_take(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tick)
+{
+    if (sim->journal)
+        sim->journal->bytes(sim->journal->context, sim_now(sim), tick, bytes, length);
+    if (!fault_lasts(sim, FAULT_CABLE, 0) && !fault_lasts(sim, FAULT_UNPLUGGED, 0))
+        segment_take(&sim->segment, bytes, length, tick);
+}
+
+size_t sim_purge(struct sim *sim)
+{
+    if (sim->journal)
+        sim->journal->purge(sim->journal->context, sim_now(sim));
+    return segment_purge(&sim->segment);
+}
+
+void sim_break(struct sim *sim, bool on)
+{
+    if (sim->journal)
+        sim->journal->line_break(sim->journal->context, sim_now(sim), on);
+    segment_break(&sim->segment, on);
+}
+
+void sim_set_timed(struct sim *sim, bool timed)
+{
+    if (sim->segment.config.timed == timed)
+        return;
+    if (sim->journal)
+        sim->journal->timed(sim->journal->context, sim_now(sim), timed);
+    for (uint64_t last = sim_now(sim) + LONGEST_ANSWER; sim_due(sim) <= last;)
+        sim_advance(sim, sim_due(sim));
+    segment_set_timed(&sim->segment, timed);
+}
+
+/* ---- Time ----------------------------------------------------------------------------------------------------------- */
+
+uint64_t sim_now(const struct sim *sim)
+{
+    return segment_now(&sim->segment);
+}
+
+uint64_t sim_due(const struct sim *sim)
+{
+    return segment_due(&sim->segment);
+}
+
+static uint64_t plants_next(const struct sim *sim)
+{
+    uint64_t next = RKM04_NEVER;
+    for (unsigned at = 0; at < sim->segment.units; at++)
+        if (sim->unit[at].plant)
+            next = earlier(next, plant_next(sim->unit[at].plant));
+    return next;
+}
+
+uint64_t sim_next_event(const struct sim *sim)
+{
+    return earlier(segment_next_event(&sim->segment), earlier(plants_next(sim), faults_next(sim)));
+}
+
+/* Has somebody to look at what happens slot by slot? */
+static bool in_slots(const struct sim *sim)
+{
+    for (unsigned at = 0; at < sim->segment.units; at++)
+        if (sim->unit[at].port.step)
+            return true;
+    return false;
+}
+
+/* The end of the next leap on the way to `tick`: where a fault begins or ends, and with pulses to be told of, the slot after
+ * something happens. */
+static uint64_t leap_end(const struct sim *sim, uint64_t tick)
+{
+    uint64_t end = earlier(tick, faults_next(sim));
+    if (!in_slots(sim))
+        return end;
+    uint64_t event = earlier(segment_next_event(&sim->segment), earlier(plants_next(sim), sim_due(sim)));
+    if (event >= end)
+        return end;
+    uint64_t now = sim_now(sim), slot = (earlier(event, end) / RKM04_SLOT_TICKS + 1u) * RKM04_SLOT_TICKS;
+    return earlier(end, slot > now ? slot : now + 1u);
+}
+
+void sim_advance(struct sim *sim, uint64_t tick)
+{
+    do {
+        segment_advance(&sim->segment, leap_end(sim, tick));
+        if (faults_next(sim) <= sim_now(sim))
+            faults_look(sim);
+        take_changes(sim);
+        watch_hand_out(&sim->watch, sim_now(sim) + 1u); /* of the present tick there is only what was delivered */
+    } while (sim_now(sim) < tick);
+}
+
+/* ---- Units ---------------------------------------------------------------------------------------------------------- */
+
+unsigned sim_units(const struct sim *sim)
+{
+    return sim->segment.units;
+}
+
+unsigned sim_unit_named(const struct sim *sim, const char *name)
+{
+    for (unsigned number = 1; number <= sim->segment.units; number++)
+        if (strcmp(sim->unit[number - 1u].name, name) == 0)
+            return number;
+    return 0;
+}
+
+struct rkm04_unit *sim_core(struct sim *sim, unsigned number)
+{
+    return segment_unit(&sim->segment, number);
+}
+
+bool sim_powered(const struct sim *sim, unsigned number)
+{
+    return sim->segment.unit[number - 1u].powered;
+}
+
+static void tell_power(struct sim *sim, unsigned number, bool on)
+{
+    struct watch_event event = {.tick = sim_now(sim), .value = on, .kind = WATCH_POWER, .unit = (uint8_t)number};
+    watch_add(&sim->watch, WATCH_DELIVERED, event);
+}
+
+void sim_power(struct sim *sim, unsigned number, bool on)
+{
+    struct sim_unit *unit = &sim->unit[number - 1u];
+    if (sim_powered(sim, number))
+        tell_power(sim, number, false);
+    unit->forward = 0;
+    segment_power(&sim->segment, number, on);
+    if (!on)
+        return;
+    tell_power(sim, number, true);
+    sim_look_at_inputs(sim, number);
+}
+
+/* ---- Watching ------------------------------------------------------------------------------------------------------- */
+
+void sim_watch(struct sim *sim, struct watcher *watcher)
+{
+    watch_join(&sim->watch, watcher);
+    look_who_watches(sim);
+}
+
+void sim_unwatch(struct sim *sim, struct watcher *watcher)
+{
+    watch_leave(&sim->watch, watcher);
+    look_who_watches(sim);
+}
+
+/* ---- Begin and end -------------------------------------------------------------------------------------------------- */
+
+static bool add_unit(struct sim *sim, unsigned at)
+{
+    struct sim_unit *unit = &sim->unit[at];
+    struct rkm04_config config = sim->config.unit;
+    unit->sim = sim;
+    unit->number = at + 1u;
+    unit->port = (struct rkm04_port){
+        .direction = on_direction,
+        .outputs = on_outputs,
+        .event = on_event,
+        .flash_read = on_flash_read,
+        .flash_erase = on_flash_erase,
+        .flash_program = on_flash_program,
+    };
+    node_list_name(&sim->config.nodes, at, unit->name);
+    config.node = sim->config.nodes.node[at];
+    return segment_add_unit(&sim->segment, &config, &unit->port, unit) != 0;
+}
+
+bool sim_begin(struct sim *sim, const struct sim_config *config)
+{
+    struct segment_config segment = {
+        .timed = config->timed,
+        .turnaround = config->turnaround,
+        .out = on_out,
+        .monitor = on_byte,
+        .context = sim,
+    };
+    sim->config = *config;
+    faults_begin(&sim->faults, config->seed);
+    segment_begin(&sim->segment, &segment);
+    if (!wire_monitor_begin(&sim->monitor, config->unit.framing ? config->unit.framing : &rkm04_hdlc))
+        return false;
+    for (unsigned at = 0; at < config->nodes.count; at++)
+        if (!add_unit(sim, at))
+            return false;
+    return true;
+}
+
+void sim_end(struct sim *sim)
+{
+    watch_end(&sim->watch);
+    wire_monitor_end(&sim->monitor);
+    snapshots_free(sim->snapshots);
+    free(sim->plant_text);
+    for (unsigned at = 0; at < SEGMENT_UNITS; at++) {
+        plant_free(sim->unit[at].plant);
+        free(sim->unit[at].memory);
+    }
+}

@@ -1,0 +1,148 @@
+/* sim.h: a line with its units and everything around them, in virtual time: inputs, the plant that the motors move, flash,
+ * faults on demand, and everybody who watches. No file, no clock, no event loop: `rkm04 serve` drives it by the clock,
+ * `rkm04 test` and `rkm04 replay` as fast as it goes.
+ *
+ *     sim_begin(&sim, &config);             // units are powered up at tick 0
+ *     sim_take(&sim, bytes, n, sim_now(&sim));
+ *     sim_command(&sim, "di.set", params, &refusal);   // command.h
+ *     sim_advance(&sim, tick);              // bytes for the master through config.out, everything else through watchers
+ *
+ * The same calls at the same ticks give the same bytes and events at the same ticks. Ticks are those of the line; they only
+ * grow. A unit's own time begins when it is powered up (segment_since()). */
+#ifndef RKM04_SIM_H
+#define RKM04_SIM_H
+
+#include <jansson.h>
+
+#include "fault.h"
+#include "plant.h"
+#include "segment.h"
+#include "serve_names.h"
+#include "watch.h"
+#include "wire_monitor.h"
+
+struct sim;
+struct sim_snapshots; /* snapshot.h */
+
+/* The flash of unit `number`, as in struct rkm04_port; all functions set. */
+struct sim_flash {
+    int (*read)(void *context, unsigned number, unsigned block, unsigned offset, void *data, unsigned length);
+    int (*erase)(void *context, unsigned number, unsigned block);
+    int (*program)(void *context, unsigned number, unsigned block, unsigned offset, const void *data, unsigned length);
+    void *context;
+};
+
+/* Somebody who takes down everything that comes in from outside, in the order in which it does (record.h). `now` is sim_now(). */
+struct sim_journal {
+    void (*bytes)(void *context, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length); /* sim_take() */
+    void (*purge)(void *context, uint64_t now);
+    void (*line_break)(void *context, uint64_t now, bool on);
+    void (*timed)(void *context, uint64_t now, bool timed);
+    void (*command)(void *context, uint64_t now, const char *method, const json_t *params); /* obeyed */
+    void *context;
+};
+
+struct sim_config {
+    struct rkm04_config unit;      /* of all units; node comes from `nodes` */
+    struct node_list nodes;
+    bool timed;                    /* false: bytes take no time (--baud 0) */
+    uint32_t turnaround;           /* ticks (segment.h) */
+    uint64_t seed;                 /* of faults with a probability */
+    struct sim_flash flash;        /* all NULL: memory that lives as long as the sim */
+    segment_out *out;              /* bytes that reach the master; NULL: nobody */
+    void (*adapter)(void *context, bool plugged); /* the fault `unplugged` begins or ends; NULL: nobody wants to know */
+    void *context;                 /* of `out` and `adapter` */
+};
+
+struct sim_unit {
+    struct sim *sim;
+    unsigned number;            /* on the line, 1..16 */
+    char name[NODE_NAME_SIZE];  /* its address, as in "3"; with a suffix if it is not the only one with it, "3-2" */
+    struct rkm04_port port;     /* `step` is set while somebody wants pulses */
+    uint8_t di;                 /* inputs set by hand: DI 01 in bit 0 */
+    uint8_t forward;            /* direction outputs: motor 1 in bit 0 */
+    struct plant *plant;        /* NULL: none. Who changes it calls sim_look_at_inputs() */
+    uint8_t *memory;            /* flash without a file, RKM04_FLASH_BLOCKS blocks, inverted; NULL: not used yet */
+};
+
+struct sim {
+    struct sim_config config;
+    struct segment segment;
+    struct watch watch;
+    struct wire_monitor monitor;
+    struct faults faults;
+    const struct sim_journal *journal; /* NULL: none */
+    struct sim_snapshots *snapshots;   /* NULL: none yet */
+    char *plant_text;                  /* what plant.set or --plant gave, for records; NULL: no plant */
+    struct sim_unit unit[SEGMENT_UNITS];
+};
+
+/* ---- Begin and end ---------------------------------------------------------------------------------------------------- */
+
+/* Power up all units at tick 0. *sim must be zero. Returns false if memory is short. sim_end() is due in either case. */
+bool sim_begin(struct sim *sim, const struct sim_config *config);
+void sim_end(struct sim *sim);
+
+/* ---- Time ------------------------------------------------------------------------------------------------------------- */
+
+uint64_t sim_now(const struct sim *sim);
+
+/* Do all ticks before `tick`, move every byte due by `tick`, and hand out what happened before it. */
+void sim_advance(struct sim *sim, uint64_t tick);
+
+/* A tick before which no byte moves; RKM04_NEVER: none is under way (segment_due()). */
+uint64_t sim_due(const struct sim *sim);
+
+/* The earliest tick at which something happens of itself: a unit, a switch of the plant, the begin or end of a fault.
+ * RKM04_NEVER: nothing ever does. */
+uint64_t sim_next_event(const struct sim *sim);
+
+/* ---- The master ------------------------------------------------------------------------------------------------------- */
+
+/* As segment_room(), segment_take(), segment_purge(), segment_break(); taken down in the journal, and subject to faults. */
+size_t sim_room(const struct sim *sim);
+void sim_take(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tick);
+size_t sim_purge(struct sim *sim);
+void sim_break(struct sim *sim, bool on);
+
+/* Let bytes take their time on the line, or none, from now on. Bytes under way are moved first: time goes on as far as that
+ * takes. */
+void sim_set_timed(struct sim *sim, bool timed);
+
+/* ---- Units: `number` is 1..sim_units() -------------------------------------------------------------------------------- */
+
+unsigned sim_units(const struct sim *sim);
+
+/* Find a unit by its name ("3", "3-2"). Returns its number, 0: there is none. */
+unsigned sim_unit_named(const struct sim *sim, const char *name);
+
+struct rkm04_unit *sim_core(struct sim *sim, unsigned number);
+bool sim_powered(const struct sim *sim, unsigned number);
+
+/* The power switch: off, or on; one that is on is switched off and on again (reset). */
+void sim_power(struct sim *sim, unsigned number, bool on);
+
+/* Inputs set by hand, mask of DI. What the plant drives or a fault holds comes before it. */
+void sim_set_di(struct sim *sim, unsigned number, uint8_t mask);
+
+/* Look anew what the inputs of a unit are: set by hand, driven by the plant, held by a fault. To be called by whoever changed
+ * one of these. */
+void sim_look_at_inputs(struct sim *sim, unsigned number);
+
+/* Flash of a unit, with faults on demand. As in struct rkm04_port. */
+int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);
+int sim_flash_erase(struct sim_unit *unit, unsigned block);
+int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length);
+
+/* ---- Watching --------------------------------------------------------------------------------------------------------- */
+
+/* As watch_join(), watch_leave(); pulses are reported while somebody wants them. A watcher sees what happens from now on. */
+void sim_watch(struct sim *sim, struct watcher *watcher);
+void sim_unwatch(struct sim *sim, struct watcher *watcher);
+
+/* For the parts of a sim: something happens at `tick`. `text`: printf-like, for WATCH_PLANT and WATCH_INJECTED. */
+void sim_tell(struct sim *sim, enum watch_phase phase, const struct watch_event *event);
+void sim_tell_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+#endif

@@ -1,0 +1,93 @@
+/* Rows `t_us,source,event,value`. With several units on the line the source has the unit's name in front: `3.m1`. */
+#include "digits.h"
+#include "trace_writer.h"
+
+#define ROW_MAX 80u /* a tick, a unit's name, ",m1,position," and a number are 58 */
+
+static const char *const names[WATCH_KINDS] = {
+    [WATCH_STEP] = ",step,",  [WATCH_DIRECTION] = ",dir,", [WATCH_MOTION] = ",motion,",   [WATCH_COMMAND] = ",command,",
+    [WATCH_LED] = ",led,",    [WATCH_INPUTS] = ",di,",     [WATCH_OUTPUTS] = ",do,",      [WATCH_VARIABLES] = ",var,",
+    [WATCH_POWER] = ",power,",
+};
+
+static char *put_value(char *at, const struct watch_event *event)
+{
+    switch ((enum watch_kind)event->kind) {
+    case WATCH_DIRECTION:
+        return put_text(at, event->value ? "1" : "-1");
+    case WATCH_MOTION:
+        return put_text(at, event->value ? "begin" : "end");
+    case WATCH_LED:
+        return put_text(at, rkm04_led_name((enum rkm04_led)event->value));
+    case WATCH_POWER:
+        return put_text(at, event->value ? "on" : "off");
+    default:
+        return put_signed(at, event->value);
+    }
+}
+
+static void write_row(struct trace_file *file, const struct watch_event *event, const char *name)
+{
+    char *at = put_number(trace_room(file, ROW_MAX), event->tick);
+    *at++ = ',';
+    if (sim_units(file->sim) > 1) {
+        at = put_text(at, file->sim->unit[event->unit - 1u].name);
+        *at++ = '.';
+    }
+    if (event->motor == 0) {
+        at = put_text(at, "unit");
+    } else {
+        *at++ = 'm';
+        *at++ = (char)('0' + event->motor);
+    }
+    at = put_value(put_text(at, name), event);
+    *at++ = '\n';
+    trace_wrote(file, at);
+}
+
+static void see(void *context, const struct watch_event *event)
+{
+    write_row(context, event, names[event->kind]);
+}
+
+/* A trace that begins later begins with what is not as after power-up. */
+static void begin(struct trace_file *file)
+{
+    static const char header[] = "t_us,source,event,value\n";
+    struct watch_event event = {.tick = sim_now(file->sim)};
+    trace_put(file, header, sizeof header - 1u);
+    for (unsigned number = 1; number <= sim_units(file->sim); number++) {
+        event.unit = (uint8_t)number;
+        event.motor = 0;
+        event.kind = WATCH_POWER;
+        event.value = 0;
+        if (!sim_powered(file->sim, number)) {
+            see(file, &event);
+            continue;
+        }
+        event.kind = WATCH_STEP;
+        for (event.motor = 1; event.motor <= RKM04_MOTORS; event.motor++) {
+            struct rkm04_motor_state state;
+            rkm04_motor_state(sim_core(file->sim, number), event.motor, &state);
+            event.value = state.position;
+            if (event.value != 0)
+                write_row(file, &event, ",position,");
+        }
+    }
+    trace_tell_present(file);
+}
+
+static void end(struct trace_file *file)
+{
+    (void)file;
+}
+
+const struct trace_writer trace_csv = {
+    .suffix = ".csv",
+    .kinds = WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_COMMAND) |
+             WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
+             WATCH_BIT(WATCH_POWER),
+    .begin = begin,
+    .see = see,
+    .end = end,
+};

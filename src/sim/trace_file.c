@@ -1,0 +1,182 @@
+#include "trace_writer.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct trace_writer *const writers[TRACE_FORMATS] = {
+    [TRACE_CSV] = &trace_csv,
+    [TRACE_VCD] = &trace_vcd,
+    [TRACE_JSONL] = &trace_jsonl,
+};
+
+/* ---- Writing -------------------------------------------------------------------------------------------------------- */
+
+static void write_out(struct trace_file *file, const char *text, size_t length)
+{
+    if (file->error != 0 || length == 0)
+        return;
+    errno = 0;
+    if (fwrite(text, 1, length, file->out) != length)
+        file->error = errno != 0 ? errno : EIO;
+}
+
+char *trace_room(struct trace_file *file, size_t room)
+{
+    if (room > TRACE_BUFFER - file->length) {
+        write_out(file, file->buffer, file->length);
+        file->length = 0;
+    }
+    return file->buffer + file->length;
+}
+
+void trace_put(struct trace_file *file, const char *text, size_t length)
+{
+    if (length > TRACE_BUFFER) {
+        trace_room(file, TRACE_BUFFER);
+        write_out(file, text, length);
+        return;
+    }
+    char *at = trace_room(file, length);
+    memcpy(at, text, length);
+    trace_wrote(file, at + length);
+}
+
+int trace_file_failed(const struct trace_file *file)
+{
+    return file->error;
+}
+
+void trace_file_flush(struct trace_file *file)
+{
+    trace_room(file, TRACE_BUFFER);
+    errno = 0;
+    if (fflush(file->out) != 0 && file->error == 0)
+        file->error = errno != 0 ? errno : EIO;
+}
+
+/* ---- What there is at the beginning --------------------------------------------------------------------------------- */
+
+static void tell(struct trace_file *file, unsigned number, unsigned motor, enum watch_kind kind, int32_t value)
+{
+    struct watch_event event = {
+        .tick = sim_now(file->sim), .value = value, .kind = (uint8_t)kind, .unit = (uint8_t)number, .motor = (uint8_t)motor};
+    if (value != 0 && (file->writer->kinds & WATCH_BIT(kind)) != 0)
+        file->writer->see(file, &event);
+}
+
+static void tell_motor(struct trace_file *file, unsigned number, unsigned motor)
+{
+    struct rkm04_motor_state state;
+    rkm04_motor_state(sim_core(file->sim, number), motor, &state);
+    tell(file, number, motor, WATCH_COMMAND, state.index);
+    tell(file, number, motor, WATCH_FAULT, (int32_t)state.fault);
+    tell(file, number, motor, WATCH_DIRECTION, state.forward);
+    tell(file, number, motor, WATCH_LED, (int32_t)state.led);
+    tell(file, number, motor, WATCH_MOTION, state.state == RKM04_MOVING);
+}
+
+void trace_tell_present(struct trace_file *file)
+{
+    for (unsigned number = 1; number <= sim_units(file->sim); number++) {
+        struct rkm04_unit *core = sim_core(file->sim, number);
+        tell(file, number, 0, WATCH_INPUTS, rkm04_inputs(core));
+        if (!sim_powered(file->sim, number))
+            continue;
+        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+            tell_motor(file, number, motor);
+        tell(file, number, 0, WATCH_OUTPUTS, rkm04_outputs(core));
+        tell(file, number, 0, WATCH_VARIABLES, rkm04_variables(core));
+    }
+}
+
+/* ---- Begin and end -------------------------------------------------------------------------------------------------- */
+
+enum trace_format trace_file_format(const char *path)
+{
+    size_t length = strlen(path);
+    for (unsigned format = 0; format < TRACE_FORMATS; format++) {
+        size_t suffix = strlen(writers[format]->suffix);
+        if (length > suffix && path[length - suffix - 1u] != '/' && strcmp(path + length - suffix, writers[format]->suffix) == 0)
+            return (enum trace_format)format;
+    }
+    return TRACE_FORMATS;
+}
+
+bool trace_file_named(const char *path)
+{
+    return trace_file_format(path) != TRACE_FORMATS;
+}
+
+/* What has happened before, also in the present tick, is behind all who watch. */
+static void settle(struct sim *sim)
+{
+    watch_hand_out(&sim->watch, sim_now(sim) + 1u);
+}
+
+struct trace_file *trace_file_begin_on(struct sim *sim, FILE *out, enum trace_format format)
+{
+    const struct trace_writer *writer = writers[format];
+    struct trace_file *file = malloc(sizeof *file);
+    void *state = calloc(1, writer->state > 0 ? writer->state : 1u);
+    if (!file || !state) {
+        free(file);
+        free(state);
+        return NULL;
+    }
+    file->sim = sim;
+    file->writer = writer;
+    file->watcher = (struct watcher){.kinds = writer->kinds, .see = writer->see, .context = file};
+    file->out = out;
+    file->owned = false;
+    file->error = 0;
+    file->state = state;
+    file->length = 0;
+    settle(sim);
+    writer->begin(file);
+    sim_watch(sim, &file->watcher);
+    return file;
+}
+
+static void explain(char **error, const char *format, const char *path, const char *why)
+{
+    if (asprintf(error, format, path, why) < 0)
+        *error = NULL;
+}
+
+struct trace_file *trace_file_begin(struct sim *sim, const char *path, char **error)
+{
+    enum trace_format format = trace_file_format(path);
+    *error = NULL;
+    if (format == TRACE_FORMATS) {
+        explain(error, "%s: expected %s", path, TRACE_FILE_EXPECTED);
+        return NULL;
+    }
+    FILE *out = fopen(path, "we");
+    if (!out) {
+        explain(error, "cannot write %s: %s", path, strerror(errno));
+        return NULL;
+    }
+    setvbuf(out, NULL, _IONBF, 0); /* gathered in a buffer already */
+    struct trace_file *file = trace_file_begin_on(sim, out, format);
+    if (file)
+        file->owned = true;
+    else
+        fclose(out);
+    return file;
+}
+
+int trace_file_end(struct trace_file *file)
+{
+    settle(file->sim);
+    sim_unwatch(file->sim, &file->watcher);
+    file->writer->end(file);
+    trace_file_flush(file);
+    int error = file->error;
+    errno = 0;
+    if (file->owned && fclose(file->out) != 0 && error == 0)
+        error = errno != 0 ? errno : EIO;
+    free(file->state);
+    free(file);
+    return error;
+}

@@ -1,0 +1,85 @@
+/* One JSON object a line: `begin` with what there is, every event as in event_json.h, `end`. */
+#include <stdlib.h>
+
+#include "digits.h"
+#include "event_json.h"
+#include "trace_writer.h"
+
+#define MOTOR_ROOM 200u
+#define UNIT_ROOM (160u + RKM04_MOTORS * MOTOR_ROOM)
+
+static void see(void *context, const struct watch_event *event)
+{
+    struct trace_file *file = context;
+    size_t room = event_json_room(event) + 3u;
+    char *apart = room > TRACE_BUFFER ? malloc(room) : NULL;
+    if (room > TRACE_BUFFER && !apart)
+        return;
+    char *start = apart ? apart : trace_room(file, room), *at = start;
+    *at++ = '{';
+    at = event_json(at, file->sim, event);
+    *at++ = '}';
+    *at++ = '\n';
+    if (apart)
+        trace_put(file, apart, (size_t)(at - start));
+    else
+        trace_wrote(file, at);
+    free(apart);
+}
+
+static char *put_member(char *at, const char *name, int32_t value)
+{
+    return put_signed(put_text(at, name), value);
+}
+
+static char *put_motor(char *at, struct sim *sim, unsigned number, unsigned motor)
+{
+    struct rkm04_motor_state state;
+    rkm04_motor_state(sim_core(sim, number), motor, &state);
+    at = put_member(at, motor == 1 ? "{\"motor\":" : ",{\"motor\":", (int32_t)motor);
+    at = put_member(at, ",\"position\":", state.position);
+    at = put_member(at, ",\"direction\":", state.forward);
+    at = put_member(at, ",\"motion\":", state.state == RKM04_MOVING);
+    at = put_member(at, ",\"command\":", state.index);
+    at = put_text(put_text(at, ",\"led\":\""), rkm04_led_name(state.led));
+    at = put_text(put_text(at, "\",\"fault\":\""), rkm04_fault_name(state.fault));
+    return put_text(at, "\"}");
+}
+
+static void put_unit(struct trace_file *file, unsigned number)
+{
+    struct rkm04_unit *core = sim_core(file->sim, number);
+    char *at = trace_room(file, UNIT_ROOM);
+    at = put_text(at, number == 1 ? "{\"unit\":\"" : ",{\"unit\":\"");
+    at = put_text(at, file->sim->unit[number - 1u].name);
+    at = put_member(at, "\",\"power\":", sim_powered(file->sim, number));
+    at = put_member(at, ",\"inputs\":", rkm04_inputs(core));
+    at = put_member(at, ",\"outputs\":", rkm04_outputs(core));
+    at = put_member(at, ",\"variables\":", rkm04_variables(core));
+    at = put_text(at, ",\"motors\":[");
+    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+        at = put_motor(at, file->sim, number, motor);
+    trace_wrote(file, put_text(at, "]}"));
+}
+
+static void put_edge(struct trace_file *file, const char *text)
+{
+    char *at = trace_room(file, 2u * DIGITS_MAX + 64u);
+    at = put_number(put_text(at, "{\"t_us\":"), sim_now(file->sim));
+    trace_wrote(file, put_text(at, text));
+}
+
+static void begin(struct trace_file *file)
+{
+    put_edge(file, ",\"kind\":\"begin\",\"units\":[");
+    for (unsigned number = 1; number <= sim_units(file->sim); number++)
+        put_unit(file, number);
+    trace_put(file, "]}\n", 3);
+}
+
+static void end(struct trace_file *file)
+{
+    put_edge(file, ",\"kind\":\"end\"}\n");
+}
+
+const struct trace_writer trace_jsonl = {.suffix = ".jsonl", .kinds = WATCH_ALL, .begin = begin, .see = see, .end = end};

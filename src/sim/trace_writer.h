@@ -1,0 +1,48 @@
+/* trace_writer.h: what the formats of traces share (trace_file.h). Text is gathered in a buffer; a format asks for room, writes,
+ * and says how far it came. */
+#ifndef RKM04_SIM_TRACE_WRITER_H
+#define RKM04_SIM_TRACE_WRITER_H
+
+#include "trace_file.h"
+
+#define TRACE_BUFFER 131072u /* characters: more than the longest message makes */
+
+struct trace_writer {
+    const char *suffix;
+    uint32_t kinds; /* WATCH_BIT()s of what the format shows */
+    size_t state;   /* size of what it remembers, zeroed at the beginning */
+    void (*begin)(struct trace_file *file);
+    void (*see)(void *file, const struct watch_event *event);
+    void (*end)(struct trace_file *file);
+};
+
+struct trace_file {
+    struct sim *sim;
+    const struct trace_writer *writer;
+    struct watcher watcher;
+    FILE *out;
+    bool owned; /* `out` is to be closed */
+    int error;  /* errno of the first failure; 0: none */
+    void *state;
+    size_t length;
+    char buffer[TRACE_BUFFER];
+};
+
+extern const struct trace_writer trace_csv, trace_vcd, trace_jsonl;
+
+/* Where to write up to `room` <= TRACE_BUFFER characters. */
+char *trace_room(struct trace_file *file, size_t room);
+
+/* They end at `end`, not included. */
+static inline void trace_wrote(struct trace_file *file, const char *end)
+{
+    file->length = (size_t)(end - file->buffer);
+}
+
+/* Text of any length. */
+void trace_put(struct trace_file *file, const char *text, size_t length);
+
+/* Tell `see` what is not as after power-up, unit by unit, as if it happened now. */
+void trace_tell_present(struct trace_file *file);
+
+#endif

@@ -1,0 +1,14 @@
+/* unit_json.h: everything that can be seen of a unit, as JSON: what state_json() gives, and more (docs/CONTROL.md, `state`). */
+#ifndef RKM04_SIM_UNIT_JSON_H
+#define RKM04_SIM_UNIT_JSON_H
+
+#include "sim.h"
+
+/* Of unit `number` of the line, at the present tick. Returns a new reference, or NULL if memory is short. */
+json_t *unit_json(struct sim *sim, unsigned number);
+
+/* What motor 1..4 of `unit` waits for, in words; `since` is the tick of the line at which the unit's time began. Returns a new
+ * reference to a string, to JSON null if it waits for nothing; NULL: memory is short. */
+json_t *waits_for_json(const struct rkm04_unit *unit, unsigned motor);
+
+#endif

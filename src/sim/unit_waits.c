@@ -1,0 +1,87 @@
+/* What a motor waits for, in words. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "unit_json.h"
+
+#define TICKS_PER_MS 1000u
+
+/* "DI 05", "VAR 81". */
+static void name_bit(char *text, size_t size, unsigned bit)
+{
+    snprintf(text, size, "%s %02u", bit >= RKM04_FIRST_VARIABLE ? "VAR" : "DI", bit);
+}
+
+static json_t *for_command(const struct rkm04_motor *motor, const char *rest)
+{
+    char text[RKM04_COMMAND_TEXT_MAX];
+    int length = (int)rkm04_format(motor->command, text);
+    return json_sprintf("the end of %.*s%s", length, text, rest);
+}
+
+static json_t *moving(const struct rkm04_motor *motor)
+{
+    const struct rkm04_motion *motion = &motor->motion;
+    char rest[64], input[16];
+    if (motion->stopping) {
+        static const char *const after[] = {
+            [RKM04_AFTER_GO_ON] = "the end of the stop ramp",
+            [RKM04_AFTER_HOLD_REST] = "the end of the stop ramp, to hold",
+            [RKM04_AFTER_HOLD_NEXT] = "the end of the stop ramp, to hold",
+            [RKM04_AFTER_END] = "the end of the stop ramp, to end the program",
+        };
+        return json_string(after[motor->after]);
+    }
+    switch ((enum rkm04_motion_kind)motion->kind) {
+    case RKM04_MOTION_ENDLESS:
+        return json_string("K, or a guard M, N, X: the motion is endless");
+    case RKM04_MOTION_LIMIT:
+        name_bit(input, sizeof input, motion->input);
+        return json_sprintf("%s to be 1", input);
+    default:
+        snprintf(rest, sizeof rest, ": %" PRIu32 " of %" PRIu32 " steps done", motion->done, motion->total);
+        return for_command(motor, rest);
+    }
+}
+
+static json_t *dwelling(const struct rkm04_motor *motor, uint64_t left)
+{
+    char rest[64];
+    snprintf(rest, sizeof rest, ": %" PRIu64 " ms left", (left + TICKS_PER_MS - 1) / TICKS_PER_MS);
+    return for_command(motor, rest);
+}
+
+static json_t *held(const struct rkm04_motor *motor)
+{
+    if (motor->held == RKM04_MOVING)
+        return json_sprintf("C75 to go on with the motion (%" PRIu32 " steps done), or new commands", motor->motion.done);
+    if (motor->held == RKM04_DWELL)
+        return json_sprintf("C75 to go on with the dwell (%" PRIu64 " ms left), or new commands",
+                            (motor->due + TICKS_PER_MS - 1) / TICKS_PER_MS);
+    return json_string("C75 to go on, or new commands");
+}
+
+json_t *waits_for_json(const struct rkm04_unit *unit, unsigned number)
+{
+    const struct rkm04_motor *motor = &unit->motor[number - 1];
+    char bit[16];
+    switch ((enum rkm04_state)motor->state) {
+    case RKM04_MOVING:
+        return moving(motor);
+    case RKM04_DWELL:
+        return dwelling(motor, motor->due > unit->now ? motor->due - unit->now : 0);
+    case RKM04_WAIT:
+        name_bit(bit, sizeof bit, (unsigned)motor->command.argument);
+        return json_sprintf("%s to be %d", bit, motor->command.op == 'O');
+    case RKM04_BLOCK:
+        return json_string("the ] of its block");
+    case RKM04_HELD:
+        return held(motor);
+    case RKM04_ENDED:
+        return json_string("new commands: ended by X");
+    case RKM04_FAULTY:
+        return json_sprintf("new commands, or \\: fault %s", rkm04_fault_name((enum rkm04_fault)motor->fault));
+    default:
+        return json_null();
+    }
+}

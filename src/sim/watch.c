@@ -1,0 +1,138 @@
+#include "watch.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "wire_monitor.h"
+
+#define ORDER_PHASE 60u /* bit of the phase in watch_event.order */
+#define ROOM_AT_FIRST 256u
+
+static const char *const names[WATCH_KINDS] = {
+    [WATCH_STEP] = "step",
+    [WATCH_DIRECTION] = "direction",
+    [WATCH_MOTION] = "motion",
+    [WATCH_COMMAND] = "command",
+    [WATCH_LED] = "led",
+    [WATCH_FAULT] = "fault",
+    [WATCH_INPUTS] = "inputs",
+    [WATCH_OUTPUTS] = "outputs",
+    [WATCH_VARIABLES] = "variables",
+    [WATCH_POWER] = "power",
+    [WATCH_BYTE] = "byte",
+    [WATCH_MESSAGE] = "message",
+    [WATCH_PLANT] = "plant",
+    [WATCH_INJECTED] = "injected",
+};
+
+const char *watch_kind_name(enum watch_kind kind)
+{
+    return (unsigned)kind < WATCH_KINDS ? names[kind] : "?";
+}
+
+enum watch_kind watch_kind_named(const char *name)
+{
+    unsigned kind = 0;
+    while (kind < WATCH_KINDS && strcmp(names[kind], name) != 0)
+        kind++;
+    return (enum watch_kind)kind;
+}
+
+/* What an event owns. */
+static void drop(const struct watch_event *event)
+{
+    if (event->kind == WATCH_MESSAGE)
+        free((void *)event->message);
+    else if (event->kind == WATCH_PLANT || event->kind == WATCH_INJECTED)
+        free((void *)event->text);
+}
+
+static bool make_room(struct watch *watch)
+{
+    if (watch->count < watch->room)
+        return true;
+    size_t room = watch->room > 0 ? 2 * watch->room : ROOM_AT_FIRST;
+    struct watch_event *events = realloc(watch->events, room * sizeof *events);
+    if (!events)
+        return false;
+    watch->events = events;
+    watch->room = room;
+    return true;
+}
+
+void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event event)
+{
+    if ((watch->kinds & WATCH_BIT(event.kind)) == 0) {
+        drop(&event);
+        return;
+    }
+    if (!make_room(watch)) {
+        watch->short_of_memory = true;
+        drop(&event);
+        return;
+    }
+    event.order = (uint64_t)phase << ORDER_PHASE | watch->sequence++;
+    watch->events[watch->count++] = event;
+}
+
+static int compare(const void *left, const void *right)
+{
+    const struct watch_event *a = left, *b = right;
+    if (a->tick != b->tick)
+        return a->tick < b->tick ? -1 : 1;
+    return a->order < b->order ? -1 : a->order > b->order;
+}
+
+void watch_hand_out(struct watch *watch, uint64_t tick)
+{
+    size_t done = 0;
+    if (watch->count == 0)
+        return;
+    qsort(watch->events, watch->count, sizeof watch->events[0], compare);
+    for (; done < watch->count && watch->events[done].tick < tick; done++) {
+        const struct watch_event *event = &watch->events[done];
+        for (struct watcher *watcher = watch->watchers; watcher; watcher = watcher->next)
+            if (watcher->kinds & WATCH_BIT(event->kind))
+                watcher->see(watcher->context, event);
+        drop(event);
+    }
+    watch->count -= done;
+    memmove(watch->events, watch->events + done, watch->count * sizeof watch->events[0]);
+}
+
+void watch_end(struct watch *watch)
+{
+    for (size_t i = 0; i < watch->count; i++)
+        drop(&watch->events[i]);
+    free(watch->events);
+    *watch = (struct watch){0};
+}
+
+static void sum_kinds(struct watch *watch)
+{
+    watch->kinds = 0;
+    for (const struct watcher *watcher = watch->watchers; watcher; watcher = watcher->next)
+        watch->kinds |= watcher->kinds;
+}
+
+/* Behind those who are there: they see everything first who came first. */
+void watch_join(struct watch *watch, struct watcher *watcher)
+{
+    struct watcher **at = &watch->watchers;
+    while (*at)
+        at = &(*at)->next;
+    watcher->next = NULL;
+    *at = watcher;
+    sum_kinds(watch);
+}
+
+void watch_leave(struct watch *watch, struct watcher *watcher)
+{
+    for (struct watcher **at = &watch->watchers; *at; at = &(*at)->next) {
+        if (*at == watcher) {
+            *at = watcher->next;
+            break;
+        }
+    }
+    sum_kinds(watch);
+}

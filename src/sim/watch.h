@@ -1,0 +1,97 @@
+/* watch.h: what happens on a line, for everybody who wants to know: traces, logs, clients of the control socket, recorders.
+ *
+ * Happenings are gathered as they come, put in the order of time (K2 within a tick), and handed to the watchers when nothing
+ * earlier can come any more: at the end of each sim_advance(), and at least every slot while somebody wants pulses. The order
+ * does not depend on how time was cut into pieces. */
+#ifndef RKM04_SIM_WATCH_H
+#define RKM04_SIM_WATCH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "segment.h"
+
+enum watch_kind {
+    WATCH_STEP,      /* a pulse; value: position of the counter after it */
+    WATCH_DIRECTION, /* value: 1 forward, 0 back */
+    WATCH_MOTION,    /* value: 1 begins, 0 has ended */
+    WATCH_COMMAND,   /* value: place 1..700 of the command being executed, 0: idle */
+    WATCH_LED,       /* value: enum rkm04_led */
+    WATCH_FAULT,     /* of a motor; value: enum rkm04_fault */
+    WATCH_INPUTS,    /* value: mask of DI, bit 0 is DI 01; likewise: */
+    WATCH_OUTPUTS,
+    WATCH_VARIABLES, /* bit 0 is VAR 80 */
+    WATCH_POWER,     /* value: 1 the unit has been powered up, 0 it has lost its power */
+    WATCH_BYTE,      /* unit 0; `byte` */
+    WATCH_MESSAGE,   /* unit 0; `message`: a frame or what was dropped of one */
+    WATCH_PLANT,     /* value: enum plant_news (plant.h); `text` says what */
+    WATCH_INJECTED,  /* a fault on demand has acted; value: its number; `text` says what it did */
+    WATCH_KINDS
+};
+
+#define WATCH_BIT(kind) (UINT32_C(1) << (kind))
+#define WATCH_ALL (WATCH_BIT(WATCH_KINDS) - 1u)
+
+/* Order within a tick (K2). */
+enum watch_phase {
+    WATCH_DELIVERED, /* what came from outside, and what it led to at once */
+    WATCH_PULSES,
+    WATCH_TURNS      /* ends of motions, and the motors' turns */
+};
+
+struct wire_message; /* wire_monitor.h */
+
+struct watch_event {
+    uint64_t tick;  /* of the line */
+    uint64_t order; /* among those of the tick */
+    int32_t value;
+    uint8_t kind;   /* enum watch_kind */
+    uint8_t unit;   /* 1..16, its number on the line; 0: the line */
+    uint8_t motor;  /* 1..4; 0: none */
+    union {
+        struct segment_byte byte;           /* WATCH_BYTE */
+        const struct wire_message *message; /* WATCH_MESSAGE; valid during the call */
+        const char *text;                   /* WATCH_PLANT, WATCH_INJECTED; valid during the call */
+    };
+};
+
+struct watcher {
+    uint32_t kinds; /* WATCH_BIT()s of what it wants to see */
+    /* Must not advance or change the line. */
+    void (*see)(void *context, const struct watch_event *event);
+    void *context;
+    struct watcher *next; /* inside */
+};
+
+/* Inside: gathers, sorts, hands out. */
+struct watch {
+    struct watcher *watchers;
+    uint32_t kinds; /* that anybody wants */
+    uint64_t sequence;
+    size_t count, room;
+    struct watch_event *events;
+    bool short_of_memory; /* events were lost */
+};
+
+/* "step", "direction", "motion", … as in traces and in the control protocol. Never NULL. */
+const char *watch_kind_name(enum watch_kind kind);
+
+/* Find a kind by its name. Returns WATCH_KINDS if there is none of that name. */
+enum watch_kind watch_kind_named(const char *name);
+
+/* Gather one; `event->order` is set here. A message or text must be a copy of its own, from malloc(): it is freed after the
+ * watchers have seen it, or at once if nobody wants it. */
+void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event event);
+
+/* Hand everything before `tick` to the watchers, in order. */
+void watch_hand_out(struct watch *watch, uint64_t tick);
+
+/* Forget everybody and everything. */
+void watch_end(struct watch *watch);
+
+/* A watcher, which must stay, wants to see from now on; no more. */
+void watch_join(struct watch *watch, struct watcher *watcher);
+void watch_leave(struct watch *watch, struct watcher *watcher);
+
+#endif

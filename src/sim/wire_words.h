@@ -1,0 +1,22 @@
+/* wire_words.h: messages (specification section 3) in words, for people. */
+#ifndef RKM04_SIM_WIRE_WORDS_H
+#define RKM04_SIM_WIRE_WORDS_H
+
+#include "wire_monitor.h"
+#include "wire_text.h"
+
+#define WIRE_WORDS_MAX (4u * WIRE_ANSWER_MAX + 512u) /* characters of the longest description, with names and reasons */
+
+/* A whole message: `2 Set Command m1 "\C100 F5000 R"`, `4 Get Position m0 -> 12 0 0 5`. */
+void wire_words_message(struct wire_text *out, const uint8_t *message, size_t length, bool answer);
+
+/* What the unit objects to in an answer: "unknown command 'a'". Nothing if it does not. */
+void wire_words_refusal(struct wire_text *out, const uint8_t *message, size_t length);
+
+/* Who sends, and to whom: "master > 3", "3 > master", "master > all". Units by their names. */
+void wire_words_direction(struct wire_text *out, const struct sim *sim, const struct wire_message *message);
+
+/* The message in words, then why it was dropped, refused or ignored, and what has happened to it on the wires. */
+void wire_words_story(struct wire_text *out, const struct sim *sim, const struct wire_message *message);
+
+#endif
