@@ -2,7 +2,7 @@
 #ifndef RKM04_TESTS_SEGMENT_RIG_H
 #define RKM04_TESTS_SEGMENT_RIG_H
 
-#include "../src/host/segment.h"
+#include "../src/sim/segment.h"
 #include "rig.h"
 
 #define LINE_BYTES_MAX 60000

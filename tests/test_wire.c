@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/host/wire.h"
+#include "../src/sim/wire.h"
 #include "rig.h"
 
 #define HEARD_MAX 4096

@@ -1,5 +1,5 @@
 /* wire_file.h: a file that takes down what passes on the wires: FILE.log for people, FILE.pcapng for Wireshark. The name chooses
- * the format. */
+ * the format. docs/WIRE.md describes both. */
 #ifndef RKM04_SIM_WIRE_FILE_H
 #define RKM04_SIM_WIRE_FILE_H
 
@@ -9,10 +9,17 @@
 
 struct wire_file;
 
-/* As in trace_file.h. */
+/* Does the name end with one of WIRE_FILE_EXPECTED? */
 bool wire_file_named(const char *path);
+
+/* Open `path`, which is overwritten, and begin to watch. Returns NULL if it did not work; *error is what to say then ("cannot
+ * write FILE: …"), to be freed, or NULL if memory is short. */
 struct wire_file *wire_file_begin(struct sim *sim, const char *path, char **error);
+
+/* 0, or the errno with which writing has failed. Nothing is written after the first failure. */
 int wire_file_failed(const struct wire_file *file);
+
+/* Take down what is incomplete, and close. Returns 0 or the errno of the first failure. */
 int wire_file_end(struct wire_file *file);
 
 #endif

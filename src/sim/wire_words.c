@@ -7,7 +7,6 @@
 #define HEAD 2 /* bytes before what is particular to a message with a motor */
 #define UNKNOWN 255
 #define ERROR_TEXT "ERROR COMMAND! "
-#define MASTER_BIT 1u
 
 static const char *const names[] = {
     "",
