@@ -50,31 +50,44 @@ static void see(void *context, const struct watch_event *event)
     write_row(context, event, names[event->kind]);
 }
 
+/* ---- What there is at the beginning --------------------------------------------------------------------------------- */
+
+static void tell(struct trace_file *file, unsigned number, unsigned motor, enum watch_kind kind, int32_t value)
+{
+    struct watch_event event = {
+        .tick = sim_now(file->sim), .value = value, .kind = (uint8_t)kind, .unit = (uint8_t)number, .motor = (uint8_t)motor};
+    if (value != 0 || kind == WATCH_POWER)
+        write_row(file, &event, kind == WATCH_STEP ? ",position," : names[kind]);
+}
+
+static void tell_motor(struct trace_file *file, unsigned number, unsigned motor)
+{
+    struct rkm04_motor_state state;
+    rkm04_motor_state(sim_core(file->sim, number), motor, &state);
+    tell(file, number, motor, WATCH_STEP, state.position);
+    tell(file, number, motor, WATCH_COMMAND, state.index);
+    tell(file, number, motor, WATCH_DIRECTION, state.forward);
+    tell(file, number, motor, WATCH_LED, (int32_t)state.led);
+    tell(file, number, motor, WATCH_MOTION, state.state == RKM04_MOVING);
+}
+
 /* A trace that begins later begins with what is not as after power-up. */
 static void begin(struct trace_file *file)
 {
     static const char header[] = "t_us,source,event,value\n";
-    struct watch_event event = {.tick = sim_now(file->sim)};
     trace_put(file, header, sizeof header - 1u);
     for (unsigned number = 1; number <= sim_units(file->sim); number++) {
-        event.unit = (uint8_t)number;
-        event.motor = 0;
-        event.kind = WATCH_POWER;
-        event.value = 0;
+        const struct rkm04_unit *core = sim_core(file->sim, number);
         if (!sim_powered(file->sim, number)) {
-            see(file, &event);
+            tell(file, number, 0, WATCH_POWER, 0);
             continue;
         }
-        event.kind = WATCH_STEP;
-        for (event.motor = 1; event.motor <= RKM04_MOTORS; event.motor++) {
-            struct rkm04_motor_state state;
-            rkm04_motor_state(sim_core(file->sim, number), event.motor, &state);
-            event.value = state.position;
-            if (event.value != 0)
-                write_row(file, &event, ",position,");
-        }
+        tell(file, number, 0, WATCH_INPUTS, rkm04_inputs(core));
+        tell(file, number, 0, WATCH_OUTPUTS, rkm04_outputs(core));
+        tell(file, number, 0, WATCH_VARIABLES, rkm04_variables(core));
+        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+            tell_motor(file, number, motor);
     }
-    trace_tell_present(file);
 }
 
 static void end(struct trace_file *file)

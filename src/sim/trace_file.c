@@ -21,19 +21,16 @@ static void write_out(struct trace_file *file, const char *text, size_t length)
         file->error = errno != 0 ? errno : EIO;
 }
 
-char *trace_room(struct trace_file *file, size_t room)
+void trace_empty(struct trace_file *file)
 {
-    if (room > TRACE_BUFFER - file->length) {
-        write_out(file, file->buffer, file->length);
-        file->length = 0;
-    }
-    return file->buffer + file->length;
+    write_out(file, file->buffer, file->length);
+    file->length = 0;
 }
 
 void trace_put(struct trace_file *file, const char *text, size_t length)
 {
     if (length > TRACE_BUFFER) {
-        trace_room(file, TRACE_BUFFER);
+        trace_empty(file);
         write_out(file, text, length);
         return;
     }
@@ -49,45 +46,10 @@ int trace_file_failed(const struct trace_file *file)
 
 void trace_file_flush(struct trace_file *file)
 {
-    trace_room(file, TRACE_BUFFER);
+    trace_empty(file);
     errno = 0;
     if (fflush(file->out) != 0 && file->error == 0)
         file->error = errno != 0 ? errno : EIO;
-}
-
-/* ---- What there is at the beginning --------------------------------------------------------------------------------- */
-
-static void tell(struct trace_file *file, unsigned number, unsigned motor, enum watch_kind kind, int32_t value)
-{
-    struct watch_event event = {
-        .tick = sim_now(file->sim), .value = value, .kind = (uint8_t)kind, .unit = (uint8_t)number, .motor = (uint8_t)motor};
-    if (value != 0 && (file->writer->kinds & WATCH_BIT(kind)) != 0)
-        file->writer->see(file, &event);
-}
-
-static void tell_motor(struct trace_file *file, unsigned number, unsigned motor)
-{
-    struct rkm04_motor_state state;
-    rkm04_motor_state(sim_core(file->sim, number), motor, &state);
-    tell(file, number, motor, WATCH_COMMAND, state.index);
-    tell(file, number, motor, WATCH_FAULT, (int32_t)state.fault);
-    tell(file, number, motor, WATCH_DIRECTION, state.forward);
-    tell(file, number, motor, WATCH_LED, (int32_t)state.led);
-    tell(file, number, motor, WATCH_MOTION, state.state == RKM04_MOVING);
-}
-
-void trace_tell_present(struct trace_file *file)
-{
-    for (unsigned number = 1; number <= sim_units(file->sim); number++) {
-        struct rkm04_unit *core = sim_core(file->sim, number);
-        tell(file, number, 0, WATCH_INPUTS, rkm04_inputs(core));
-        if (!sim_powered(file->sim, number))
-            continue;
-        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
-            tell_motor(file, number, motor);
-        tell(file, number, 0, WATCH_OUTPUTS, rkm04_outputs(core));
-        tell(file, number, 0, WATCH_VARIABLES, rkm04_variables(core));
-    }
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */

@@ -30,8 +30,16 @@ struct trace_file {
 
 extern const struct trace_writer trace_csv, trace_vcd, trace_jsonl;
 
+/* Write out what is in the buffer. */
+void trace_empty(struct trace_file *file);
+
 /* Where to write up to `room` <= TRACE_BUFFER characters. */
-char *trace_room(struct trace_file *file, size_t room);
+static inline char *trace_room(struct trace_file *file, size_t room)
+{
+    if (room > TRACE_BUFFER - file->length)
+        trace_empty(file);
+    return file->buffer + file->length;
+}
 
 /* They end at `end`, not included. */
 static inline void trace_wrote(struct trace_file *file, const char *end)
@@ -41,8 +49,5 @@ static inline void trace_wrote(struct trace_file *file, const char *end)
 
 /* Text of any length. */
 void trace_put(struct trace_file *file, const char *text, size_t length);
-
-/* Tell `see` what is not as after power-up, unit by unit, as if it happened now. */
-void trace_tell_present(struct trace_file *file);
 
 #endif

@@ -1,0 +1,493 @@
+/* Value change dump (IEEE 1364) for GTKWave and PulseView, 1 us. Every signal has a name of its own, as some readers drop the
+ * scopes, and what people want to see in PulseView is a single bit, as it reads nothing else.
+ *
+ * step is 1 for the 10 us of a pulse (R7); led is bright or dark, so a blinking one blinks; speed is what a counter of pulses
+ * shows that is read at the first pulse after each millisecond, hence 0 until there is one. No date: two runs of the same
+ * session give the same file (K1). */
+#include "digits.h"
+#include "trace_writer.h"
+
+#define BLINK (RKM04_TICKS_PER_SECOND / 2u) /* ticks bright, then dark (U6) */
+#define GATE 1000u                          /* ticks: shortest time over which a speed is taken */
+#define FALLS 256u                          /* pulses that may be under way: one a motor is less; a power of 2 */
+#define CHANGE_MAX 64u                      /* characters of one change: a time and a number are 40 */
+#define ID_BASE 94u                         /* characters of an identifier: ! to ~ */
+
+enum motor_signal { STEP, DIRECTION, LED, MOVING, COMMAND, SPEED, POSITION, MOTOR_SIGNALS };
+enum unit_signal {
+    POWER,
+    INPUTS,
+    OUTPUTS = INPUTS + RKM04_INPUTS,
+    VARIABLES = OUTPUTS + RKM04_OUTPUTS,
+    MOTORS = VARIABLES + RKM04_VARIABLES,
+    UNIT_SIGNALS = MOTORS + RKM04_MOTORS * MOTOR_SIGNALS
+};
+
+struct vcd_motor {
+    bool step, forward, lit, moving, counting;
+    int32_t command, position;
+    uint32_t pulses;  /* since `gate`, while `counting` */
+    uint64_t speed;   /* 1/1000 steps/s */
+    uint64_t gate;
+    uint64_t fall;    /* tick at which the pulse ends */
+    uint64_t toggle;  /* of the blinking LED; RKM04_NEVER: it does not */
+};
+
+struct vcd_unit {
+    uint8_t power, inputs, outputs;
+    uint16_t variables;
+    struct vcd_motor motor[RKM04_MOTORS];
+};
+
+struct vcd {
+    uint64_t tick;   /* that has been written */
+    uint64_t toggle; /* the next one of all LEDs; RKM04_NEVER: none */
+    unsigned first, falls;
+    struct {
+        uint64_t tick;
+        uint8_t unit, motor;
+    } fall[FALLS]; /* in order of time: all pulses are equally long */
+    struct vcd_unit unit[SEGMENT_UNITS];
+};
+
+/* ---- Writing -------------------------------------------------------------------------------------------------------- */
+
+static unsigned signal_of(unsigned unit, unsigned motor, enum motor_signal signal)
+{
+    return (unit - 1u) * UNIT_SIGNALS + MOTORS + (motor - 1u) * MOTOR_SIGNALS + signal;
+}
+
+static char *put_id(char *at, unsigned signal)
+{
+    if (signal >= ID_BASE)
+        *at++ = (char)('!' + signal / ID_BASE - 1u);
+    *at++ = (char)('!' + signal % ID_BASE);
+    return at;
+}
+
+static void write_time(struct trace_file *file, uint64_t tick)
+{
+    struct vcd *vcd = file->state;
+    if (tick <= vcd->tick)
+        return;
+    char *at = trace_room(file, CHANGE_MAX);
+    *at++ = '#';
+    at = put_number(at, tick);
+    *at++ = '\n';
+    trace_wrote(file, at);
+    vcd->tick = tick;
+}
+
+static void write_bit(struct trace_file *file, unsigned signal, bool level)
+{
+    char *at = trace_room(file, CHANGE_MAX);
+    *at++ = level ? '1' : '0';
+    at = put_id(at, signal);
+    *at++ = '\n';
+    trace_wrote(file, at);
+}
+
+static void write_real(struct trace_file *file, unsigned signal, int32_t whole, uint32_t thousandths)
+{
+    char *at = trace_room(file, CHANGE_MAX);
+    *at++ = 'r';
+    at = put_signed(at, whole);
+    if (thousandths > 0) {
+        *at++ = '.';
+        for (uint32_t place = 100; thousandths > 0; place /= 10) {
+            *at++ = (char)('0' + thousandths / place);
+            thousandths %= place;
+        }
+    }
+    *at++ = ' ';
+    at = put_id(at, signal);
+    *at++ = '\n';
+    trace_wrote(file, at);
+}
+
+static void write_speed(struct trace_file *file, unsigned unit, unsigned motor, uint64_t speed)
+{
+    write_real(file, signal_of(unit, motor, SPEED), (int32_t)(speed / 1000u), (uint32_t)(speed % 1000u));
+}
+
+static void write_mask(struct trace_file *file, unsigned first, uint32_t mask, uint32_t changed)
+{
+    for (unsigned bit = 0; changed >> bit != 0; bit++)
+        if ((changed >> bit & 1u) != 0)
+            write_bit(file, first + bit, (mask >> bit & 1u) != 0);
+}
+
+/* ---- What follows of itself: pulses end, LEDs blink ----------------------------------------------------------------- */
+
+static struct vcd_motor *motor_of(struct vcd *vcd, unsigned unit, unsigned motor)
+{
+    return &vcd->unit[unit - 1u].motor[motor - 1u];
+}
+
+static void end_first_pulse(struct trace_file *file)
+{
+    struct vcd *vcd = file->state;
+    unsigned unit = vcd->fall[vcd->first].unit, motor = vcd->fall[vcd->first].motor;
+    struct vcd_motor *state = motor_of(vcd, unit, motor);
+    uint64_t tick = vcd->fall[vcd->first].tick;
+    vcd->first = (vcd->first + 1u) % FALLS;
+    vcd->falls--;
+    if (!state->step || state->fall != tick)
+        return; /* cut off, or another one has begun */
+    write_time(file, tick);
+    state->step = false;
+    write_bit(file, signal_of(unit, motor, STEP), false);
+}
+
+static void find_toggle(const struct trace_file *file)
+{
+    struct vcd *vcd = file->state;
+    vcd->toggle = RKM04_NEVER;
+    for (unsigned unit = 1; unit <= sim_units(file->sim); unit++)
+        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+            if (motor_of(vcd, unit, motor)->toggle < vcd->toggle)
+                vcd->toggle = motor_of(vcd, unit, motor)->toggle;
+}
+
+static void toggle_leds(struct trace_file *file)
+{
+    struct vcd *vcd = file->state;
+    uint64_t tick = vcd->toggle;
+    write_time(file, tick);
+    for (unsigned unit = 1; unit <= sim_units(file->sim); unit++) {
+        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+            struct vcd_motor *state = motor_of(vcd, unit, motor);
+            if (state->toggle != tick)
+                continue;
+            state->lit = !state->lit;
+            state->toggle += BLINK;
+            write_bit(file, signal_of(unit, motor, LED), state->lit);
+        }
+    }
+    find_toggle(file);
+}
+
+/* Write what changes up to `tick`, this one included, and the time. */
+static void go_to(struct trace_file *file, uint64_t tick)
+{
+    const struct vcd *vcd = file->state;
+    for (;;) {
+        uint64_t fall = vcd->falls > 0 ? vcd->fall[vcd->first].tick : RKM04_NEVER;
+        if (fall > tick && vcd->toggle > tick)
+            break;
+        if (fall <= vcd->toggle)
+            end_first_pulse(file);
+        else
+            toggle_leds(file);
+    }
+    write_time(file, tick);
+}
+
+/* ---- Events --------------------------------------------------------------------------------------------------------- */
+
+static void set_speed(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state, uint64_t speed)
+{
+    if (state->speed != speed)
+        write_speed(file, event->unit, event->motor, speed);
+    state->speed = speed;
+}
+
+/* Count the pulses of this motor from here on. */
+static void open_gate(struct vcd_motor *state, uint64_t tick)
+{
+    state->counting = true;
+    state->gate = tick;
+    state->pulses = 0;
+}
+
+static void see_step(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
+{
+    struct vcd *vcd = file->state;
+    if (vcd->falls == FALLS)
+        end_first_pulse(file);
+    unsigned last = (vcd->first + vcd->falls++) % FALLS;
+    vcd->fall[last].tick = state->fall = event->tick + RKM04_PULSE_TICKS;
+    vcd->fall[last].unit = event->unit;
+    vcd->fall[last].motor = event->motor;
+    if (!state->step)
+        write_bit(file, signal_of(event->unit, event->motor, STEP), true);
+    state->step = true;
+    state->position = event->value;
+    write_real(file, signal_of(event->unit, event->motor, POSITION), event->value, 0);
+    if (!state->counting) {
+        open_gate(state, event->tick);
+        return;
+    }
+    state->pulses++;
+    if (event->tick - state->gate < GATE)
+        return;
+    set_speed(file, event, state, state->pulses * UINT64_C(1000) * RKM04_TICKS_PER_SECOND / (event->tick - state->gate));
+    open_gate(state, event->tick);
+}
+
+static void see_motion(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
+{
+    bool moving = event->value != 0;
+    if (state->moving != moving)
+        write_bit(file, signal_of(event->unit, event->motor, MOVING), moving);
+    state->moving = moving;
+    open_gate(state, event->tick);
+    state->counting = moving;
+    set_speed(file, event, state, 0);
+}
+
+static void see_led(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
+{
+    bool lit = event->value != RKM04_LED_OFF;
+    if (state->lit != lit)
+        write_bit(file, signal_of(event->unit, event->motor, LED), lit);
+    state->lit = lit;
+    state->toggle = event->value == RKM04_LED_BLINK ? event->tick + BLINK : RKM04_NEVER;
+    find_toggle(file);
+}
+
+static void see_motor(struct trace_file *file, const struct watch_event *event)
+{
+    struct vcd_motor *state = motor_of(file->state, event->unit, event->motor);
+    switch ((enum watch_kind)event->kind) {
+    case WATCH_STEP:
+        see_step(file, event, state);
+        break;
+    case WATCH_MOTION:
+        see_motion(file, event, state);
+        break;
+    case WATCH_LED:
+        see_led(file, event, state);
+        break;
+    case WATCH_DIRECTION:
+        state->forward = event->value != 0;
+        write_bit(file, signal_of(event->unit, event->motor, DIRECTION), state->forward);
+        break;
+    case WATCH_COMMAND:
+        state->command = event->value;
+        write_real(file, signal_of(event->unit, event->motor, COMMAND), event->value, 0);
+        break;
+    default:
+        break;
+    }
+}
+
+static void write_unit(struct trace_file *file, unsigned unit);
+
+/* Without power everything that comes from the unit is 0. */
+static void see_power(struct trace_file *file, const struct watch_event *event)
+{
+    struct vcd *vcd = file->state;
+    struct vcd_unit *unit = &vcd->unit[event->unit - 1u];
+    uint8_t inputs = unit->inputs;
+    if (event->value == 0) {
+        *unit = (struct vcd_unit){.inputs = inputs};
+        for (unsigned motor = 0; motor < RKM04_MOTORS; motor++)
+            unit->motor[motor].toggle = RKM04_NEVER;
+        find_toggle(file);
+    }
+    unit->power = event->value != 0;
+    write_unit(file, event->unit);
+}
+
+static void see_masks(struct trace_file *file, const struct watch_event *event)
+{
+    struct vcd *vcd = file->state;
+    struct vcd_unit *unit = &vcd->unit[event->unit - 1u];
+    unsigned first = (event->unit - 1u) * UNIT_SIGNALS;
+    uint32_t mask = (uint32_t)event->value;
+    if (event->kind == WATCH_INPUTS) {
+        write_mask(file, first + INPUTS, mask, mask ^ unit->inputs);
+        unit->inputs = (uint8_t)mask;
+    } else if (event->kind == WATCH_OUTPUTS) {
+        write_mask(file, first + OUTPUTS, mask, mask ^ unit->outputs);
+        unit->outputs = (uint8_t)mask;
+    } else {
+        write_mask(file, first + VARIABLES, mask, mask ^ unit->variables);
+        unit->variables = (uint16_t)mask;
+    }
+}
+
+static void see(void *context, const struct watch_event *event)
+{
+    struct trace_file *file = context;
+    go_to(file, event->tick);
+    if (event->motor != 0)
+        see_motor(file, event);
+    else if (event->kind == WATCH_POWER)
+        see_power(file, event);
+    else
+        see_masks(file, event);
+}
+
+/* ---- Begin and end -------------------------------------------------------------------------------------------------- */
+
+/* A signal in the head: `u3_m1_step` of unit 3 on a line with several, `m1_step` otherwise. */
+static void declare(struct trace_file *file, const char *type, const char *prefix, const char *name, unsigned signal)
+{
+    char *at = trace_room(file, 2u * CHANGE_MAX);
+    at = put_text(put_text(at, "$var "), type);
+    *at++ = ' ';
+    at = put_id(at, signal);
+    *at++ = ' ';
+    at = put_text(put_text(at, prefix), name);
+    trace_wrote(file, put_text(at, " $end\n"));
+}
+
+static void declare_bits(struct trace_file *file, const char *prefix, const char *name, unsigned count, unsigned number,
+                         unsigned signal)
+{
+    for (unsigned bit = 0; bit < count; bit++, number++) {
+        char text[8], *at = put_text(text, name);
+        *at++ = (char)('0' + number / 10u);
+        *at++ = (char)('0' + number % 10u);
+        *at = '\0';
+        declare(file, "wire 1", prefix, text, signal + bit);
+    }
+}
+
+static void open_scope(struct trace_file *file, const char *name)
+{
+    char *at = put_text(trace_room(file, CHANGE_MAX), "$scope module ");
+    trace_wrote(file, put_text(put_text(at, name), " $end\n"));
+}
+
+static void close_scope(struct trace_file *file)
+{
+    static const char text[] = "$upscope $end\n";
+    trace_put(file, text, sizeof text - 1u);
+}
+
+static void declare_motor(struct trace_file *file, const char *unit_prefix, unsigned unit, unsigned motor)
+{
+    static const struct {
+        const char *type, *name;
+    } signals[MOTOR_SIGNALS] = {
+        [STEP] = {"wire 1", "step"},       [DIRECTION] = {"wire 1", "dir"},    [LED] = {"wire 1", "led"},
+        [MOVING] = {"wire 1", "moving"},   [COMMAND] = {"real 64", "command"}, [SPEED] = {"real 64", "speed"},
+        [POSITION] = {"real 64", "position"},
+    };
+    char scope[] = {'m', (char)('0' + motor), '\0'}, prefix[NODE_NAME_SIZE + 8u], *at = put_text(prefix, unit_prefix);
+    memcpy(put_text(at, scope), "_", 2);
+    open_scope(file, scope);
+    for (unsigned signal = 0; signal < MOTOR_SIGNALS; signal++)
+        declare(file, signals[signal].type, prefix, signals[signal].name,
+                signal_of(unit, motor, (enum motor_signal)signal));
+    close_scope(file);
+}
+
+static void declare_unit(struct trace_file *file, unsigned unit)
+{
+    char prefix[NODE_NAME_SIZE + 4u] = "";
+    unsigned first = (unit - 1u) * UNIT_SIGNALS;
+    if (sim_units(file->sim) > 1) {
+        char *at = prefix;
+        *at++ = 'u';
+        for (const char *name = file->sim->unit[unit - 1u].name; *name; name++)
+            *at++ = *name == '-' ? '_' : *name; /* of "3-2" */
+        *at = '\0';
+        open_scope(file, prefix);
+        memcpy(at, "_", 2);
+    }
+    declare(file, "wire 1", prefix, "power", first + POWER);
+    declare_bits(file, prefix, "di", RKM04_INPUTS, 1, first + INPUTS);
+    declare_bits(file, prefix, "do", RKM04_OUTPUTS, 1, first + OUTPUTS);
+    declare_bits(file, prefix, "var", RKM04_VARIABLES, RKM04_FIRST_VARIABLE, first + VARIABLES);
+    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+        declare_motor(file, prefix, unit, motor);
+    if (sim_units(file->sim) > 1)
+        close_scope(file);
+}
+
+/* All signals of a unit as they stand. */
+static void write_unit(struct trace_file *file, unsigned unit)
+{
+    const struct vcd *vcd = file->state;
+    const struct vcd_unit *state = &vcd->unit[unit - 1u];
+    unsigned first = (unit - 1u) * UNIT_SIGNALS;
+    write_bit(file, first + POWER, state->power);
+    write_mask(file, first + INPUTS, state->inputs, (1u << RKM04_INPUTS) - 1u);
+    write_mask(file, first + OUTPUTS, state->outputs, (1u << RKM04_OUTPUTS) - 1u);
+    write_mask(file, first + VARIABLES, state->variables, (1u << RKM04_VARIABLES) - 1u);
+    for (unsigned number = 1; number <= RKM04_MOTORS; number++) {
+        const struct vcd_motor *motor = &state->motor[number - 1u];
+        write_bit(file, signal_of(unit, number, STEP), motor->step);
+        write_bit(file, signal_of(unit, number, DIRECTION), motor->forward);
+        write_bit(file, signal_of(unit, number, LED), motor->lit);
+        write_bit(file, signal_of(unit, number, MOVING), motor->moving);
+        write_real(file, signal_of(unit, number, COMMAND), motor->command, 0);
+        write_speed(file, unit, number, motor->speed);
+        write_real(file, signal_of(unit, number, POSITION), motor->position, 0);
+    }
+}
+
+static void look_at_motor(struct trace_file *file, unsigned unit, unsigned motor)
+{
+    const struct rkm04_unit *core = sim_core(file->sim, unit);
+    struct vcd_motor *state = motor_of(file->state, unit, motor);
+    struct rkm04_motor_state now;
+    if (!sim_powered(file->sim, unit) || !rkm04_motor_state(core, motor, &now))
+        return;
+    state->forward = now.forward;
+    state->lit = now.lit;
+    state->moving = now.state == RKM04_MOVING;
+    state->command = now.index;
+    state->speed = now.speed * UINT64_C(1000);
+    state->position = now.position;
+    if (now.led != RKM04_LED_BLINK)
+        return;
+    uint64_t from = segment_since(&file->sim->segment, unit) + core->motor[motor - 1u].blink_from;
+    state->toggle = from + ((sim_now(file->sim) - from) / BLINK + 1u) * BLINK;
+}
+
+static void look_at_unit(struct trace_file *file, unsigned unit)
+{
+    const struct rkm04_unit *core = sim_core(file->sim, unit);
+    struct vcd *vcd = file->state;
+    struct vcd_unit *state = &vcd->unit[unit - 1u];
+    state->power = sim_powered(file->sim, unit);
+    state->inputs = rkm04_inputs(core);
+    state->outputs = state->power ? rkm04_outputs(core) : 0;
+    state->variables = state->power ? rkm04_variables(core) : 0;
+    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+        state->motor[motor - 1u].toggle = RKM04_NEVER;
+        look_at_motor(file, unit, motor);
+    }
+}
+
+static void begin(struct trace_file *file)
+{
+    static const char head[] = "$version rkm04 " RKM04_VERSION " $end\n$timescale 1 us $end\n";
+    static const char end_of_head[] = "$enddefinitions $end\n#";
+    struct vcd *vcd = file->state;
+    trace_put(file, head, sizeof head - 1u);
+    open_scope(file, "rkm04");
+    for (unsigned unit = 1; unit <= sim_units(file->sim); unit++)
+        declare_unit(file, unit);
+    close_scope(file);
+    trace_put(file, end_of_head, sizeof end_of_head - 1u);
+    vcd->tick = sim_now(file->sim);
+    trace_wrote(file, put_text(put_number(trace_room(file, CHANGE_MAX), vcd->tick), "\n$dumpvars\n"));
+    for (unsigned unit = 1; unit <= sim_units(file->sim); unit++) {
+        look_at_unit(file, unit);
+        write_unit(file, unit);
+    }
+    trace_put(file, "$end\n", 5);
+    find_toggle(file);
+}
+
+static void end(struct trace_file *file)
+{
+    go_to(file, sim_now(file->sim));
+}
+
+const struct trace_writer trace_vcd = {
+    .suffix = ".vcd",
+    .kinds = WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_COMMAND) |
+             WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
+             WATCH_BIT(WATCH_POWER),
+    .state = sizeof(struct vcd),
+    .begin = begin,
+    .see = see,
+    .end = end,
+};
