@@ -1,21 +1,391 @@
 #include "plant.h"
 
+#include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "sim.h"
+#include "plant_model.h"
 
-bool plant_configure(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors)
+struct plant *plant_new(void)
 {
-    (void)sim, (void)text, (void)length;
-    fprintf(errors, "%s:1:1: error: expected no plant\n", name);
-    return false;
+    struct plant *plant = calloc(1, sizeof *plant);
+    for (unsigned at = 0; plant && at < RKM04_MOTORS; at++) {
+        plant->motor[at].low = INT64_MIN;
+        plant->motor[at].high = INT64_MAX;
+        plant->motor[at].stall.last = RKM04_NEVER;
+    }
+    return plant;
 }
-void plant_free(struct plant *plant) { free(plant); }
-uint8_t plant_mask(const struct plant *plant) { (void)plant; return 0; }
-uint8_t plant_levels(const struct plant *plant) { (void)plant; return 0; }
-void plant_step(struct plant *plant, uint64_t tick, unsigned motor, bool forward) { (void)plant, (void)tick, (void)motor, (void)forward; }
-bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *change) { (void)plant, (void)tick, (void)change; return false; }
-uint64_t plant_next(const struct plant *plant) { (void)plant; return RKM04_NEVER; }
-bool plant_position(const struct plant *plant, unsigned motor, int64_t *position) { (void)plant, (void)motor, (void)position; return false; }
-json_t *plant_json(const struct plant *plant) { (void)plant; return json_null(); }
-struct plant *plant_copy(const struct plant *plant, uint64_t shift) { (void)plant, (void)shift; return NULL; }
+
+void plant_free(struct plant *plant)
+{
+    free(plant);
+}
+
+/* ---- Reports -------------------------------------------------------------------------------------------------------- */
+
+static void drop_report(struct plant *plant)
+{
+    plant->reports--;
+    memmove(&plant->report[0], &plant->report[1], plant->reports * sizeof plant->report[0]);
+}
+
+__attribute__((format(printf, 5, 6))) static void report(struct plant *plant, uint64_t tick, unsigned at, enum plant_news news,
+                                                         const char *format, ...)
+{
+    va_list list;
+    if (plant->reports == PLANT_REPORTS) /* nobody takes them: the newest matter */
+        drop_report(plant);
+    struct plant_report *entry = &plant->report[plant->reports++];
+    *entry = (struct plant_report){.tick = tick, .motor = (uint8_t)(at + 1u), .news = (uint8_t)news};
+    va_start(list, format);
+    vsnprintf(entry->text, sizeof entry->text, format, list);
+    va_end(list);
+}
+
+/* Steps begin to be lost, for another reason than before, or count again. */
+static void report_hold(struct plant *plant, uint64_t tick, unsigned at, enum plant_hold hold)
+{
+    const struct plant_motor *motor = &plant->motor[at];
+    unsigned number = at + 1u;
+    long long position = motor->position;
+    switch (hold) {
+    case PLANT_MOVES:
+        report(plant, tick, at, PLANT_FREE, "motor %u moves again, at %lld, after %llu lost steps", number, position,
+               (unsigned long long)motor->lost_since);
+        break;
+    case PLANT_AT_STOP:
+        report(plant, tick, at, PLANT_END_STOP, "motor %u runs against its end stop at %lld", number, position);
+        break;
+    case PLANT_JAMMED:
+        report(plant, tick, at, PLANT_JAM, "motor %u is jammed at %lld", number, position);
+        break;
+    case PLANT_STALLED:
+        report(plant, tick, at, PLANT_STALL, "motor %u stalls at %lld: too fast or too steep for it", number, position);
+        break;
+    case PLANT_NO_LEAD:
+        report(plant, tick, at, PLANT_LEAD, "motor %u does not turn, at %lld: a lead is missing", number, position);
+        break;
+    }
+}
+
+bool plant_take_report(struct plant *plant, struct plant_report *taken)
+{
+    if (plant->reports == 0)
+        return false;
+    *taken = plant->report[0];
+    drop_report(plant);
+    return true;
+}
+
+const char *plant_news_name(enum plant_news news)
+{
+    static const char *const names[] = {
+        [PLANT_STALL] = "stall", [PLANT_END_STOP] = "end_stop",   [PLANT_JAM] = "jam",
+        [PLANT_FREE] = "free",   [PLANT_LEAD] = "missing_lead",
+    };
+    return (unsigned)news < sizeof names / sizeof names[0] ? names[news] : "?";
+}
+
+/* ---- Switches ------------------------------------------------------------------------------------------------------- */
+
+static int64_t modulo(int64_t number, int64_t turn)
+{
+    return (number % turn + turn) % turn;
+}
+
+/* Does the motor stand from low - wider to high + wider? */
+static bool within(const struct plant_motor *motor, const struct plant_switch *contact, int64_t wider)
+{
+    if (motor->turn > 0)
+        return modulo(motor->position - contact->low + wider, motor->turn) <=
+               modulo(contact->high - contact->low, motor->turn) + 2 * wider;
+    return (contact->low == INT64_MIN || motor->position >= contact->low - wider) &&
+           (contact->high == INT64_MAX || motor->position <= contact->high + wider);
+}
+
+void plant_switch_begin(const struct plant *plant, struct plant_switch *contact)
+{
+    contact->on = contact->contact = within(&plant->motor[contact->motor - 1u], contact, 0);
+    contact->next = RKM04_NEVER;
+}
+
+static uint64_t next_random(uint64_t *state)
+{
+    *state ^= *state << 13; /* xorshift64 */
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return *state;
+}
+
+static void plan_bounce(struct plant_switch *contact, uint64_t tick)
+{
+    uint64_t longest = contact->bounce / 4 + 1;
+    contact->next = tick + 1 + next_random(&contact->random) % longest;
+    if (contact->next > contact->settled)
+        contact->next = contact->settled;
+}
+
+/* Its motor has moved. What follows can be seen at `tick`. */
+static void switch_follows(const struct plant *plant, struct plant_switch *contact, uint64_t tick)
+{
+    bool on = within(&plant->motor[contact->motor - 1u], contact, contact->on ? contact->hysteresis : 0);
+    if (on == contact->on)
+        return;
+    contact->on = contact->contact = on;
+    contact->settled = tick + contact->bounce;
+    contact->next = RKM04_NEVER;
+    if (contact->bounce > 0)
+        plan_bounce(contact, tick);
+}
+
+static void bounce(struct plant_switch *contact)
+{
+    uint64_t tick = contact->next;
+    contact->next = RKM04_NEVER;
+    contact->contact = tick < contact->settled ? !contact->contact : contact->on;
+    if (tick < contact->settled)
+        plan_bounce(contact, tick);
+}
+
+static void switches_follow(struct plant *plant, unsigned motor, uint64_t tick)
+{
+    for (unsigned i = 0; i < plant->switches; i++)
+        if (plant->contact[i].motor == motor)
+            switch_follows(plant, &plant->contact[i], tick);
+}
+
+uint8_t plant_contacts(const struct plant *plant)
+{
+    unsigned levels = 0;
+    for (unsigned i = 0; i < plant->switches; i++) {
+        const struct plant_switch *contact = &plant->contact[i];
+        if (contact->contact != contact->normally_closed)
+            levels |= 1u << (contact->input - 1u);
+    }
+    return (uint8_t)levels;
+}
+
+uint8_t plant_mask(const struct plant *plant)
+{
+    return plant->mask;
+}
+
+uint8_t plant_levels(const struct plant *plant)
+{
+    return plant->levels;
+}
+
+/* ---- Motors --------------------------------------------------------------------------------------------------------- */
+
+static bool jammed(const struct plant_motor *motor, uint64_t tick)
+{
+    bool jammed = motor->held;
+    for (unsigned i = 0; i < motor->jams; i++)
+        jammed = jammed || (tick >= motor->jam[i].from && tick < motor->jam[i].until);
+    return jammed;
+}
+
+bool plant_jammed(const struct plant *plant, unsigned number)
+{
+    return jammed(&plant->motor[number - 1u], plant->now);
+}
+
+static bool at_stop(const struct plant_motor *motor, bool forward)
+{
+    return forward ? motor->position >= motor->high : motor->position <= motor->low;
+}
+
+/* What becomes of a pulse? */
+static enum plant_hold hold_of(struct plant_motor *motor, uint64_t tick, bool forward)
+{
+    bool follows = stall_follows(&motor->stall, tick, forward);
+    enum plant_hold hold = motor->no_lead             ? PLANT_NO_LEAD
+                           : jammed(motor, tick)      ? PLANT_JAMMED
+                           : at_stop(motor, forward)  ? PLANT_AT_STOP
+                           : !follows                 ? PLANT_STALLED
+                                                      : PLANT_MOVES;
+    if (hold != PLANT_MOVES)
+        stall_slips(&motor->stall);
+    return hold;
+}
+
+/* Do the first pulse of a motor. */
+static void move(struct plant *plant, unsigned at)
+{
+    struct plant_motor *motor = &plant->motor[at];
+    uint64_t tick = motor->pulse[motor->first].tick;
+    bool forward = motor->pulse[motor->first].forward;
+    motor->first = (motor->first + 1u) % PLANT_PULSES;
+    motor->pulses--;
+
+    enum plant_hold hold = hold_of(motor, tick, forward);
+    if (hold != motor->hold)
+        report_hold(plant, tick, at, hold);
+    if (motor->hold == PLANT_MOVES || hold == PLANT_MOVES)
+        motor->lost_since = 0;
+    motor->hold = hold;
+    if (hold == PLANT_MOVES) {
+        motor->position += forward ? 1 : -1;
+        switches_follow(plant, at + 1u, tick + 1u);
+    } else {
+        motor->lost++;
+        motor->lost_since++;
+    }
+}
+
+void plant_step(struct plant *plant, uint64_t tick, unsigned number, bool forward)
+{
+    unsigned at = number - 1u;
+    struct plant_motor *motor = &plant->motor[at];
+    if (!motor->present)
+        return;
+    if (motor->pulses == PLANT_PULSES)
+        move(plant, at);
+    unsigned last = (motor->first + motor->pulses++) % PLANT_PULSES;
+    motor->pulse[last].tick = tick;
+    motor->pulse[last].forward = forward;
+}
+
+bool plant_position(const struct plant *plant, unsigned number, int64_t *position)
+{
+    const struct plant_motor *motor = number >= 1 && number <= RKM04_MOTORS ? &plant->motor[number - 1u] : NULL;
+    if (!motor || !motor->present)
+        return false;
+    *position = motor->position;
+    return true;
+}
+
+/* ---- Time ----------------------------------------------------------------------------------------------------------- */
+
+/* The switch that bounces next; NULL: none does. */
+static struct plant_switch *next_bounce(struct plant *plant)
+{
+    struct plant_switch *next = NULL;
+    for (unsigned i = 0; i < plant->switches; i++)
+        if (plant->contact[i].next != RKM04_NEVER && (!next || plant->contact[i].next < next->next))
+            next = &plant->contact[i];
+    return next;
+}
+
+/* Do the first thing that can be seen before `tick`. A pulse can be seen one tick later. Returns false if there is none. */
+static bool do_next(struct plant *plant, uint64_t tick)
+{
+    struct plant_switch *contact = next_bounce(plant);
+    uint64_t first = contact ? contact->next : RKM04_NEVER;
+    unsigned at = RKM04_MOTORS;
+    for (unsigned i = 0; i < RKM04_MOTORS; i++) {
+        const struct plant_motor *motor = &plant->motor[i];
+        if (motor->pulses == 0 || motor->pulse[motor->first].tick + 1u >= first)
+            continue;
+        first = motor->pulse[motor->first].tick + 1u;
+        at = i;
+    }
+    if (first >= tick) {
+        plant->now = tick > plant->now ? tick : plant->now;
+        return false;
+    }
+    if (at < RKM04_MOTORS)
+        move(plant, at);
+    else
+        bounce(contact);
+    plant->now = first;
+    return true;
+}
+
+bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *change)
+{
+    uint8_t levels;
+    do {
+        levels = plant_contacts(plant) & plant->mask;
+    } while (levels == plant->levels && do_next(plant, tick));
+    if (levels == plant->levels)
+        return false;
+    unsigned differ = levels ^ (unsigned)plant->levels, input = 1;
+    while ((differ >> (input - 1u) & 1u) == 0)
+        input++;
+    uint8_t bit = (uint8_t)(1u << (input - 1u));
+    plant->levels ^= bit;
+    *change = (struct plant_change){plant->now, (uint8_t)input, (levels & bit) != 0};
+    return true;
+}
+
+uint64_t plant_next(const struct plant *plant)
+{
+    uint64_t next = RKM04_NEVER;
+    for (unsigned i = 0; i < plant->switches; i++)
+        if (plant->contact[i].next < next)
+            next = plant->contact[i].next;
+    return next;
+}
+
+static void shift_time(uint64_t *tick, uint64_t shift)
+{
+    if (*tick != RKM04_NEVER)
+        *tick += shift;
+}
+
+static void shift_motor(struct plant_motor *motor, uint64_t shift)
+{
+    for (unsigned i = 0; i < motor->jams; i++) {
+        shift_time(&motor->jam[i].from, shift);
+        shift_time(&motor->jam[i].until, shift);
+    }
+    for (unsigned i = 0; i < PLANT_PULSES; i++)
+        motor->pulse[i].tick += shift;
+    shift_time(&motor->stall.last, shift);
+    motor->stall.begin += shift;
+}
+
+struct plant *plant_copy(const struct plant *plant, uint64_t shift)
+{
+    struct plant *copy = malloc(sizeof *copy);
+    if (!copy)
+        return NULL;
+    *copy = *plant;
+    for (unsigned at = 0; at < RKM04_MOTORS; at++)
+        shift_motor(&copy->motor[at], shift);
+    for (unsigned i = 0; i < copy->switches; i++) {
+        shift_time(&copy->contact[i].next, shift);
+        copy->contact[i].settled += shift;
+    }
+    for (unsigned i = 0; i < copy->reports; i++)
+        copy->report[i].tick += shift;
+    copy->now += shift;
+    return copy;
+}
+
+/* ---- Hands ---------------------------------------------------------------------------------------------------------- */
+
+static struct plant_motor *motor_of(struct plant *plant, unsigned number)
+{
+    struct plant_motor *motor = plant && number >= 1 && number <= RKM04_MOTORS ? &plant->motor[number - 1u] : NULL;
+    return motor && motor->present ? motor : NULL;
+}
+
+bool plant_place(struct plant *plant, uint64_t tick, unsigned number, int64_t position)
+{
+    struct plant_motor *motor = motor_of(plant, number);
+    if (!motor || position < motor->low || position > motor->high)
+        return false;
+    motor->position = position;
+    plant->now = tick;
+    switches_follow(plant, number, tick);
+    return true;
+}
+
+bool plant_jam(struct plant *plant, unsigned number, bool held)
+{
+    struct plant_motor *motor = motor_of(plant, number);
+    if (motor)
+        motor->held = held;
+    return motor;
+}
+
+bool plant_take_lead(struct plant *plant, unsigned number, bool missing)
+{
+    struct plant_motor *motor = motor_of(plant, number);
+    if (motor)
+        motor->no_lead = missing;
+    return motor;
+}

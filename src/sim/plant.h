@@ -1,5 +1,6 @@
 /* plant.h: what the motors of a unit move: a true mechanical position a motor, which follows the pulses, end stops, and switches
  * that drive inputs. Off unless configured; it never changes what the firmware does, only what happens at its pins.
+ * docs/PLANT.md describes the files and the model.
  *
  * A plant is fed with pulses as they come (each motor's in order of time, T41: none come) and gives changes of inputs back. It
  * lives in ticks of the line. */
@@ -17,11 +18,24 @@ struct sim;
 struct sim_unit;
 struct plant;
 
+#define PLANT_POSITION_MAX INT64_C(1000000000000) /* steps, either way, of everything configured */
+
 enum plant_news {
-    PLANT_STALL,   /* steps are being lost: too fast, too steep; text says which motor and where */
+    PLANT_STALL,    /* steps are being lost: too fast, too steep; text says which motor and where */
     PLANT_END_STOP, /* the axis stands at an end stop and loses steps */
     PLANT_JAM,
-    PLANT_FREE     /* steps count again */
+    PLANT_FREE,     /* steps count again */
+    PLANT_LEAD      /* a lead of the motor is missing: it does not turn */
+};
+
+#define PLANT_TEXT_SIZE 112u
+
+/* Something that a motor of the plant does. */
+struct plant_report {
+    uint64_t tick; /* of the line: that of the pulse */
+    uint8_t motor; /* 1..4 */
+    uint8_t news;  /* enum plant_news */
+    char text[PLANT_TEXT_SIZE];
 };
 
 /* A change of an input that the plant drives. */
@@ -47,16 +61,29 @@ uint8_t plant_levels(const struct plant *plant);
 void plant_step(struct plant *plant, uint64_t tick, unsigned motor, bool forward);
 
 /* The next change with a tick before `tick`, in order of time; it counts for plant_levels() from now on. Returns false if there
- * is none. */
+ * is none: then everything before `tick` is done. */
 bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *change);
 
-/* When something changes without a pulse (the end of bouncing, a jam begins or ends); RKM04_NEVER: never. */
+/* The next thing to report of what has been done, in order of time. Returns false if there is none. */
+bool plant_take_report(struct plant *plant, struct plant_report *report);
+
+/* "stall", "end_stop", "jam", "free", "missing_lead". Never NULL. */
+const char *plant_news_name(enum plant_news news);
+
+/* When something changes without a pulse (a switch bounces); RKM04_NEVER: never. */
 uint64_t plant_next(const struct plant *plant);
 
 /* True position of motor 1..4, in steps. Motors without a plant follow their counter; then false. */
 bool plant_position(const struct plant *plant, unsigned motor, int64_t *position);
 
-/* The plant as it stands, for `state` and plant.get. New reference; NULL: memory is short. */
+/* What a hand does, at `tick`: put the carriage somewhere; hold it, or let it go; take a lead of the motor off, or put it on
+ * again. Switches follow. Returns false if there is no plant for this motor, or the position lies beyond an end stop: nothing is
+ * changed then. */
+bool plant_place(struct plant *plant, uint64_t tick, unsigned motor, int64_t position);
+bool plant_jam(struct plant *plant, unsigned motor, bool jammed);
+bool plant_take_lead(struct plant *plant, unsigned motor, bool missing);
+
+/* The plant as it stands, for `state` and plant.get. New reference; NULL: memory is short. No plant (NULL): null. */
 json_t *plant_json(const struct plant *plant);
 
 /* A copy with all times `shift` ticks later, for snapshots. NULL: memory is short. */

@@ -1,0 +1,82 @@
+/* plant_configure.c: the plants of a line from one text. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "config_tree.h"
+#include "plant_model.h"
+#include "sim.h"
+
+/* The plants of all units, before they take the place of those there are. */
+struct plants {
+    struct plant *of[SEGMENT_UNITS];
+};
+
+static void free_plants(struct plants *plants)
+{
+    for (unsigned at = 0; at < SEGMENT_UNITS; at++)
+        plant_free(plants->of[at]);
+}
+
+/* {"3": …, "5-2": …} */
+static bool read_units(struct sim *sim, const struct config_node *node, struct plants *plants)
+{
+    const char *names[SEGMENT_UNITS + 1u];
+    for (unsigned at = 0; at < sim_units(sim); at++)
+        names[at] = sim->unit[at].name;
+    names[sim_units(sim)] = NULL;
+    if (config_type(node) != CONFIG_MAP)
+        return config_error(node, "expected plants by unit, as in {3: {motors: …, switches: …}}");
+    if (!config_keys(node, names))
+        return false;
+    for (size_t i = 0; i < config_count(node); i++) {
+        unsigned at = sim_unit_named(sim, config_key(node, i)) - 1u;
+        plants->of[at] = plant_read(config_at(node, i), &sim->unit[at], sim->config.seed);
+        if (!plants->of[at])
+            return false;
+    }
+    return true;
+}
+
+static bool read_plants(struct sim *sim, const struct config_node *root, struct plants *plants)
+{
+    static const char *const names[] = {"units", "motors", "switches", NULL};
+    static const char *const only[] = {"units", NULL};
+    const struct config_node *units = config_type(root) == CONFIG_MAP ? config_get(root, "units") : NULL;
+    if (config_type(root) != CONFIG_MAP)
+        return config_error(root, "expected a plant: motors and switches");
+    if (units)
+        return config_keys(root, only) && read_units(sim, units, plants);
+    if (!config_keys(root, names))
+        return false;
+    if (sim_units(sim) != 1)
+        return config_error(root, "expected units: there are %u on the line", sim_units(sim));
+    plants->of[0] = plant_read(root, &sim->unit[0], sim->config.seed);
+    return plants->of[0] != NULL;
+}
+
+bool plant_configure(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors)
+{
+    struct plants plants = {{NULL}};
+    char *copy = NULL;
+    if (text) {
+        struct config_tree *tree = config_read(name, text, length, errors);
+        bool well = tree && read_plants(sim, config_root(tree), &plants);
+        config_free(tree);
+        copy = well ? strndup(text, length) : NULL;
+        if (well && !copy)
+            fprintf(errors, "%s: error: memory is short\n", name);
+        if (!copy) {
+            free_plants(&plants);
+            return false;
+        }
+    }
+    free(sim->plant_text);
+    sim->plant_text = copy;
+    for (unsigned at = 0; at < sim_units(sim); at++) {
+        plant_free(sim->unit[at].plant);
+        sim->unit[at].plant = plants.of[at];
+    }
+    for (unsigned number = 1; number <= sim_units(sim); number++)
+        sim_look_at_inputs(sim, number);
+    return true;
+}

@@ -1,0 +1,110 @@
+/* plant_model.h: the inside of a plant: plant_read.c makes it of a text, plant.c runs it, plant_stall.c knows what a rotor can
+ * follow. Plain data without pointers: a copy is a copy. */
+#ifndef RKM04_SIM_PLANT_MODEL_H
+#define RKM04_SIM_PLANT_MODEL_H
+
+#include "plant.h"
+
+#define PLANT_SWITCHES 32u
+#define PLANT_JAMS 16u
+#define PLANT_POINTS 16u  /* of a stall curve */
+#define PLANT_PULSES 256u /* of a motor that may wait: there are never more than those of two slots */
+#define PLANT_REPORTS 64u
+#define PLANT_SPAN 10000u /* ticks over which speed is measured: a tick of rounding is then 1/10 000 of it */
+
+/* Why steps do not count. */
+enum plant_hold { PLANT_MOVES, PLANT_AT_STOP, PLANT_JAMMED, PLANT_STALLED, PLANT_NO_LEAD };
+
+struct plant_window {
+    uint64_t from, until; /* from <= tick < until; RKM04_NEVER: no end */
+};
+
+/* The acceleration that the motor can give at a speed. */
+struct plant_point {
+    uint32_t speed, acceleration;
+};
+
+struct plant_stall {
+    uint32_t start;  /* steps/s that it follows from standing, and in any change up to there */
+    unsigned points; /* 0: it never stalls */
+    struct plant_point point[PLANT_POINTS]; /* speeds increase; beyond the last one it stalls */
+
+    uint64_t last;   /* tick of the last pulse; RKM04_NEVER: none yet */
+    bool forward;    /* its direction */
+    bool out_of_step;
+    uint32_t run;    /* intervals since it stood or went no faster than `start` */
+    uint64_t begin;  /* tick at which the present span begins */
+    uint32_t steps;  /* in it */
+    uint64_t before; /* ticks of the span before; 0: none */
+    int64_t speed;   /* in that, 1/1000 steps/s */
+};
+
+struct plant_motor {
+    bool present;
+    int64_t low, high; /* end stops; INT64_MIN, INT64_MAX: none */
+    int64_t turn;      /* steps of a turn, switches look at the angle; 0: no turntable */
+    unsigned jams;
+    struct plant_window jam[PLANT_JAMS];
+    bool held, no_lead; /* by hand, or configured */
+    struct plant_stall stall;
+
+    int64_t position;
+    uint64_t lost;       /* steps, ever */
+    uint64_t lost_since; /* of these, since they began to be lost */
+    enum plant_hold hold;
+
+    /* Pulses that have not been done, in a ring. */
+    unsigned first, pulses;
+    struct {
+        uint64_t tick;
+        bool forward;
+    } pulse[PLANT_PULSES];
+};
+
+struct plant_switch {
+    uint8_t input, motor; /* 1..8, 1..4 */
+    bool normally_closed; /* the input is 0 while it is actuated */
+    int64_t low, high;    /* actuated from low to high; with `turn` also the other way round */
+    int64_t hysteresis;   /* steps beyond that until it lets go */
+    uint64_t bounce;      /* ticks */
+
+    bool on;              /* actuated */
+    bool contact;         /* what it says: differs from `on` while it bounces */
+    uint64_t settled;     /* tick at which it no longer bounces */
+    uint64_t next;        /* tick of the next bounce; RKM04_NEVER: it does not */
+    uint64_t random;
+};
+
+struct plant {
+    struct plant_motor motor[RKM04_MOTORS];
+    unsigned switches;
+    struct plant_switch contact[PLANT_SWITCHES];
+    uint8_t mask, levels; /* as told */
+    uint64_t now;         /* everything before it is done */
+    unsigned reports;
+    struct plant_report report[PLANT_REPORTS];
+};
+
+/* Read the plant of one unit from a map. `seed` chooses how switches bounce. Returns NULL: errors have been reported. */
+struct config_node;
+struct plant *plant_read(const struct config_node *node, struct sim_unit *unit, uint64_t seed);
+
+/* Set a switch to where its motor stands, without bouncing. */
+void plant_switch_begin(const struct plant *plant, struct plant_switch *contact);
+
+/* A new plant without motors. NULL: memory is short. */
+struct plant *plant_new(void);
+
+/* All inputs as its switches have them. */
+uint8_t plant_contacts(const struct plant *plant);
+
+/* Is motor 1..4 jammed now? */
+bool plant_jammed(const struct plant *plant, unsigned motor);
+
+/* A pulse comes: can the rotor follow it? */
+bool stall_follows(struct plant_stall *stall, uint64_t tick, bool forward);
+
+/* It could not, for another reason: it follows again when pulses come slowly enough. */
+void stall_slips(struct plant_stall *stall);
+
+#endif

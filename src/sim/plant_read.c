@@ -1,0 +1,282 @@
+/* plant_read.c: plants as they stand in a file: docs/PLANT.md. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "config_tree.h"
+#include "plant_model.h"
+#include "sim.h"
+
+#define SPEED_MAX 1000000
+#define ACCELERATION_MAX 1000000000
+#define BOUNCE_MAX 1000000u /* ticks */
+
+static bool is_map(const struct config_node *node, const char *what)
+{
+    return config_type(node) == CONFIG_MAP || config_error(node, "expected %s", what);
+}
+
+/* A key that may be left out: then `value` stays what it is. */
+static bool read_position(const struct config_node *node, const char *key, const char *what, int64_t *value)
+{
+    const struct config_node *given = config_get(node, key);
+    return !given || config_integer(given, what, -PLANT_POSITION_MAX, PLANT_POSITION_MAX, value);
+}
+
+static bool read_time(const struct config_node *node, const char *key, const char *what, uint64_t *ticks)
+{
+    const struct config_node *given = config_get(node, key);
+    return !given || config_time(given, what, ticks);
+}
+
+static bool read_flag(const struct config_node *node, const char *key, const char *what, bool *value)
+{
+    const struct config_node *given = config_get(node, key);
+    return !given || config_flag(given, what, value);
+}
+
+/* ---- Motors --------------------------------------------------------------------------------------------------------- */
+
+static bool read_stops(const struct config_node *motor, struct plant_motor *to)
+{
+    static const char *const names[] = {"low", "high", NULL};
+    const struct config_node *node = config_get(motor, "stops");
+    if (!node)
+        return true;
+    if (!is_map(node, "the end stops, as in {low: -50, high: 20000}") || !config_keys(node, names) ||
+        !read_position(node, "low", "the lower end stop", &to->low) ||
+        !read_position(node, "high", "the upper end stop", &to->high))
+        return false;
+    return to->low <= to->high || config_error(node, "expected a lower end stop that is not above the upper one");
+}
+
+static bool read_jam(const struct config_node *node, struct plant_motor *to)
+{
+    static const char *const names[] = {"from", "to", NULL};
+    struct plant_window window = {0, RKM04_NEVER};
+    if (!is_map(node, "a jam, as in {from: 2s, to: 2500ms}") || !config_keys(node, names) ||
+        !read_time(node, "from", "the beginning of the jam", &window.from) ||
+        !read_time(node, "to", "the end of the jam", &window.until))
+        return false;
+    if (window.from >= window.until)
+        return config_error(node, "expected a jam that ends after it begins");
+    if (to->jams == PLANT_JAMS)
+        return config_error(node, "expected at most %u jams of a motor", PLANT_JAMS);
+    to->jam[to->jams++] = window;
+    return true;
+}
+
+/* One, or a list of them. */
+static bool read_jams(const struct config_node *motor, struct plant_motor *to)
+{
+    const struct config_node *node = config_get(motor, "jam");
+    if (!node || config_type(node) != CONFIG_LIST)
+        return !node || read_jam(node, to);
+    for (size_t i = 0; i < config_count(node); i++)
+        if (!read_jam(config_at(node, i), to))
+            return false;
+    return true;
+}
+
+static bool read_point(const struct config_node *node, struct plant_stall *to)
+{
+    static const char *const names[] = {"speed", "acceleration", NULL};
+    const struct config_node *speed = config_get(node, "speed"), *acceleration = config_get(node, "acceleration");
+    int64_t v, a;
+    if (!is_map(node, "a point, as in {speed: 1000, acceleration: 20000}") || !config_keys(node, names))
+        return false;
+    if (!speed || !acceleration)
+        return config_error(node, "expected speed and acceleration, as in {speed: 1000, acceleration: 20000}");
+    if (!config_integer(speed, "a speed in steps/s", 1, SPEED_MAX, &v) ||
+        !config_integer(acceleration, "an acceleration in steps/s^2", 0, ACCELERATION_MAX, &a))
+        return false;
+    if (to->points == PLANT_POINTS)
+        return config_error(node, "expected at most %u points", PLANT_POINTS);
+    if (to->points > 0 && v <= (int64_t)to->point[to->points - 1u].speed)
+        return config_error(speed, "expected points with speeds that increase");
+    to->point[to->points++] = (struct plant_point){(uint32_t)v, (uint32_t)a};
+    return true;
+}
+
+static bool read_stall(const struct config_node *motor, struct plant_stall *to)
+{
+    static const char *const names[] = {"start", "limit", NULL};
+    const struct config_node *node = config_get(motor, "stall");
+    int64_t start;
+    if (!node)
+        return true;
+    if (!is_map(node, "what it can follow, as in {start: 500, limit: [{speed: 4000, acceleration: 20000}]}") ||
+        !config_keys(node, names))
+        return false;
+    const struct config_node *limit = config_get(node, "limit"), *first = config_get(node, "start");
+    if (!first || !limit)
+        return config_error(node, "expected start and limit, as in {start: 500, limit: [{speed: 4000, acceleration: 20000}]}");
+    if (!config_integer(first, "the highest speed to start with, in steps/s", 1, SPEED_MAX, &start))
+        return false;
+    to->start = (uint32_t)start;
+    if (config_type(limit) != CONFIG_LIST || config_count(limit) == 0)
+        return config_error(limit, "expected a list of points, as in [{speed: 4000, acceleration: 20000}]");
+    for (size_t i = 0; i < config_count(limit); i++)
+        if (!read_point(config_at(limit, i), to))
+            return false;
+    return true;
+}
+
+/* Where it stands: the counter and the offset. */
+static bool read_offset(const struct config_node *node, unsigned number, struct sim_unit *unit, struct plant_motor *to)
+{
+    struct rkm04_motor_state state;
+    int64_t offset = 0;
+    if (!read_position(node, "offset", "the offset", &offset) || !rkm04_motor_state(sim_core(unit->sim, unit->number), number, &state))
+        return false;
+    to->position = state.position + offset;
+    if (to->position >= to->low && to->position <= to->high)
+        return true;
+    return config_error(node, "expected a motor between its end stops, found it at %lld (counter %lld, offset %lld)",
+                        (long long)to->position, (long long)state.position, (long long)offset);
+}
+
+static bool read_motor(const struct config_node *node, unsigned number, struct sim_unit *unit, struct plant *plant)
+{
+    static const char *const names[] = {"offset", "stops", "turn", "stall", "jam", "missing_lead", NULL};
+    struct plant_motor *to = &plant->motor[number - 1u];
+    const struct config_node *turn = config_get(node, "turn");
+    to->present = true;
+    if (config_type(node) == CONFIG_TEXT && *config_text(node) == '\0')
+        return read_offset(node, number, unit, to); /* `1:` and nothing behind it */
+    if (!is_map(node, "a motor, as in {offset: 0}") || !config_keys(node, names))
+        return false;
+    if (turn && !config_integer(turn, "the steps of a turn", 2, PLANT_POSITION_MAX, &to->turn))
+        return false;
+    if (turn && config_get(node, "stops"))
+        return config_error(turn, "expected turn or stops: a turntable has no end");
+    return read_stops(node, to) && read_jams(node, to) && read_stall(node, &to->stall) &&
+           read_flag(node, "missing_lead", "whether a lead is missing", &to->no_lead) && read_offset(node, number, unit, to);
+}
+
+static bool read_motors(const struct config_node *node, struct sim_unit *unit, struct plant *plant)
+{
+    static const char *const numbers[] = {"1", "2", "3", "4", NULL};
+    if (!node)
+        return true;
+    if (!is_map(node, "motors by number, as in {1: {offset: 0}}") || !config_keys(node, numbers))
+        return false;
+    for (size_t i = 0; i < config_count(node); i++)
+        if (!read_motor(config_at(node, i), (unsigned)(config_key(node, i)[0] - '0'), unit, plant))
+            return false;
+    return true;
+}
+
+/* ---- Switches ------------------------------------------------------------------------------------------------------- */
+
+static bool read_between(const struct config_node *node, const struct plant_motor *motor, struct plant_switch *to)
+{
+    if (config_type(node) != CONFIG_LIST || config_count(node) != 2)
+        return config_error(node, "expected two positions, as in [100, 120]");
+    if (!config_integer(config_at(node, 0), "a position", -PLANT_POSITION_MAX, PLANT_POSITION_MAX, &to->low) ||
+        !config_integer(config_at(node, 1), "a position", -PLANT_POSITION_MAX, PLANT_POSITION_MAX, &to->high))
+        return false;
+    return to->low <= to->high || motor->turn > 0 || config_error(node, "expected the lower position first");
+}
+
+/* Where it is actuated: one of three. */
+static bool read_zone(const struct config_node *node, const struct plant_motor *motor, struct plant_switch *to)
+{
+    const struct config_node *least = config_get(node, "at_least"), *most = config_get(node, "at_most");
+    const struct config_node *between = config_get(node, "between");
+    if ((least != NULL) + (most != NULL) + (between != NULL) != 1)
+        return config_error(node, "expected one of at_least, at_most and between: [low, high]");
+    to->low = motor->turn > 0 ? 0 : INT64_MIN;
+    to->high = motor->turn > 0 ? motor->turn - 1 : INT64_MAX;
+    if (between ? !read_between(between, motor, to)
+                : !read_position(node, "at_least", "a position", &to->low) || !read_position(node, "at_most", "a position", &to->high))
+        return false;
+    bool angles = to->low >= 0 && to->low < motor->turn && to->high >= 0 && to->high < motor->turn;
+    return motor->turn == 0 || angles ||
+           config_error(node, "expected positions of a turntable, 0..%lld", (long long)motor->turn - 1);
+}
+
+static bool read_hysteresis(const struct config_node *node, const struct plant_motor *motor, struct plant_switch *to)
+{
+    if (!read_position(node, "hysteresis", "the hysteresis", &to->hysteresis))
+        return false;
+    if (to->hysteresis < 0)
+        return config_error(node, "expected a hysteresis of 0 or more steps");
+    int64_t width = motor->turn > 0 ? (to->high - to->low + motor->turn) % motor->turn + 1 : 0;
+    return motor->turn == 0 || width + 2 * to->hysteresis < motor->turn ||
+           config_error(node, "expected a switch that lets go again: with its hysteresis it is actuated all around");
+}
+
+static bool read_switch(const struct config_node *node, struct plant *plant, struct plant_switch *to)
+{
+    static const char *const names[] = {"input",      "motor",  "at_least",        "at_most", "between",
+                                        "hysteresis", "bounce", "normally_closed", NULL};
+    if (!is_map(node, "a switch, as in {input: 01, motor: 1, at_most: 0}") || !config_keys(node, names))
+        return false;
+    const struct config_node *input = config_get(node, "input"), *motor = config_get(node, "motor");
+    int64_t in, number;
+    if (!input || !motor)
+        return config_error(node, "expected input and motor, as in {input: 01, motor: 1, at_most: 0}");
+    if (!config_integer(input, "an input", 1, 8, &in) || !config_integer(motor, "a motor", 1, RKM04_MOTORS, &number))
+        return false;
+    struct plant_motor *moves = &plant->motor[number - 1];
+    to->input = (uint8_t)in;
+    to->motor = (uint8_t)number;
+    if (!read_zone(node, moves, to) || !read_hysteresis(node, moves, to) ||
+        !read_time(node, "bounce", "the time that it bounces", &to->bounce) ||
+        !read_flag(node, "normally_closed", "whether it opens when it is actuated", &to->normally_closed))
+        return false;
+    return to->bounce <= BOUNCE_MAX || config_error(node, "expected a switch that bounces for at most 1s");
+}
+
+/* Switches may name a motor that nothing else is said about. */
+static bool add_motor(const struct config_node *node, struct sim_unit *unit, struct plant *plant, unsigned number)
+{
+    struct plant_motor *motor = &plant->motor[number - 1u];
+    bool well = motor->present || read_offset(node, number, unit, motor);
+    motor->present = true;
+    return well;
+}
+
+static bool read_switches(const struct config_node *node, struct sim_unit *unit, struct plant *plant, uint64_t seed)
+{
+    if (!node)
+        return true;
+    if (config_type(node) != CONFIG_LIST)
+        return config_error(node, "expected a list of switches");
+    for (size_t i = 0; i < config_count(node); i++) {
+        const struct config_node *item = config_at(node, i);
+        if (plant->switches == PLANT_SWITCHES)
+            return config_error(item, "expected at most %u switches", PLANT_SWITCHES);
+        struct plant_switch *to = &plant->contact[plant->switches];
+        if (!read_switch(item, plant, to))
+            return false;
+        to->random = ((seed ^ plant->switches) + 1u) * UINT64_C(0x9E3779B97F4A7C15) | 1u; /* not 0 */
+        plant->switches++;
+        plant->mask |= (uint8_t)(1u << (to->input - 1u));
+        if (!add_motor(item, unit, plant, to->motor))
+            return false;
+        plant_switch_begin(plant, to);
+    }
+    return true;
+}
+
+struct plant *plant_read(const struct config_node *node, struct sim_unit *unit, uint64_t seed)
+{
+    static const char *const names[] = {"motors", "switches", NULL};
+    struct plant *plant = NULL;
+    if (!is_map(node, "motors and switches") || !config_keys(node, names))
+        return NULL;
+    plant = plant_new();
+    if (!plant) {
+        config_error(node, "memory is short");
+        return NULL;
+    }
+    plant->now = sim_now(unit->sim);
+    if (!read_motors(config_get(node, "motors"), unit, plant) ||
+        !read_switches(config_get(node, "switches"), unit, plant, seed)) {
+        plant_free(plant);
+        return NULL;
+    }
+    plant->levels = plant_contacts(plant);
+    return plant;
+}

@@ -1,0 +1,104 @@
+/* plant_stall.c: which pulses a rotor can follow.
+ *
+ * Up to the speed `start` it follows anything. Above it, its speed may change only as fast as the motor has torque for; if it is
+ * asked for more, it falls out of step and stands until pulses come at no more than `start` again. Speeds are measured from
+ * the pulses, whose ticks are rounded up: a motion is given the benefit of that, so one exactly at the limit never stalls. */
+#include "plant_model.h"
+
+#define MICRO UINT64_C(1000000)  /* ticks in a second */
+#define MILLI INT64_C(1000)      /* of struct plant_stall.speed */
+
+/* The acceleration that there is torque for at `speed`, in steps/s². */
+static int64_t limit_at(const struct plant_stall *stall, int64_t speed)
+{
+    const struct plant_point *point = stall->point;
+    unsigned at = 0;
+    while (at < stall->points && (int64_t)point[at].speed < speed)
+        at++;
+    if (at == 0)
+        return point[0].acceleration;
+    if (at == stall->points)
+        return point[at - 1u].acceleration;
+    int64_t width = (int64_t)point[at].speed - point[at - 1u].speed, into = speed - point[at - 1u].speed;
+    int64_t rise = (int64_t)point[at].acceleration - point[at - 1u].acceleration;
+    return point[at - 1u].acceleration + rise * into / width;
+}
+
+static int64_t larger(int64_t a, int64_t b)
+{
+    return a > b ? a : b;
+}
+
+static void begin_span(struct plant_stall *stall, uint64_t tick)
+{
+    stall->begin = tick;
+    stall->steps = 0;
+}
+
+/* It stands, or goes so slowly that it follows anything. */
+static void calm(struct plant_stall *stall, uint64_t tick)
+{
+    stall->out_of_step = false;
+    stall->run = 0;
+    stall->before = 0;
+    begin_span(stall, tick);
+}
+
+/* In the first span since it stood: v² <= start² + 2·a·k after k steps. */
+static bool starts_too_fast(const struct plant_stall *stall, int64_t speed)
+{
+    int64_t start = stall->start, limit = larger(limit_at(stall, start), limit_at(stall, speed));
+    return stall->before == 0 && speed * speed > start * start + 2 * limit * ((int64_t)stall->run + 1);
+}
+
+/* A span is over: did the speed change too fast since the one before? */
+static bool changes_too_fast(const struct plant_stall *stall, int64_t ticks, int64_t speed)
+{
+    int64_t before = (int64_t)stall->before, change = speed > stall->speed ? speed - stall->speed : stall->speed - speed;
+    if (before == 0)
+        return false;
+    int64_t limit = larger(limit_at(stall, speed / MILLI), limit_at(stall, stall->speed / MILLI));
+    change -= speed / ticks + stall->speed / before + 2; /* a tick at the end of each */
+    return change * 2 * (int64_t)MICRO / MILLI > limit * (before + ticks);
+}
+
+static bool span_too_much(struct plant_stall *stall, uint64_t tick)
+{
+    int64_t ticks = (int64_t)(tick - stall->begin);
+    if (ticks < (int64_t)PLANT_SPAN)
+        return false;
+    int64_t speed = (int64_t)(stall->steps * MICRO) * MILLI / ticks;
+    int64_t top = (int64_t)stall->point[stall->points - 1u].speed * MILLI;
+    bool too_much = speed - speed / ticks - 1 > top || changes_too_fast(stall, ticks, speed);
+    stall->before = (uint64_t)ticks;
+    stall->speed = speed;
+    begin_span(stall, tick);
+    return too_much;
+}
+
+bool stall_follows(struct plant_stall *stall, uint64_t tick, bool forward)
+{
+    if (stall->points == 0)
+        return true;
+    uint64_t interval = stall->last == RKM04_NEVER ? MICRO : tick - stall->last;
+    bool slow = stall->last == RKM04_NEVER || forward != stall->forward || interval >= MICRO ||
+                interval * stall->start >= MICRO;
+    stall->last = tick;
+    stall->forward = forward;
+    if (slow) {
+        calm(stall, tick);
+        return true;
+    }
+    stall->run++;
+    stall->steps++;
+    int64_t speed = (int64_t)(MICRO / (interval + 1)); /* at least */
+    bool too_fast = speed > (int64_t)stall->point[stall->points - 1u].speed || starts_too_fast(stall, speed);
+    if (span_too_much(stall, tick) || too_fast)
+        stall->out_of_step = true;
+    return !stall->out_of_step;
+}
+
+void stall_slips(struct plant_stall *stall)
+{
+    stall->out_of_step = stall->points > 0;
+}
