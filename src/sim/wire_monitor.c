@@ -162,7 +162,7 @@ static void report_lost(struct sim *sim, const struct segment_byte *byte, bool a
         .collided = (byte->senders & (byte->senders - 1u)) != 0 ? byte->senders : 0,
         .answer = answer,
     };
-    report(sim, &ear, byte->tick, raw == 0 ? WIRE_BREAK : WIRE_FRAMING_ERROR);
+    report(sim, &ear, byte->tick, raw == 0 && ear.collided == 0 ? WIRE_BREAK : WIRE_FRAMING_ERROR);
 }
 
 /* ---- Framings ------------------------------------------------------------------------------------------------------- */

@@ -65,8 +65,8 @@ static void put_padding(struct wire_text *out, size_t length)
 
 static void put_raw(struct wire_text *out, const void *bytes, size_t length)
 {
-    if (length > out->room - out->length)
-        return; /* cannot be: WIRE_ENTRY_MAX is more than everything together */
+    if (length == 0 || length > out->room - out->length)
+        return; /* too long cannot be: WIRE_ENTRY_MAX is more than everything together */
     memcpy(out->text + out->length, bytes, length);
     out->length += length;
 }
