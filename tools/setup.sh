@@ -3,7 +3,7 @@
 #   setup_packages run|test    install the Debian packages that are missing, or say which ones are needed elsewhere
 
 # Needed to build and run the emulator and its client.
-run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libyaml-dev)
+run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libyaml-dev libncurses-dev)
 # Needed on top of that by the tests.
 test_packages=(check libgmp-dev socat procps dpkg-dev file gcc-arm-none-eabi libnewlib-arm-none-eabi python3-serial gensio-bin tshark sigrok-cli gtkwave)
 
@@ -31,7 +31,7 @@ missing_tools() {
     for tool in cc make cmake pkg-config; do
         command -v "$tool" >/dev/null || echo "$tool"
     done
-    for tool in libuv jansson yaml-0.1 $([[ $1 == test ]] && echo check gmp); do
+    for tool in libuv jansson yaml-0.1 ncursesw $([[ $1 == test ]] && echo check gmp); do
         pkg-config --exists "$tool" 2>/dev/null || echo "library $tool (pkg-config)"
     done
     if [[ $1 == test ]]; then

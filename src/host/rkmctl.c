@@ -1,84 +1,71 @@
-/* rkmctl: the client. Sends one request to a unit, real or virtual, and shows the answer. This file is its command line. */
+/* rkmctl: the client. Sends one request to a unit, real or virtual, and shows the answer; or asks the emulator itself, on its
+ * control socket, what no unit can be asked. This file is its command line. */
 #include <argp.h>
 #include <err.h>
-#include <errno.h>
 #include <signal.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <rkm04/limits.h>
 
-#include "client_answer.h"
+#include "client_control.h"
 #include "client_link.h"
-#include "client_port.h"
-#include "client_send.h"
+#include "client_request.h"
+#include "client_usage.h"
 
 #define TIMEOUT_MS 1000
 #define TIMEOUT_MS_MAX 3600000
 #define MESSAGE_MAX_LOWEST 64
+#define LINE_NUMBER_MAX 255
 
 const char *argp_program_version = "rkmctl " RKM04_VERSION;
 
-/* ---- Sub-commands ------------------------------------------------------------------------------------------------- */
-
-enum operand { NO_OPERAND, TEXT_OPERAND, FILE_OPERAND, HEX_OPERAND };
-enum motors { NO_MOTOR, ANY_MOTOR, ONE_MOTOR };
-
-static const struct subcommand {
-    const char *name;
-    enum operand operand;
-    enum motors motors;
-    uint8_t number; /* of the message, for those without operand */
-    enum exit_status (*show)(const struct client_answer *answer);
-} subcommands[] = {
-    {"version", NO_OPERAND, NO_MOTOR, 1, client_show_version},
-    {"set", TEXT_OPERAND, ANY_MOTOR, 2, NULL},
-    {"send", FILE_OPERAND, ANY_MOTOR, 2, NULL},
-    {"store", NO_OPERAND, ANY_MOTOR, 3, client_show_store},
-    {"position", NO_OPERAND, ANY_MOTOR, 4, client_show_position},
-    {"command", NO_OPERAND, ONE_MOTOR, 5, client_show_command},
-    {"table", NO_OPERAND, ONE_MOTOR, 6, client_show_table},
-    {"progress", NO_OPERAND, ONE_MOTOR, 7, client_show_progress},
-    {"raw", HEX_OPERAND, NO_MOTOR, 0, client_show_raw},
-};
-
-#define SUBCOMMAND_LIST "version, set, send, store, position, command, table, progress or raw"
-
 struct options {
-    const char *port;
-    const struct rkm04_framing *framing;
-    unsigned node, motor, timeout_ms, message_max;
-    bool json;
-    const struct subcommand *subcommand;
-    const char *operand; /* TEXT or FILE; NULL: not given yet */
-    uint8_t raw[CLIENT_MESSAGE_MAX];
-    size_t raw_length;
+    struct client_request request;
+    struct client_job job;
+    const char *node;      /* as it was given; NULL: not given */
+    bool timed, json;
+    const char *command;   /* NULL: none */
+    const char **words;    /* behind it */
+    size_t count;
 };
 
-/* ---- Command line ------------------------------------------------------------------------------------------------- */
-
-enum { KEY_FRAMING = 0x100, KEY_TIMEOUT, KEY_MESSAGE_MAX };
+enum { KEY_FRAMING = 0x100, KEY_TIMEOUT, KEY_MESSAGE_MAX, KEY_LINE, KEY_LIMIT, KEY_ONCE };
 
 static const struct argp_option option_table[] = {
+    {NULL, 0, NULL, 0, "A unit on the line:", 1},
     {"port", 'p', "PORT", 0, "Serial device, pseudo terminal, or tcp:HOST:PORT", 0},
     {"node", 'n', "NODE", 0, "Address of the unit, 1 to 16; 0: all units, which do not answer (default 1)", 0},
     {"motor", 'm', "MOTOR", 0, "Motor 1 to 4; 0: all four (default 1)", 0},
     {"framing", KEY_FRAMING, "NAME", 0, "hdlc or plain, as the unit has it (default hdlc)", 0},
-    {"timeout", KEY_TIMEOUT, "MS", 0, "How long to wait for an answer, 1 to 3600000 ms (default 1000)", 0},
     {"message-max", KEY_MESSAGE_MAX, "BYTES", 0, "Longest message the unit takes, 64 to 9216 (default 9216)", 0},
+    {NULL, 0, NULL, 0, "The emulator:", 2},
+    {"control", 'c', "PATH", 0,
+     "Its control socket (default: RKM04_CONTROL of the environment, else that of an `rkm04 serve' without --link)", 0},
+    {"unit", 'u', "UNIT", 0, "The unit, as in 3 or, the second one with that address, 3-2; not needed where there is one", 0},
+    {"line", KEY_LINE, "N", 0, "The line of an emulator with several, 0 to 255 (default 0)", 0},
+    {"limit", KEY_LIMIT, "TIME", 0, "How long to wait, advance or listen, in virtual time, as in 10s, 250ms or a number of us", 0},
+    {"once", KEY_ONCE, NULL, 0, "watch: print one picture as text", 0},
+    {NULL, 0, NULL, 0, "Both:", 3},
+    {"timeout", KEY_TIMEOUT, "MS", 0,
+     "How long to wait for an answer, 1 to 3600000 ms (default 1000; emulator: 10000, and for wait, advance and call without end)",
+     0},
     {"json", 'j', NULL, 0, "Print the answer as JSON", 0},
     {0},
 };
 
-static const char arguments[] = "version|store|position|command|table|progress\nset TEXT\nsend FILE\nraw HEX";
+static const char arguments[] =
+    "version|store|position|command|table|progress\nset TEXT\nsend FILE\nraw HEX\n"
+    "state|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
+    "snapshot|restore NAME|file=PATH\npower on|off\nswitch NODE [reset]\nclock [CLOCK]\nfault [inject KIND|clear] [...]\n"
+    "plant [set FILE|none]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]";
 
 static const char doc[] =
-    "Send one request to an RKM04, real or virtual, and show the answer."
+    "Send one request to an RKM04, real or virtual, and show the answer; or look into an emulator, `rkm04 serve', and drive what is "
+    "around its units."
     "\v"
-    "Commands:\n"
+    "Commands to a unit, with --port:\n"
     "  version      the unit's version text\n"
     "  set TEXT     send a program text in one message; it begins to run\n"
     "  send FILE    check and send a program file, - is standard input\n"
@@ -89,25 +76,46 @@ static const char doc[] =
     "  progress     steps done in the present motion; place of the present command\n"
     "  raw HEX      send these bytes as a message, show those of the answer\n"
     "\n"
+    "Commands to an emulator, with --control:\n"
+    "  state        everything about the unit, or all units\n"
+    "  watch        its front panel, live\n"
+    "  di           the inputs; with 3=1 5=0 set them\n"
+    "  wait         until a condition holds; exit status 3 if it does not within --limit\n"
+    "  advance      a stepped clock by a time, or until a condition holds\n"
+    "  events       what happens, a line each: kinds, motor=N, count=N\n"
+    "  snapshot, restore   keep everything under a NAME or in a file; go back to it\n"
+    "  reset, power, switch   power off and on; the power switch; the address switch S1\n"
+    "  fault        list faults on demand; inject KIND NAME=VALUE...; clear [ID]\n"
+    "  plant        show what the motors move; set FILE; none\n"
+    "  clock        show or set it: real, xN, max, stepped\n"
+    "  trace        start FILE (.vcd, .csv, .jsonl, .log, .pcapng), stop [NUMBER]\n"
+    "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"
+    "  shutdown     end the emulator\n"
+    "\n"
+    "Conditions: m1.position>=5000, m1.true<0, m1.steps>9, m1.state=idle, m1.idle, m1.led=blink, m1.fault!=none, idle, powered=1, "
+    "do3=1, di08=0, var80=1, message=4, master.message, unit.message, dropped, t>=2.5s; u3. in front: of unit 3. Several have to "
+    "hold together, of those with `or' between them one is enough.\n"
+    "\n"
     "Examples:\n"
     "  rkmctl -p /dev/ttyUSB0 version\n"
     "  rkmctl -p $XDG_RUNTIME_DIR/rkm04/bus0 set '\\ C100 S100 V1000 A2000 F5000 R'\n"
     "  rkmctl -p tcp:localhost:4001 -n 3 -m 2 send drill.rks\n"
     "  rkmctl -p /dev/ttyUSB0 -m 0 --json position\n"
     "  rkmctl -p /dev/ttyUSB0 raw 04 31\n"
+    "  rkmctl watch\n"
+    "  rkmctl di 3=1 && rkmctl wait 'm1.position>=5000' --limit 10s\n"
+    "  rkmctl -c bus.control -u 3 fault inject drop direction=to_master count=1\n"
     "\n"
-    "Exit status: 0 well; 1 failure (the text was refused, the flash not written, the port cannot be used); 2 wrong usage; "
-    "3 no answer in time.";
+    "Exit status: 0 well; 1 failure (refused, flash not written, port or emulator cannot be reached); 2 wrong usage; 3 no answer, "
+    "or the condition did not hold, in time.";
 
 /* A decimal number low..high; anything else is a usage error. */
-static unsigned take_number(const struct argp_state *state, const char *what, const char *text, unsigned low, unsigned high)
+static unsigned take_number(const char *what, const char *text, unsigned low, unsigned high)
 {
-    char *end;
-    errno = 0;
-    unsigned long number = strtoul(text, &end, 10);
-    if (text[strspn(text, "0123456789")] != '\0' || end == text || errno != 0 || number < low || number > high)
-        argp_error(state, "%s: expected a number %u to %u, found '%s'", what, low, high, text);
-    return (unsigned)number;
+    unsigned number = 0;
+    if (!client_usage_number(what, text, low, high, &number))
+        exit(STATUS_USAGE);
+    return number;
 }
 
 static const struct rkm04_framing *take_framing(const struct argp_state *state, const char *name)
@@ -118,170 +126,114 @@ static const struct rkm04_framing *take_framing(const struct argp_state *state, 
     return framing;
 }
 
-static const struct subcommand *take_subcommand(const struct argp_state *state, const char *name)
-{
-    for (size_t i = 0; i < sizeof subcommands / sizeof subcommands[0]; i++) {
-        if (strcmp(subcommands[i].name, name) == 0)
-            return &subcommands[i];
-    }
-    argp_error(state, "expected " SUBCOMMAND_LIST ", found '%s'", name);
-    return NULL;
-}
-
-static int hex_digit(char c)
-{
-    return '0' <= c && c <= '9' ? c - '0' : 'a' <= c && c <= 'f' ? c - 'a' + 10 : 'A' <= c && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
-/* Bytes of two digits each, blanks between them. */
-static void take_hex(const struct argp_state *state, struct options *options, const char *text)
-{
-    for (; *text != '\0'; text++) {
-        if (*text == ' ')
-            continue;
-        int high = hex_digit(text[0]), low = high >= 0 ? hex_digit(text[1]) : -1;
-        if (low < 0)
-            argp_error(state, "raw: expected bytes of two hexadecimal digits, like 04 31, found '%s'", text);
-        if (options->raw_length == sizeof options->raw)
-            argp_error(state, "raw: a message has up to %zu bytes", sizeof options->raw);
-        options->raw[options->raw_length++] = (uint8_t)(high << 4 | low);
-        text++;
-    }
-}
-
-static void take_argument(const struct argp_state *state, struct options *options, const char *text)
-{
-    if (options->subcommand == NULL)
-        options->subcommand = take_subcommand(state, text);
-    else if (options->subcommand->operand == HEX_OPERAND)
-        take_hex(state, options, text);
-    else if (options->subcommand->operand == NO_OPERAND)
-        argp_error(state, "%s takes no argument, found '%s'", options->subcommand->name, text);
-    else if (options->operand != NULL)
-        argp_error(state, "%s takes one argument: put it in quotes", options->subcommand->name);
-    else
-        options->operand = text;
-}
-
-static void check(const struct argp_state *state, const struct options *options)
-{
-    static const char *const operands[] = {[TEXT_OPERAND] = "a TEXT", [FILE_OPERAND] = "a FILE", [HEX_OPERAND] = "HEX bytes"};
-    const struct subcommand *subcommand = options->subcommand;
-    if (subcommand == NULL)
-        argp_error(state, "no command: expected " SUBCOMMAND_LIST);
-    bool missing = subcommand->operand == HEX_OPERAND ? options->raw_length == 0 : options->operand == NULL;
-    if (subcommand->operand != NO_OPERAND && missing)
-        argp_error(state, "%s needs %s", subcommand->name, operands[subcommand->operand]);
-    if (options->port == NULL)
-        argp_error(state, "no port: expected -p PORT, a serial device, a pseudo terminal or tcp:HOST:PORT");
-    if (!client_port_valid(options->port))
-        argp_error(state, "--port: expected tcp:HOST:PORT, like tcp:localhost:4001, found '%s'", options->port);
-    if (subcommand->motors == ONE_MOTOR && options->motor == 0)
-        argp_error(state, "%s can be asked of one motor only: -m 1 to 4", subcommand->name);
-}
-
 static error_t parse_option(int key, char *text, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
     case 'p':
-        options->port = text;
+        options->request.port = text;
         return 0;
     case 'n':
-        options->node = take_number(state, "--node", text, 0, RKM04_NODE_MAX);
+        options->node = text;
+        options->request.node = take_number("--node", text, 0, RKM04_NODE_MAX);
         return 0;
     case 'm':
-        options->motor = take_number(state, "--motor", text, 0, RKM04_MOTORS);
+        options->request.motor = take_number("--motor", text, 0, RKM04_MOTORS);
         return 0;
     case KEY_FRAMING:
-        options->framing = take_framing(state, text);
-        return 0;
-    case KEY_TIMEOUT:
-        options->timeout_ms = take_number(state, "--timeout", text, 1, TIMEOUT_MS_MAX);
+        options->request.framing = take_framing(state, text);
         return 0;
     case KEY_MESSAGE_MAX:
-        options->message_max = take_number(state, "--message-max", text, MESSAGE_MAX_LOWEST, CLIENT_MESSAGE_MAX);
+        options->request.message_max = take_number("--message-max", text, MESSAGE_MAX_LOWEST, CLIENT_MESSAGE_MAX);
+        return 0;
+    case 'c':
+        options->job.path = text;
+        return 0;
+    case 'u':
+        options->job.unit = text;
+        return 0;
+    case KEY_LINE:
+        options->job.line = (int)take_number("--line", text, 0, LINE_NUMBER_MAX);
+        return 0;
+    case KEY_LIMIT:
+        options->job.limit = text;
+        return 0;
+    case KEY_ONCE:
+        options->job.once = true;
+        return 0;
+    case KEY_TIMEOUT:
+        options->timed = true;
+        options->request.timeout_ms = take_number("--timeout", text, 1, TIMEOUT_MS_MAX);
         return 0;
     case 'j':
         options->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        take_argument(state, options, text);
-        return 0;
-    case ARGP_KEY_END:
-        check(state, options);
+        if (options->command == NULL)
+            options->command = text;
+        else
+            options->words[options->count++] = text;
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-/* ---- Work --------------------------------------------------------------------------------------------------------- */
-
-static enum exit_status show(const struct options *options, const struct client *client, char motor)
+/* A command to a unit on the line. */
+static enum exit_status do_request(struct options *options)
 {
-    struct client_answer answer = {.bytes = client->answer, .length = client->length, .motor = motor, .json = options->json};
-    const struct subcommand *subcommand = options->subcommand;
-    if (client->answer[0] == 255 && subcommand->operand != HEX_OPERAND) {
-        warnx("the unit does not know message %u (%s)", subcommand->number, subcommand->name);
-        return STATUS_FAILURE;
-    }
-    return subcommand->show(&answer);
+    struct client_request *request = &options->request;
+    const struct client_job *job = &options->job;
+    if (job->path != NULL || job->unit != NULL || job->line >= 0 || job->limit != NULL || job->once)
+        return client_usage("%s goes to a unit on the line: expected --port, --node and --motor", options->command);
+    request->json = options->json;
+    request->words = options->words;
+    request->count = options->count;
+    return client_request(request, options->command);
 }
 
-static enum exit_status ask(const struct options *options, struct client *client, char motor)
+/* A command to the emulator. */
+static enum exit_status do_job(struct options *options)
 {
-    const struct subcommand *subcommand = options->subcommand;
-    uint8_t question[] = {subcommand->number, (uint8_t)motor};
-    bool raw = subcommand->operand == HEX_OPERAND;
-    size_t length = raw ? options->raw_length : subcommand->motors == NO_MOTOR ? 1 : 2;
-    switch (client_exchange(client, raw ? options->raw : question, length)) {
-    case CLIENT_ANSWERED:
-        return show(options, client, motor);
-    case CLIENT_SENT:
-        if (subcommand->show != client_show_store && !raw)
-            warnx("note: no unit answers what is sent to all of them");
-        return options->json ? client_print_json(json_pack("{s:b}", "broadcast", 1)) : STATUS_WELL;
-    case CLIENT_SILENT:
-        return STATUS_NO_ANSWER;
-    default:
-        return STATUS_FAILURE;
-    }
+    struct client_job *job = &options->job;
+    if (options->request.port != NULL)
+        return client_usage("%s goes to the emulator: expected --control instead of --port", options->command);
+    if (job->unit == NULL)
+        job->unit = options->node;
+    job->json = options->json;
+    job->timeout_ms = options->timed ? (int)options->request.timeout_ms : 0;
+    job->words = options->words;
+    job->count = options->count;
+    return client_control(job, options->command);
 }
 
-static enum exit_status run(const struct options *options, struct client *client)
+static enum exit_status run(struct options *options)
 {
-    char motor = (char)('0' + options->motor);
-    struct client_send sender = {.client = client, .motor = motor, .message_max = options->message_max, .json = options->json};
-    switch (options->subcommand->operand) {
-    case TEXT_OPERAND:
-        return client_send_text(&sender, options->operand);
-    case FILE_OPERAND:
-        return client_send_file(&sender, options->operand);
-    default:
-        return ask(options, client, motor);
-    }
+    if (options->command == NULL)
+        return client_usage("no command: expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator");
+    if (client_request_knows(options->command))
+        return do_request(options);
+    if (client_control_knows(options->command))
+        return do_job(options);
+    return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator, found '%s'",
+                        options->command);
 }
 
 int main(int argc, char **argv)
 {
     static const struct argp argp = {.options = option_table, .parser = parse_option, .args_doc = arguments, .doc = doc};
-    static struct client client; /* its buffers are large */
     static struct options options = {
-        .framing = &rkm04_hdlc, .node = 1, .motor = 1, .timeout_ms = TIMEOUT_MS, .message_max = CLIENT_MESSAGE_MAX};
+        .request = {.framing = &rkm04_hdlc, .node = 1, .motor = 1, .timeout_ms = TIMEOUT_MS, .message_max = CLIENT_MESSAGE_MAX},
+        .job = {.line = -1},
+    };
+    options.words = calloc((size_t)argc + 1, sizeof *options.words);
+    if (options.words == NULL)
+        err(STATUS_FAILURE, "memory");
     argp_err_exit_status = STATUS_USAGE;
     argp_parse(&argp, argc, argv, 0, NULL, &options);
     signal(SIGPIPE, SIG_IGN); /* writing says so, too */
-
-    client.port = options.port;
-    client.framing = options.framing;
-    client.node = (uint8_t)options.node;
-    client.timeout_ms = options.timeout_ms;
-    client.fd = client_port_open(options.port, options.timeout_ms);
-    if (client.fd < 0)
-        return STATUS_FAILURE;
-    enum exit_status status = run(&options, &client);
-    close(client.fd);
+    enum exit_status status = run(&options);
+    free(options.words);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         warn("standard output");
         return STATUS_FAILURE;

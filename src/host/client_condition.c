@@ -1,0 +1,412 @@
+#include "client_condition.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <rkm04/unit.h>
+
+#define NAME_MAX_LENGTH 48
+#define VALUE_MAX_LENGTH 48
+#define NAME_CHARACTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
+#define EXPECTED_NAME \
+    "m1.position, true, steps, index, commands, state, led, fault or idle; idle, do1, di1, var80, powered, message, dropped or t"
+
+struct reader {
+    const char *at;
+    const char *unit; /* of terms that name none; "": not named either */
+    char *wrong;
+};
+
+/* One term, taken apart. */
+struct term {
+    char name[NAME_MAX_LENGTH];
+    char compare[3]; /* "": none */
+    char value[VALUE_MAX_LENGTH];
+};
+
+static json_t *expected(const struct reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Say what was expected. Always returns NULL. */
+static json_t *expected(const struct reader *reader, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    int length = snprintf(reader->wrong, CLIENT_CONDITION_WRONG_SIZE, "expected ");
+    vsnprintf(reader->wrong + length, CLIENT_CONDITION_WRONG_SIZE - (size_t)length, format, arguments);
+    va_end(arguments);
+    return NULL;
+}
+
+static json_t *no_memory(const struct reader *reader, json_t *json)
+{
+    if (json == NULL)
+        snprintf(reader->wrong, CLIENT_CONDITION_WRONG_SIZE, "%s", strerror(ENOMEM));
+    return json;
+}
+
+/* The only one of a list, or {key: list}. Takes the reference. */
+static json_t *one_or_list(const struct reader *reader, json_t *list, const char *key)
+{
+    if (json_array_size(list) > 1)
+        return no_memory(reader, json_pack("{s:o}", key, list));
+    json_t *only = json_incref(json_array_get(list, 0));
+    json_decref(list);
+    return only;
+}
+
+/* ---- Words ---------------------------------------------------------------------------------------------------------- */
+
+static void skip_blanks(struct reader *reader)
+{
+    reader->at += strspn(reader->at, " \t\n");
+}
+
+/* Take the connective `word` or `sign` if it is next. */
+static bool take(struct reader *reader, const char *word, const char *sign)
+{
+    skip_blanks(reader);
+    size_t length = strlen(word);
+    if (strncmp(reader->at, sign, strlen(sign)) == 0)
+        reader->at += strlen(sign);
+    else if (strncmp(reader->at, word, length) == 0 && strcspn(reader->at + length, " \t\n") == 0)
+        reader->at += length;
+    else
+        return false;
+    return true;
+}
+
+/* Take characters of `set`, at most room - 1. Returns false if there are none, or more. */
+static bool take_span(struct reader *reader, const char *set, char *text, size_t room)
+{
+    size_t length = strspn(reader->at, set);
+    if (length == 0 || length >= room)
+        return false;
+    memcpy(text, reader->at, length);
+    text[length] = '\0';
+    reader->at += length;
+    return true;
+}
+
+static bool take_comparison(struct reader *reader, char compare[3])
+{
+    static const char *const signs[] = {">=", "<=", "!=", "==", ">", "<", "="};
+    for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
+        if (strncmp(reader->at, signs[i], strlen(signs[i])) == 0) {
+            reader->at += strlen(signs[i]);
+            strcpy(compare, strcmp(signs[i], "==") == 0 ? "=" : signs[i]);
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool take_term(struct reader *reader, struct term *term)
+{
+    skip_blanks(reader);
+    const char *from = reader->at;
+    if (!take_span(reader, NAME_CHARACTERS, term->name, sizeof term->name)) {
+        expected(reader, "a condition such as m1.position>=5000, do3=1 or idle, found '%.40s'", from);
+        return false;
+    }
+    skip_blanks(reader);
+    term->compare[0] = term->value[0] = '\0';
+    if (!take_comparison(reader, term->compare))
+        return true;
+    skip_blanks(reader);
+    if (take_span(reader, NAME_CHARACTERS "+", term->value, sizeof term->value))
+        return true;
+    expected(reader, "a value behind %s%s, found '%.40s'", term->name, term->compare, reader->at);
+    return false;
+}
+
+/* ---- Values --------------------------------------------------------------------------------------------------------- */
+
+static bool read_number(const char *text, long long *number)
+{
+    char *end;
+    errno = 0;
+    *number = strtoll(text, &end, 10);
+    return end != text && *end == '\0' && errno == 0;
+}
+
+/* The number behind `word` in a name, low..high, at most two digits; -1: the name is another. */
+static int number_behind(const char *name, const char *word, int low, int high)
+{
+    size_t length = strlen(word), digits;
+    if (strncmp(name, word, length) != 0)
+        return -1;
+    name += length;
+    digits = strspn(name, "0123456789");
+    int number = atoi(name);
+    return (digits == 1 || digits == 2) && name[digits] == '\0' && low <= number && number <= high ? number : -1;
+}
+
+/* The value as it is, or {">=": value}. Takes the reference. */
+static json_t *compared(const struct term *term, json_t *value)
+{
+    return strcmp(term->compare, "=") == 0 ? value : json_pack("{s:o}", term->compare, value);
+}
+
+static json_t *read_integer(const struct reader *reader, const struct term *term)
+{
+    long long number;
+    if (term->compare[0] == '\0')
+        return expected(reader, "a comparison behind %s, as in %s>=5000", term->name, term->name);
+    if (!read_number(term->value, &number))
+        return expected(reader, "a whole number behind %s%s, found '%s'", term->name, term->compare, term->value);
+    return no_memory(reader, compared(term, json_integer(number)));
+}
+
+static const char *name_of(const char *key, unsigned value)
+{
+    if (strcmp(key, "state") == 0)
+        return value <= RKM04_FAULTY ? rkm04_state_name((enum rkm04_state)value) : NULL;
+    if (strcmp(key, "led") == 0)
+        return value <= RKM04_LED_BLINK ? rkm04_led_name((enum rkm04_led)value) : NULL;
+    return value <= RKM04_FAULT_MOTION ? rkm04_fault_name((enum rkm04_fault)value) : NULL;
+}
+
+/* The name of a state, LED or fault; != is any of the others. */
+static json_t *word_term(const struct reader *reader, const struct term *term, const char *key, int motor)
+{
+    const char *name;
+    bool known = false, equal = strcmp(term->compare, "=") == 0;
+    if (!equal && strcmp(term->compare, "!=") != 0)
+        return expected(reader, "= or != and a word behind %s, found '%s%s'", term->name, term->compare, term->value);
+    json_t *any = json_array();
+    for (unsigned i = 0; (name = name_of(key, i)) != NULL; i++) {
+        bool same = strcmp(name, term->value) == 0;
+        known = known || same;
+        if (same == equal)
+            json_array_append_new(any, json_pack("{s:i, s:s}", "motor", motor, key, name));
+    }
+    if (known)
+        return one_or_list(reader, any, "any");
+    json_decref(any);
+    int length = snprintf(reader->wrong, CLIENT_CONDITION_WRONG_SIZE, "expected behind %s one of", term->name);
+    for (unsigned i = 0; (name = name_of(key, i)) != NULL; i++)
+        length += snprintf(reader->wrong + length, CLIENT_CONDITION_WRONG_SIZE - (size_t)length, "%s %s", i > 0 ? "," : "", name);
+    snprintf(reader->wrong + length, CLIENT_CONDITION_WRONG_SIZE - (size_t)length, ", found '%s'", term->value);
+    return NULL;
+}
+
+/* A time with its unit, or a number of us. */
+static json_t *read_time(const struct reader *reader, const struct term *term)
+{
+    long long number;
+    if (term->compare[0] == '\0')
+        return expected(reader, "t>= and a time, as in t>=2.5s");
+    return no_memory(reader, compared(term, read_number(term->value, &number) ? json_integer(number) : json_string(term->value)));
+}
+
+/* 0 or 1, or for what may stand without value nothing (1). Returns -1 if it is none of them: said. */
+static int read_bit(const struct reader *reader, const struct term *term, bool bare)
+{
+    if (bare && term->compare[0] == '\0')
+        return 1;
+    bool right = strcmp(term->value, "0") == 0 || strcmp(term->value, "1") == 0;
+    bool equal = strcmp(term->compare, "=") == 0;
+    if (right && (equal || strcmp(term->compare, "!=") == 0))
+        return (term->value[0] == '1') == equal;
+    expected(reader, "%s=0 or %s=1, found '%s%s%s'", term->name, term->name, term->name, term->compare, term->value);
+    return -1;
+}
+
+/* ---- Terms ---------------------------------------------------------------------------------------------------------- */
+
+/* What holds of motor `motor`; `name` is what stands behind "m1.". */
+static json_t *motor_term(const struct reader *reader, const struct term *term, const char *name, int motor)
+{
+    static const struct {
+        const char *name, *key;
+    } numbers[] = {{"position", "position"}, {"true", "true_position"}, {"true_position", "true_position"},
+                   {"steps", "steps"}, {"index", "index"}, {"commands", "commands"}};
+    if (strcmp(name, "idle") == 0) {
+        int bit = read_bit(reader, term, true);
+        return bit < 0 ? NULL : no_memory(reader, json_pack("{s:i, s:b}", "motor", motor, "idle", bit));
+    }
+    if (strcmp(name, "state") == 0 || strcmp(name, "led") == 0 || strcmp(name, "fault") == 0)
+        return word_term(reader, term, name, motor);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        if (strcmp(name, numbers[i].name) != 0)
+            continue;
+        json_t *value = read_integer(reader, term);
+        return value == NULL ? NULL : no_memory(reader, json_pack("{s:i, s:o}", "motor", motor, numbers[i].key, value));
+    }
+    return expected(reader, "m%d.position, true, steps, index, commands, state, led, fault or idle, found '%s'", motor,
+                    term->name);
+}
+
+static json_t *bits_term(const struct reader *reader, const struct term *term, const char *key, int number)
+{
+    char digits[4];
+    int bit = read_bit(reader, term, false);
+    if (bit < 0)
+        return NULL;
+    snprintf(digits, sizeof digits, "%02d", number);
+    return no_memory(reader, json_pack("{s:{s:i}}", key, digits, bit));
+}
+
+/* A message that passes; `from` NULL: whoever sent it. */
+static json_t *message_term(const struct reader *reader, const struct term *term, const char *from)
+{
+    long long number;
+    json_t *message = json_object();
+    if (term->compare[0] != '\0') {
+        if (strcmp(term->compare, "=") != 0 || !read_number(term->value, &number) || number < 0 || number > 255) {
+            json_decref(message);
+            return expected(reader, "message=0 to message=255, found '%s%s%s'", term->name, term->compare, term->value);
+        }
+        json_object_set_new(message, "number", json_integer(number));
+    }
+    if (from != NULL)
+        json_object_set_new(message, "from", json_string(from));
+    return no_memory(reader, json_pack("{s:o}", "message", message));
+}
+
+static json_t *dropped_term(const struct reader *reader, const struct term *term)
+{
+    if (term->compare[0] != '\0')
+        return expected(reader, "%s alone, found '%s%s%s'", term->name, term->name, term->compare, term->value);
+    return no_memory(reader, json_pack("{s:{s:b}}", "message", "dropped", 1));
+}
+
+/* Flags of the unit: idle, powered. */
+static json_t *flag_term(const struct reader *reader, const struct term *term, const char *key)
+{
+    int bit = read_bit(reader, term, true);
+    return bit < 0 ? NULL : no_memory(reader, json_pack("{s:b}", key, bit));
+}
+
+/* What concerns the line as a whole; `unit` "": not named. */
+static json_t *line_term(const struct reader *reader, const struct term *term, const char *name, const char *unit, bool *known)
+{
+    *known = true;
+    if (strcmp(name, "message") == 0)
+        return message_term(reader, term, unit[0] != '\0' ? unit : NULL);
+    if (strcmp(name, "master.message") == 0 && unit[0] == '\0')
+        return message_term(reader, term, "master");
+    if (strcmp(name, "unit.message") == 0 && unit[0] == '\0')
+        return message_term(reader, term, "unit");
+    if (strcmp(name, "dropped") == 0 && unit[0] == '\0')
+        return dropped_term(reader, term);
+    if (strcmp(name, "t") == 0 && unit[0] == '\0') {
+        json_t *time = read_time(reader, term);
+        return time == NULL ? NULL : no_memory(reader, json_pack("{s:o}", "t", time));
+    }
+    *known = false;
+    return NULL;
+}
+
+/* What concerns a unit; `name` is the name of the term without that of the unit. */
+static json_t *unit_term(const struct reader *reader, const struct term *term, const char *name)
+{
+    static const struct {
+        const char *name;
+        int low, high;
+    } bits[] = {{"do", 1, 8}, {"di", 1, 8}, {"var", 80, 95}};
+    if (name[0] == 'm' && name[1] >= '1' && name[1] <= '4' && name[2] == '.')
+        return motor_term(reader, term, name + 3, name[1] - '0');
+    for (size_t i = 0; i < sizeof bits / sizeof *bits; i++) {
+        size_t length = strlen(bits[i].name);
+        if (strncmp(name, bits[i].name, length) != 0)
+            continue;
+        int number = number_behind(name, bits[i].name, bits[i].low, bits[i].high);
+        return number > 0 ? bits_term(reader, term, bits[i].name, number)
+                          : expected(reader, "%s%d to %s%d, found '%s'", bits[i].name, bits[i].low, bits[i].name, bits[i].high,
+                                     term->name);
+    }
+    if (strcmp(name, "idle") == 0 || strcmp(name, "powered") == 0)
+        return flag_term(reader, term, name);
+    return expected(reader, EXPECTED_NAME ", found '%s'", term->name);
+}
+
+/* The name of the unit in front of a name, "u3." or "u3-2."; returns what is behind it, or the whole if there is none. */
+static const char *unit_of(const char *name, char unit[NAME_MAX_LENGTH])
+{
+    unit[0] = '\0';
+    if (name[0] != 'u' || name[1] < '0' || name[1] > '9')
+        return name;
+    size_t length = strcspn(name + 1, ".");
+    if (name[1 + length] == '\0')
+        return name;
+    memcpy(unit, name + 1, length);
+    unit[length] = '\0';
+    return name + length + 2;
+}
+
+/* Say of which unit: also in those that stand for it together (word_term()). */
+static json_t *with_unit(json_t *json, const char *unit)
+{
+    size_t i;
+    json_t *other;
+    if (json == NULL || unit[0] == '\0')
+        return json;
+    json_t *any = json_object_get(json, "any");
+    if (any == NULL)
+        json_object_set_new(json, "unit", json_string(unit));
+    json_array_foreach(any, i, other)
+        json_object_set_new(other, "unit", json_string(unit));
+    return json;
+}
+
+static json_t *one(struct reader *reader)
+{
+    struct term term;
+    char unit[NAME_MAX_LENGTH];
+    bool of_line;
+    if (!take_term(reader, &term))
+        return NULL;
+    const char *name = unit_of(term.name, unit);
+    json_t *json = line_term(reader, &term, name, unit, &of_line);
+    return of_line ? json : with_unit(unit_term(reader, &term, name), unit[0] != '\0' ? unit : reader->unit);
+}
+
+/* ---- Several -------------------------------------------------------------------------------------------------------- */
+
+/* Terms that hold together, up to an "or" or the end. */
+static json_t *together(struct reader *reader)
+{
+    json_t *all = json_array();
+    for (;;) {
+        json_t *term = one(reader);
+        if (term == NULL || json_array_append_new(all, term) != 0) {
+            json_decref(all);
+            return NULL;
+        }
+        if (take(reader, "and", "&&") || take(reader, "and", ","))
+            continue;
+        struct reader ahead = *reader;
+        if (*reader->at == '\0' || take(&ahead, "or", "||"))
+            return one_or_list(reader, all, "all");
+    }
+}
+
+static json_t *alternatives(struct reader *reader)
+{
+    json_t *any = json_array();
+    do {
+        json_t *group = together(reader);
+        if (group == NULL || json_array_append_new(any, group) != 0) {
+            json_decref(any);
+            return NULL;
+        }
+    } while (take(reader, "or", "||"));
+    return one_or_list(reader, any, "any");
+}
+
+json_t *client_condition(const char *text, const char *unit, char wrong[CLIENT_CONDITION_WRONG_SIZE])
+{
+    struct reader reader = {.at = text, .unit = unit != NULL ? unit : "", .wrong = wrong};
+    json_error_t error;
+    snprintf(wrong, CLIENT_CONDITION_WRONG_SIZE, "%s", strerror(ENOMEM));
+    skip_blanks(&reader);
+    if (*reader.at != '{')
+        return alternatives(&reader);
+    json_t *json = json_loads(reader.at, JSON_REJECT_DUPLICATES, &error);
+    return json != NULL ? json : expected(&reader, "a condition in JSON: %s", error.text);
+}

@@ -1,0 +1,166 @@
+/* Commands about what there is: state, di. */
+#include <err.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client_job.h"
+#include "client_panel.h"
+
+#define TEXT_COLUMNS 100
+
+/* ---- State ------------------------------------------------------------------------------------------------------------ */
+
+static json_int_t integer_of(const json_t *object, const char *key)
+{
+    return json_integer_value(json_object_get(object, key));
+}
+
+/* ": 1@500, 61@500, …" */
+static void print_profile(const json_t *profile)
+{
+    size_t i;
+    json_t *point;
+    if (json_array_size(profile) == 0)
+        return;
+    printf("           break points:");
+    json_array_foreach((json_t *)profile, i, point)
+        printf(" (%" JSON_INTEGER_FORMAT ";%" JSON_INTEGER_FORMAT ")", json_integer_value(json_array_get(point, 0)),
+               json_integer_value(json_array_get(point, 1)));
+    putchar('\n');
+}
+
+static void print_functions(const json_t *functions)
+{
+    size_t i;
+    json_t *function;
+    json_array_foreach((json_t *)functions, i, function)
+        printf(" T%02d", (int)json_integer_value(function));
+}
+
+/* What the panel has no room for. */
+static void print_motor(const json_t *motor)
+{
+    const json_t *parameters = json_object_get(motor, "parameters");
+    const char *slot = json_string_value(json_object_get(motor, "slot"));
+    printf(" motor %" JSON_INTEGER_FORMAT ":  %" JSON_INTEGER_FORMAT " of 700 commands, flash %s,  S%" JSON_INTEGER_FORMAT
+           " V%" JSON_INTEGER_FORMAT " A%" JSON_INTEGER_FORMAT " %c%" JSON_INTEGER_FORMAT,
+           integer_of(motor, "motor"), integer_of(json_object_get(motor, "memory"), "commands"), slot != NULL ? slot : "-",
+           integer_of(parameters, "start_speed"), integer_of(parameters, "speed"), integer_of(parameters, "acceleration"),
+           json_is_false(json_object_get(parameters, "forward")) ? 'B' : 'F', integer_of(parameters, "count"));
+    print_functions(json_object_get(motor, "functions"));
+    if (json_array_size(json_object_get(motor, "loops")) > 0 || json_array_size(json_object_get(motor, "calls")) > 0)
+        printf(",  %zu loops open, %zu calls", json_array_size(json_object_get(motor, "loops")),
+               json_array_size(json_object_get(motor, "calls")));
+    if (integer_of(motor, "steps") > 0)
+        printf(",  %" JSON_INTEGER_FORMAT " steps done", integer_of(motor, "steps"));
+    putchar('\n');
+    print_profile(json_object_get(motor, "profile"));
+}
+
+static void print_state(const json_t *state)
+{
+    static struct panel panel;
+    struct panel_view view = {.state = state};
+    size_t i;
+    json_t *motor;
+    client_panel_draw(&panel, &view, PANEL_ROWS, TEXT_COLUMNS);
+    client_panel_print(&panel, stdout);
+    putchar('\n');
+    json_array_foreach(json_object_get(state, "motors"), i, motor)
+        print_motor(motor);
+}
+
+/* The state of the unit `unit`; NULL: of the only one. */
+static enum exit_status show_state(struct client_job *job, const char *unit)
+{
+    json_t *result;
+    json_t *params = unit != NULL ? json_pack("{s:s}", "unit", unit) : NULL;
+    enum exit_status status = client_job_call(job, "state", params, false, &result);
+    if (status == STATUS_WELL && !job->json)
+        print_state(result);
+    return status == STATUS_WELL ? client_job_done(job, result) : status;
+}
+
+enum exit_status client_control_state(struct client_job *job)
+{
+    size_t i;
+    json_t *units, *unit;
+    if (job->unit != NULL)
+        return show_state(job, job->unit);
+    enum exit_status status = client_job_call(job, "units", NULL, false, &units);
+    json_array_foreach(json_object_get(units, "units"), i, unit) {
+        if (i > 0 && !job->json)
+            putchar('\n');
+        if (status == STATUS_WELL)
+            status = show_state(job, json_string_value(unit));
+    }
+    json_decref(units);
+    return status;
+}
+
+/* ---- Inputs ----------------------------------------------------------------------------------------------------------- */
+
+static void print_inputs(json_int_t mask)
+{
+    for (int i = 0; i < 8; i++)
+        printf("%02d=%d%c", i + 1, (int)(mask >> i & 1), i < 7 ? ' ' : '\n');
+}
+
+static enum exit_status show_inputs(struct client_job *job)
+{
+    json_t *result;
+    enum exit_status status = client_job_call(job, "state", NULL, true, &result);
+    if (status != STATUS_WELL)
+        return status;
+    json_int_t mask = integer_of(result, "di"), t_us = integer_of(result, "t_us");
+    json_decref(result);
+    if (job->json)
+        return client_print_json(json_pack("{s:I, s:I}", "t_us", t_us, "di", mask));
+    print_inputs(mask);
+    return STATUS_WELL;
+}
+
+/* Read "3=1", "08=0", "di3=1". Returns false if it is wrong. */
+static bool read_input(const char *word, json_t *inputs)
+{
+    char name[3], *end;
+    if (strncmp(word, "di", 2) == 0)
+        word += 2;
+    long number = word[0] >= '0' && word[0] <= '9' ? strtol(word, &end, 10) : 0;
+    if (number < 1 || number > 8 || end[0] != '=' || (end[1] != '0' && end[1] != '1') || end[2] != '\0')
+        return false;
+    snprintf(name, sizeof name, "%02d", (int)(number & 15));
+    json_object_set_new(inputs, name, json_integer(end[1] - '0'));
+    return true;
+}
+
+static void warn_overridden(const json_t *result)
+{
+    size_t i;
+    json_t *input;
+    json_array_foreach(json_object_get(result, "overridden"), i, input)
+        warnx("input %02d stands otherwise: a plant drives it, or a fault holds it", (int)json_integer_value(input));
+}
+
+enum exit_status client_control_di(struct client_job *job)
+{
+    json_t *result, *inputs = json_object();
+    for (size_t i = 0; i < job->count; i++) {
+        if (!read_input(job->words[i], inputs)) {
+            json_decref(inputs);
+            return client_usage("di: expected an input 1 to 8 and its level, as in 3=1, found '%s'", job->words[i]);
+        }
+    }
+    if (job->count == 0) {
+        json_decref(inputs);
+        return show_inputs(job);
+    }
+    enum exit_status status = client_job_call(job, "di.set", json_pack("{s:o}", "di", inputs), true, &result);
+    if (status != STATUS_WELL)
+        return status;
+    warn_overridden(result);
+    if (!job->json)
+        print_inputs(integer_of(result, "di"));
+    return client_job_done(job, result);
+}

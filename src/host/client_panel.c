@@ -1,0 +1,328 @@
+#include "client_panel.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <string.h>
+
+#define MOTORS 4
+#define TEXT_MAX 160
+
+/* ---- The grid --------------------------------------------------------------------------------------------------------- */
+
+static void put_character(struct panel *panel, int row, int column, enum panel_style style, wchar_t character)
+{
+    if (row >= 0 && row < panel->rows && column >= 0 && column < panel->columns)
+        panel->cell[row][column] = (struct panel_cell){character, (unsigned char)style};
+}
+
+static int put(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+/* Put text, of which only printable ASCII is shown as it is. Returns the column behind it. */
+static int put(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
+{
+    char text[TEXT_MAX];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    for (const char *at = text; *at != '\0'; at++)
+        put_character(panel, row, column++, style, *at >= 0x20 && *at < 0x7F ? (wchar_t)*at : L'?');
+    return column;
+}
+
+static void fill_row(struct panel *panel, int row, enum panel_style style)
+{
+    for (int column = 0; column < panel->columns; column++)
+        put_character(panel, row, column, style, L' ');
+}
+
+static void put_lamp(struct panel *panel, const struct panel_view *view, int row, int column, bool lit)
+{
+    wchar_t on = view->round ? L'\u25CF' : L'*', off = view->round ? L'\u25CB' : L'.';
+    put_character(panel, row, column, lit ? PANEL_LIT : PANEL_DARK, lit ? on : off);
+}
+
+/* ---- Values ----------------------------------------------------------------------------------------------------------- */
+
+/* A whole number as text, "-" where there is none. */
+static const char *number_text(const json_t *object, const char *key, char text[24])
+{
+    const json_t *number = json_object_get(object, key);
+    if (json_is_integer(number))
+        snprintf(text, 24, "%" JSON_INTEGER_FORMAT, json_integer_value(number));
+    else
+        strcpy(text, "-");
+    return text;
+}
+
+static const char *string_of(const json_t *object, const char *key, const char *missing)
+{
+    const char *text = json_string_value(json_object_get(object, key));
+    return text != NULL ? text : missing;
+}
+
+static unsigned mask_of(const json_t *object, const char *key)
+{
+    return (unsigned)json_integer_value(json_object_get(object, key));
+}
+
+static bool powered(const struct panel_view *view)
+{
+    return !json_is_false(json_object_get(view->state, "powered"));
+}
+
+/* ---- The motors ------------------------------------------------------------------------------------------------------- */
+
+enum field { FIELD_MOTOR, FIELD_LED, FIELD_STATE, FIELD_POSITION, FIELD_TRUE, FIELD_SPEED, FIELD_PLACE, FIELD_COMMAND, FIELDS };
+
+/* How wide, and which of them go first when there is little room: the ones with the highest number. */
+static const struct {
+    const char *head;
+    int width;
+    int goes;
+    bool right;
+} fields[FIELDS] = {
+    [FIELD_MOTOR] = {"M", 1, 0, false},
+    [FIELD_LED] = {"LED", 3, 0, false},
+    [FIELD_STATE] = {"state", 7, 2, false},
+    [FIELD_POSITION] = {"position", 11, 1, true},
+    [FIELD_TRUE] = {"true pos.", 11, 4, true},
+    [FIELD_SPEED] = {"speed", 6, 3, true},
+    [FIELD_PLACE] = {"place", 5, 6, true},
+    [FIELD_COMMAND] = {"command", 9, 5, false},
+};
+
+#define GOES_FIRST 6
+#define GAP 2
+
+/* Does the unit have a plant? */
+static bool has_plant(const json_t *state)
+{
+    size_t i;
+    json_t *motor;
+    json_array_foreach(json_object_get(state, "motors"), i, motor)
+        if (json_is_integer(json_object_get(motor, "true_position")))
+            return true;
+    return false;
+}
+
+/* Choose the fields that there is room for: column[] is -1 for the others. */
+static void choose_fields(const struct panel_view *view, int columns, int column[FIELDS])
+{
+    for (int most = GOES_FIRST; most >= 0; most--) {
+        int at = 1;
+        for (int i = 0; i < FIELDS; i++) {
+            bool shown = fields[i].goes <= most && (i != FIELD_TRUE || has_plant(view->state));
+            column[i] = shown ? at : -1;
+            at += shown ? fields[i].width + GAP : 0;
+        }
+        if (at - GAP <= columns)
+            return;
+    }
+}
+
+static void put_field(struct panel *panel, int row, const int column[FIELDS], enum field field, enum panel_style style,
+                      const char *text)
+{
+    if (column[field] < 0)
+        return;
+    if (field == FIELD_COMMAND)
+        put(panel, row, column[field], style, "%s", text);
+    else if (fields[field].right)
+        put(panel, row, column[field], style, "%*.*s", fields[field].width, fields[field].width, text);
+    else
+        put(panel, row, column[field], style, "%-*.*s", fields[field].width, fields[field].width, text);
+}
+
+/* Guards that are armed, as the commands that armed them: " X04 M01". */
+static void append_guards(const json_t *motor, char *text, size_t room)
+{
+    static const char *const keys[] = {"x", "m", "n"};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        const json_t *input = json_object_get(json_object_get(motor, "guards"), keys[i]);
+        size_t length = strlen(text);
+        if (json_is_integer(input))
+            snprintf(text + length, room - length, " %c%02d", keys[i][0] - 'a' + 'A', (int)json_integer_value(input));
+    }
+}
+
+static void put_command(struct panel *panel, int row, const int column[FIELDS], const json_t *motor)
+{
+    char text[TEXT_MAX];
+    const char *fault = string_of(motor, "fault", NULL), *waits_for = string_of(motor, "waits_for", NULL);
+    snprintf(text, sizeof text, "%s", string_of(motor, "command", "-"));
+    if (fault != NULL && strcmp(fault, "none") != 0) {
+        size_t length = strlen(text);
+        snprintf(text + length, sizeof text - length, "  fault: %s", fault);
+        put_field(panel, row, column, FIELD_COMMAND, PANEL_WRONG, text);
+        return;
+    }
+    if (waits_for != NULL) {
+        size_t length = strlen(text);
+        snprintf(text + length, sizeof text - length, "  %s", waits_for);
+    }
+    append_guards(motor, text, sizeof text);
+    put_field(panel, row, column, FIELD_COMMAND, PANEL_PLAIN, text);
+}
+
+static void put_motor(struct panel *panel, const struct panel_view *view, int row, const int column[FIELDS], unsigned number)
+{
+    const json_t *motor = json_array_get(json_object_get(view->state, "motors"), number - 1);
+    char text[24], signed_text[26];
+    const char *speed = number_text(motor, "speed", text);
+    bool back = json_is_false(json_object_get(motor, "forward")) && strspn(speed, "123456789") > 0;
+    snprintf(signed_text, sizeof signed_text, "%s%s", back ? "-" : "", speed);
+    put(panel, row, column[FIELD_MOTOR], PANEL_PLAIN, "%u", number);
+    put_lamp(panel, view, row, column[FIELD_LED] + 1, json_is_true(json_object_get(motor, "lit")));
+    put_field(panel, row, column, FIELD_SPEED, PANEL_PLAIN, signed_text);
+    const char *state = string_of(motor, "state", "-");
+    bool wrong = strncmp(state, "fault", 5) == 0;
+    put_field(panel, row, column, FIELD_STATE, wrong ? PANEL_WRONG : PANEL_PLAIN, state);
+    put_field(panel, row, column, FIELD_POSITION, PANEL_PLAIN, number_text(motor, "position", text));
+    put_field(panel, row, column, FIELD_TRUE, PANEL_PLAIN, number_text(motor, "true_position", text));
+    number_text(motor, "index", text);
+    put_field(panel, row, column, FIELD_PLACE, PANEL_PLAIN, strcmp(text, "0") == 0 ? "-" : text);
+    put_command(panel, row, column, motor);
+}
+
+/* ---- Lamps ------------------------------------------------------------------------------------------------------------ */
+
+#define LAMPS_LEFT 6
+
+/* How many columns from lamp to lamp: numbers have room above them, or not. */
+static int lamp_step(const struct panel *panel)
+{
+    return LAMPS_LEFT + 16 * 3 <= panel->columns ? 3 : LAMPS_LEFT + 16 * 2 <= panel->columns ? 2 : 1;
+}
+
+static void put_lamps(struct panel *panel, const struct panel_view *view, int row, const char *key, unsigned count)
+{
+    char name[8] = "";
+    for (size_t i = 0; key[i] != '\0'; i++)
+        name[i] = (char)(key[i] - 'a' + 'A');
+    put(panel, row, 1, PANEL_PLAIN, "%s", name);
+    for (unsigned i = 0; i < count; i++)
+        put_lamp(panel, view, row, LAMPS_LEFT + (int)i * lamp_step(panel) + lamp_step(panel) / 2,
+                 (mask_of(view->state, key) >> i & 1) != 0);
+}
+
+static void put_numbers(struct panel *panel, int row, unsigned first, unsigned count)
+{
+    for (unsigned i = 0; i < count && lamp_step(panel) == 3; i++)
+        put(panel, row, LAMPS_LEFT + (int)i * 3, PANEL_DARK, "%02u", first + i);
+}
+
+/* ---- Rows ------------------------------------------------------------------------------------------------------------- */
+
+enum row {
+    ROW_TITLE, ROW_GAP_1, ROW_HEAD, ROW_MOTOR_1, ROW_MOTOR_2, ROW_MOTOR_3, ROW_MOTOR_4, ROW_GAP_2, ROW_NUMBERS, ROW_DI, ROW_DO,
+    ROW_GAP_3, ROW_VAR_NUMBERS, ROW_VAR, ROW_GAP_4, ROW_COUNTERS, ROW_WIRES, ROW_GAP_5, ROW_KEYS, ROWS
+};
+
+/* Which of them go first when there is little room: the ones with the highest number. */
+static const int row_goes[ROWS] = {
+    [ROW_GAP_1] = 12, [ROW_GAP_5] = 12, [ROW_GAP_3] = 11, [ROW_GAP_2] = 10, [ROW_GAP_4] = 9, [ROW_WIRES] = 8, [ROW_VAR_NUMBERS] = 7,
+    [ROW_NUMBERS] = 6, [ROW_KEYS] = 5, [ROW_COUNTERS] = 4, [ROW_HEAD] = 3, [ROW_VAR] = 2, [ROW_DI] = 1, [ROW_DO] = 1,
+};
+
+#define ROW_GOES_FIRST 12
+
+/* Choose the rows that there is room for: at[] is -1 for the others. Returns how many there are. */
+static int choose_rows(const struct panel_view *view, int rows, int lamps, int at[ROWS])
+{
+    int count = 0;
+    for (int most = ROW_GOES_FIRST; most >= 0; most--) {
+        count = 0;
+        for (int i = 0; i < ROWS; i++) {
+            bool keys = i == ROW_KEYS || i == ROW_GAP_5, numbers = i == ROW_NUMBERS || i == ROW_VAR_NUMBERS;
+            bool shown = row_goes[i] <= most && (!keys || view->keys != NULL) && (!numbers || lamps == 3);
+            at[i] = shown ? count++ : -1;
+        }
+        if (count <= rows)
+            break;
+    }
+    return count <= rows ? count : rows;
+}
+
+static void put_title(struct panel *panel, const struct panel_view *view, int row)
+{
+    size_t i;
+    json_t *unit;
+    json_int_t t_us = json_integer_value(json_object_get(view->state, "t_us"));
+    const char *name = string_of(view->state, "unit", "-");
+    if (row < 0)
+        return;
+    fill_row(panel, row, PANEL_TITLE);
+    int column = put(panel, row, 1, PANEL_TITLE, "RKM04 unit %s", name);
+    if (!powered(view))
+        column = put(panel, row, column, PANEL_TITLE, ": no power");
+    column = put(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000), (int)(t_us % 1000000));
+    column = put(panel, row, column + 2, PANEL_TITLE, "clock %s", string_of(view->state, "clock", "-"));
+    if (json_is_true(json_object_get(view->state, "simulation")))
+        column = put(panel, row, column + 2, PANEL_TITLE, "simulation");
+    if (json_array_size(view->units) < 2)
+        return;
+    column = put(panel, row, column + 2, PANEL_TITLE, "units");
+    json_array_foreach(view->units, i, unit) {
+        const char *other = json_string_value(unit) != NULL ? json_string_value(unit) : "-";
+        column = put(panel, row, column + 1, PANEL_TITLE, strcmp(other, name) == 0 ? "[%s]" : "%s", other);
+    }
+}
+
+static void put_count(struct panel *panel, int row, int *column, const json_t *counters, const char *key, const char *text)
+{
+    char number[24];
+    *column = put(panel, row, *column, PANEL_PLAIN, "%s %s", number_text(counters, key, number), text) + 3;
+}
+
+static void put_counters(struct panel *panel, const struct panel_view *view, const int at[ROWS])
+{
+    const json_t *counters = json_object_get(view->state, "counters"), *line = json_object_get(view->state, "line");
+    int row = at[ROW_COUNTERS], column = 1;
+    put_count(panel, row, &column, counters, "requests", "requests");
+    put_count(panel, row, &column, counters, "answers", "answers");
+    put_count(panel, row, &column, counters, "others", "for others");
+    put_count(panel, row, &column, counters, "dropped", "dropped");
+    row = at[ROW_WIRES];
+    column = 1;
+    put_count(panel, row, &column, line, "bytes", "bytes on the line");
+    put_count(panel, row, &column, line, "collisions", "collisions");
+    put_count(panel, row, &column, line, "framing_errors", "framing errors");
+}
+
+void client_panel_draw(struct panel *panel, const struct panel_view *view, int rows, int columns)
+{
+    int at[ROWS], column[FIELDS];
+    *panel = (struct panel){.columns = columns < PANEL_COLUMNS ? columns : PANEL_COLUMNS};
+    panel->rows = choose_rows(view, rows < PANEL_ROWS ? rows : PANEL_ROWS, lamp_step(panel), at);
+    for (int row = 0; row < panel->rows; row++)
+        fill_row(panel, row, PANEL_PLAIN);
+    put_title(panel, view, at[ROW_TITLE]);
+    choose_fields(view, panel->columns, column);
+    for (int i = 0; i < FIELDS; i++)
+        put_field(panel, at[ROW_HEAD], column, (enum field)i, PANEL_HEAD, fields[i].head);
+    for (unsigned motor = 1; motor <= MOTORS; motor++)
+        put_motor(panel, view, at[ROW_MOTOR_1 + motor - 1], column, motor);
+    put_numbers(panel, at[ROW_NUMBERS], 1, 8);
+    put_lamps(panel, view, at[ROW_DI], "di", 8);
+    put_lamps(panel, view, at[ROW_DO], "do", 8);
+    put_numbers(panel, at[ROW_VAR_NUMBERS], 80, 16);
+    put_lamps(panel, view, at[ROW_VAR], "var", 16);
+    put_counters(panel, view, at);
+    if (view->keys != NULL)
+        put(panel, at[ROW_KEYS], 1, PANEL_DARK, "%s", view->keys);
+}
+
+void client_panel_print(const struct panel *panel, FILE *file)
+{
+    for (int row = 0; row < panel->rows; row++) {
+        int length = panel->columns;
+        while (length > 0 && panel->cell[row][length - 1].character == L' ')
+            length--;
+        for (int column = 0; column < length; column++)
+            fputc(panel->cell[row][column].character < 0x7F ? (int)panel->cell[row][column].character : '?', file);
+        fputc('\n', file);
+    }
+}

@@ -1,0 +1,259 @@
+#include "client_rpc.h"
+
+#include <err.h>
+#include <errno.h>
+#include <poll.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "client_port.h"
+
+#define LINE_MAX_BYTES (64u << 20) /* longest object believed to be an answer */
+#define ROOM_FIRST 65536u
+
+/* ---- The default ------------------------------------------------------------------------------------------------------ */
+
+static bool put_path(char found[PATH_MAX], const char *format, const char *folder, unsigned long user)
+{
+    return snprintf(found, PATH_MAX, format, folder, user) < PATH_MAX;
+}
+
+/* As link_path.c finds the default link, of line 0. */
+static bool default_path(char found[PATH_MAX])
+{
+    const char *base = getenv("XDG_RUNTIME_DIR");
+    if (base != NULL && base[0] == '/') {
+        if (!put_path(found, "%s/rkm04/bus0.control", base, 0))
+            return false;
+        if (access(found, F_OK) == 0)
+            return true; /* otherwise the emulator may have had no use for that folder */
+    }
+    const char *temporary = getenv("TMPDIR");
+    char other[PATH_MAX];
+    if (!put_path(other, "%s/rkm04-%lu/bus0.control", temporary != NULL && temporary[0] == '/' ? temporary : "/tmp", geteuid()))
+        return false;
+    if (base == NULL || base[0] != '/' || access(other, F_OK) == 0)
+        strcpy(found, other);
+    return true;
+}
+
+bool client_rpc_path(const char *path, char found[PATH_MAX])
+{
+    if (path == NULL)
+        path = getenv("RKM04_CONTROL");
+    if (path != NULL && path[0] != '\0' ? snprintf(found, PATH_MAX, "%s", path) < PATH_MAX : default_path(found))
+        return true;
+    warnx("the path of the control socket is too long");
+    return false;
+}
+
+/* ---- The connection --------------------------------------------------------------------------------------------------- */
+
+/* Say what is wrong with the connection, now or when the caller likes to. */
+static void report(struct client_rpc *rpc, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void report(struct client_rpc *rpc, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(rpc->trouble, sizeof rpc->trouble, format, arguments);
+    va_end(arguments);
+    if (!rpc->quiet)
+        warnx("%s", rpc->trouble);
+}
+
+static const char *advice(int error)
+{
+    switch (error) {
+    case ENOENT:
+        return "; is `rkm04 serve' running? --control PATH names another socket";
+    case ECONNREFUSED:
+        return "; the emulator that made it has ended";
+    case EACCES:
+        return "; it belongs to another user";
+    case ENOTSOCK:
+        return "; expected the control socket of `rkm04 serve', by default its link with .control behind";
+    default:
+        return "";
+    }
+}
+
+bool client_rpc_open(struct client_rpc *rpc, const char *path)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    if (!client_rpc_path(path, rpc->path))
+        return false;
+    if (strlen(rpc->path) >= sizeof address.sun_path) {
+        warnx("%s: the path of a socket has at most %zu characters", rpc->path, sizeof address.sun_path - 1);
+        return false;
+    }
+    strcpy(address.sun_path, rpc->path);
+    rpc->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (rpc->fd >= 0 && connect(rpc->fd, (const struct sockaddr *)&address, sizeof address) == 0)
+        return true;
+    warnx("cannot connect to %s: %s%s", rpc->path, strerror(errno), advice(errno));
+    if (rpc->fd >= 0)
+        close(rpc->fd);
+    return false;
+}
+
+void client_rpc_close(struct client_rpc *rpc)
+{
+    close(rpc->fd);
+    free(rpc->buffer);
+    rpc->buffer = NULL;
+}
+
+static bool write_all(struct client_rpc *rpc, const char *bytes, size_t length)
+{
+    while (length > 0) {
+        ssize_t done = send(rpc->fd, bytes, length, MSG_NOSIGNAL);
+        if (done < 0 && errno == EINTR)
+            continue;
+        if (done < 0) {
+            report(rpc, "the emulator at %s has gone: %s", rpc->path, strerror(errno));
+            return false;
+        }
+        bytes += done;
+        length -= (size_t)done;
+    }
+    return true;
+}
+
+bool client_rpc_send(struct client_rpc *rpc, const char *method, json_t *params)
+{
+    json_t *request = json_pack("{s:s, s:I, s:s, s:o*}", "jsonrpc", "2.0", "id", ++rpc->id, "method", method, "params", params);
+    char *text = request != NULL ? json_dumps(request, JSON_COMPACT) : NULL;
+    size_t length = text != NULL ? strlen(text) : 0;
+    if (text != NULL)
+        text[length] = '\n'; /* in place of the end */
+    else
+        report(rpc, "%s", strerror(ENOMEM));
+    bool sent = text != NULL && write_all(rpc, text, length + 1);
+    free(text);
+    json_decref(request);
+    return sent;
+}
+
+/* ---- What comes ------------------------------------------------------------------------------------------------------- */
+
+/* The next whole line in the buffer, ended by 0; NULL: none yet. */
+static char *next_line(struct client_rpc *rpc)
+{
+    char *line = rpc->length > 0 ? rpc->buffer + rpc->begin : NULL;
+    char *end = line != NULL ? memchr(line, '\n', rpc->length) : NULL;
+    if (end == NULL)
+        return NULL;
+    *end = '\0';
+    size_t taken = (size_t)(end - line) + 1;
+    rpc->begin += taken;
+    rpc->length -= taken;
+    return line;
+}
+
+/* Make room behind what is there. */
+static bool make_room(struct client_rpc *rpc)
+{
+    if (rpc->length > 0 && rpc->begin > 0)
+        memmove(rpc->buffer, rpc->buffer + rpc->begin, rpc->length);
+    rpc->begin = 0;
+    if (rpc->length < rpc->room)
+        return true;
+    size_t room = rpc->room > 0 ? 2 * rpc->room : ROOM_FIRST;
+    char *buffer = room <= LINE_MAX_BYTES ? realloc(rpc->buffer, room) : NULL;
+    if (buffer == NULL)
+        return false;
+    rpc->buffer = buffer;
+    rpc->room = room;
+    return true;
+}
+
+/* Read what there is, waiting for it up to `timeout_ms`. Returns CLIENT_RPC_RESULT if something came. */
+static enum client_rpc_outcome fill(struct client_rpc *rpc, int timeout_ms)
+{
+    struct pollfd ready = {.fd = rpc->fd, .events = POLLIN};
+    int count = poll(&ready, 1, timeout_ms);
+    if (count == 0 || (count < 0 && errno == EINTR))
+        return CLIENT_RPC_NOTHING;
+    if (!make_room(rpc)) {
+        report(rpc, "%s sends no JSON-RPC: expected the control socket of `rkm04 serve'", rpc->path);
+        return CLIENT_RPC_LOST;
+    }
+    ssize_t length = read(rpc->fd, rpc->buffer + rpc->length, rpc->room - rpc->length);
+    if (length < 0 && errno == EINTR)
+        return CLIENT_RPC_NOTHING;
+    if (length <= 0) {
+        report(rpc, "the emulator at %s has ended the connection", rpc->path);
+        return CLIENT_RPC_LOST;
+    }
+    rpc->length += (size_t)length;
+    return CLIENT_RPC_RESULT;
+}
+
+/* Look at one object. Returns true if it is the answer to the last request, or an error to no request: *outcome and *json. */
+static bool take_line(struct client_rpc *rpc, const char *line, enum client_rpc_outcome *outcome, json_t **json, bool *event)
+{
+    json_error_t wrong;
+    json_t *object = json_loads(line, 0, &wrong);
+    const json_t *id = json_object_get(object, "id");
+    const char *method = json_string_value(json_object_get(object, "method"));
+    json_t *error = json_object_get(object, "error"), *result = json_object_get(object, "result");
+    bool ours = json_is_integer(id) ? json_integer_value(id) == rpc->id : json_is_null(id) && error != NULL;
+    if (!json_is_object(object)) {
+        report(rpc, "%s sends no JSON-RPC: %s", rpc->path, wrong.text);
+        *outcome = CLIENT_RPC_LOST;
+        ours = true;
+    } else if (method != NULL) {
+        *event = true;
+        if (rpc->notified != NULL)
+            rpc->notified(rpc->context, method, json_object_get(object, "params"));
+    } else if (ours) {
+        *outcome = error != NULL ? CLIENT_RPC_REFUSED : CLIENT_RPC_RESULT;
+        *json = json_incref(error != NULL ? error : result);
+    }
+    json_decref(object);
+    return ours;
+}
+
+/* Take what comes up to `timeout_ms`: until the answer is there or, with `any`, an event. */
+static enum client_rpc_outcome take(struct client_rpc *rpc, int timeout_ms, json_t **json, bool any)
+{
+    uint64_t end = client_now() + (uint64_t)(timeout_ms < 0 ? 0 : timeout_ms) * 1000u;
+    *json = NULL;
+    for (;;) {
+        enum client_rpc_outcome outcome = CLIENT_RPC_NOTHING;
+        bool event = false;
+        for (char *line = next_line(rpc); line != NULL; line = next_line(rpc)) {
+            if (take_line(rpc, line, &outcome, json, &event))
+                return outcome;
+        }
+        if (event && any)
+            return CLIENT_RPC_RESULT;
+        uint64_t now = client_now();
+        int left = timeout_ms < 0 ? CLIENT_RPC_FOREVER : now < end ? (int)((end - now + 999u) / 1000u) : 0;
+        outcome = fill(rpc, left);
+        if (outcome == CLIENT_RPC_LOST || (outcome == CLIENT_RPC_NOTHING && left == 0))
+            return outcome;
+    }
+}
+
+enum client_rpc_outcome client_rpc_receive(struct client_rpc *rpc, int timeout_ms, json_t **json)
+{
+    return take(rpc, timeout_ms, json, false);
+}
+
+enum client_rpc_outcome client_rpc_listen(struct client_rpc *rpc, int timeout_ms, json_t **json)
+{
+    return take(rpc, timeout_ms, json, true);
+}
+
+enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms, json_t **json)
+{
+    *json = NULL;
+    return client_rpc_send(rpc, method, params) ? client_rpc_receive(rpc, timeout_ms, json) : CLIENT_RPC_LOST;
+}

@@ -1,0 +1,32 @@
+#include "client_usage.h"
+
+#include <err.h>
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum exit_status client_usage(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vwarnx(format, arguments);
+    va_end(arguments);
+    fprintf(stderr, "Try `%s --help' or `%s --usage' for more information.\n", program_invocation_short_name,
+            program_invocation_short_name);
+    return STATUS_USAGE;
+}
+
+bool client_usage_number(const char *what, const char *text, unsigned low, unsigned high, unsigned *number)
+{
+    char *end;
+    errno = 0;
+    unsigned long read = strtoul(text, &end, 10);
+    if (text[strspn(text, "0123456789")] == '\0' && end != text && errno == 0 && low <= read && read <= high) {
+        *number = (unsigned)read;
+        return true;
+    }
+    client_usage("%s: expected a number %u to %u, found '%s'", what, low, high, text);
+    return false;
+}
