@@ -7,8 +7,8 @@
 /* Of unit `number` of the line, at the present tick. Returns a new reference, or NULL if memory is short. */
 json_t *unit_json(struct sim *sim, unsigned number);
 
-/* What motor 1..4 of `unit` waits for, in words; `since` is the tick of the line at which the unit's time began. Returns a new
- * reference to a string, to JSON null if it waits for nothing; NULL: memory is short. */
+/* What motor 1..4 of `unit` waits for, in words. Returns a new reference: a string, or JSON null if it waits for nothing; NULL:
+ * memory is short. */
 json_t *waits_for_json(const struct rkm04_unit *unit, unsigned motor);
 
 #endif

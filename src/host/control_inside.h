@@ -1,0 +1,104 @@
+/* control_inside.h: what the parts of the control socket share. */
+#ifndef RKM04_HOST_CONTROL_INSIDE_H
+#define RKM04_HOST_CONTROL_INSIDE_H
+
+#include "condition.h"
+#include "control.h"
+#include "control_peer.h"
+#include "control_rpc.h"
+#include "control_socket.h"
+
+#define CONTROL_CLIENTS 64u
+#define CONTROL_WAITS 64u        /* of a client at a time */
+#define CONTROL_SUBSCRIPTIONS 16u /* of a client at a time */
+#define CONTROL_TRACES 16u       /* at a time */
+
+struct trace_file;
+struct wire_file;
+
+/* A file begun with trace.start; one of the two. */
+struct control_trace {
+    unsigned number; /* 0: this place is free */
+    unsigned line;
+    char *path;
+    struct trace_file *trace;
+    struct wire_file *wire;
+};
+
+struct control {
+    uv_loop_t *loop;
+    struct bus *const *buses;
+    unsigned lines;
+    struct control_calls calls;
+    struct control_socket socket;
+
+    uv_pipe_t listener;
+    uv_prepare_t turn;  /* once a turn of the loop: what has been gathered for clients goes out */
+    uv_idle_t work;     /* runs while there are lines to be obeyed */
+    uv_timer_t look;    /* runs while somebody has ended its sending: has it gone? */
+    uv_timer_t ending;  /* shutdown: the longest time for the answer to be read */
+    bool open, working;
+
+    struct peer *peers;
+    unsigned clients;
+    struct peer *ender; /* who asked for shutdown; NULL: nobody */
+    struct control_trace traces[CONTROL_TRACES];
+    unsigned last_trace;
+};
+
+/* What became of a request. */
+enum control_done {
+    CONTROL_DONE, /* it has been answered, or will be (wait) */
+    CONTROL_LATER /* it cannot be obeyed yet: to be offered again when control_work() has been called */
+};
+
+/* Obey a line of a client, or refuse it. */
+enum control_done control_obey(struct peer *peer, const char *line, size_t length);
+
+/* The emulator is to end when this client has read its answer. */
+void control_end(struct peer *peer);
+
+/* A line was too long, or has no newline. */
+void control_refuse_line(struct peer *peer, int code, const char *text);
+
+/* There may be lines to be obeyed. */
+void control_work(struct control *control);
+
+/* A client has ended its sending: look now and then whether it has gone. */
+void control_look(struct control *control);
+
+/* A client goes: all that it waits for. */
+void control_forget(struct peer *peer);
+
+/* The handle of a client is closed. */
+void control_gone(struct peer *peer);
+
+/* Answer a request; `id` NULL: it wants none. Take the reference to `result`. */
+void control_answer(struct peer *peer, const json_t *id, json_t *result);
+void control_refuse(struct peer *peer, const json_t *id, const struct refusal *refusal);
+
+/* Methods of the host. They return the result, a new reference; NULL: refused, or, where `later` or `again` is set, not yet. */
+struct control_context {
+    struct peer *peer;
+    struct bus *bus;
+    const struct rpc_request *request;
+    bool later; /* it is answered when it comes true, by control_answer() */
+    bool again; /* it cannot be done yet: CONTROL_LATER */
+};
+typedef json_t *control_method(struct control_context *context, struct refusal *refusal);
+
+control_method control_wait, control_advance;             /* control_time.c */
+control_method control_subscribe, control_unsubscribe;    /* control_subscribe.c */
+control_method control_trace_start, control_trace_stop;   /* control_trace.c */
+
+/* The client has read: an `advance` that waited for that goes on. */
+void control_time_go_on(struct peer *peer);
+
+/* A client goes. */
+void control_time_forget(struct peer *peer);
+void control_subscribe_forget(struct peer *peer);
+
+/* The socket is closed: end all files. */
+void control_trace_end(struct control *control);
+
+#endif

@@ -1,0 +1,145 @@
+/* What clients can ask for: the methods that have to do with this process and its clocks. Everything else is a command of the
+ * line (src/sim/command.c). */
+#include <stdlib.h>
+#include <string.h>
+
+#include "control_inside.h"
+
+/* ---- Answers -------------------------------------------------------------------------------------------------------- */
+
+static void say(struct peer *peer, char *text)
+{
+    if (text)
+        peer_say(peer, text, strlen(text));
+    else
+        peer->failed = true; /* it waits for an answer that cannot be given */
+    free(text);
+}
+
+void control_answer(struct peer *peer, const json_t *id, json_t *result)
+{
+    if (id)
+        say(peer, rpc_result(id, result));
+    else
+        json_decref(result);
+}
+
+void control_refuse(struct peer *peer, const json_t *id, const struct refusal *refusal)
+{
+    if (id)
+        say(peer, rpc_error(id, refusal));
+}
+
+void control_refuse_line(struct peer *peer, int code, const char *text)
+{
+    struct refusal refusal;
+    refuse(&refusal, code, "%s", text);
+    control_refuse(peer, json_null(), &refusal);
+}
+
+/* ---- Methods -------------------------------------------------------------------------------------------------------- */
+
+static json_t *units(struct control_context *context, struct refusal *refusal)
+{
+    static const char *const none[] = {NULL};
+    if (!params_known(context->request->params, none, refusal))
+        return NULL;
+    struct sim *sim = bus_sim(context->bus);
+    json_t *list = json_array();
+    for (unsigned number = 1; number <= sim_units(sim); number++)
+        json_array_append_new(list, json_string(sim->unit[number - 1].name));
+    return json_pack("{s:I, s:i, s:o}", "t_us", (json_int_t)sim_now(sim), "lines", (int)context->peer->control->lines, "units",
+                     list);
+}
+
+/* Of one line, or of all: then of none if one of them cannot. */
+static bool set_clocks(const struct control_context *context, const char *text, struct refusal *refusal)
+{
+    const struct control *control = context->peer->control;
+    if (context->request->line_given)
+        return bus_set_clock(context->bus, text, refusal);
+    for (unsigned line = 0; line < control->lines; line++)
+        if (!bus_set_clock(control->buses[line], text, refusal))
+            return false;
+    return true;
+}
+
+static json_t *set_clock(struct control_context *context, struct refusal *refusal)
+{
+    static const char *const names[] = {"clock", NULL};
+    const json_t *params = context->request->params;
+    if (!params_known(params, names, refusal))
+        return NULL;
+    if (json_object_get(params, "clock")) {
+        const char *text = param_string(params, "clock", refusal);
+        if (!text || !set_clocks(context, text, refusal))
+            return NULL;
+    }
+    return json_pack("{s:I, s:s}", "t_us", (json_int_t)sim_now(bus_sim(context->bus)), "clock", context->bus->clock_text);
+}
+
+static json_t *shut_down(struct control_context *context, struct refusal *refusal)
+{
+    static const char *const none[] = {NULL};
+    if (!params_known(context->request->params, none, refusal))
+        return NULL;
+    control_end(context->peer);
+    return json_pack("{s:I}", "t_us", (json_int_t)sim_now(bus_sim(context->bus)));
+}
+
+static const struct {
+    const char *name;
+    control_method *function;
+} methods[] = {
+    {"units", units},
+    {"clock", set_clock},
+    {"shutdown", shut_down},
+    {"wait", control_wait},
+    {"advance", control_advance},
+    {"subscribe", control_subscribe},
+    {"unsubscribe", control_unsubscribe},
+    {"trace.start", control_trace_start},
+    {"trace.stop", control_trace_stop},
+};
+
+static control_method *find(const char *name)
+{
+    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
+        if (strcmp(methods[i].name, name) == 0)
+            return methods[i].function;
+    return NULL;
+}
+
+/* A command of the line, at its present tick. What it leads to is looked at at once. */
+static json_t *command(struct control_context *context, struct refusal *refusal)
+{
+    const struct rpc_request *request = context->request;
+    json_t *result = sim_command(bus_sim(context->bus), request->method, request->params, refusal);
+    if (!result)
+        return NULL;
+    bus_changed(context->bus);
+    if (strcmp(request->method, "state") == 0)
+        json_object_set_new(result, "clock", json_string(context->bus->clock_text));
+    return result;
+}
+
+enum control_done control_obey(struct peer *peer, const char *line, size_t length)
+{
+    struct control *control = peer->control;
+    struct rpc_request request;
+    struct refusal refusal = {.code = REFUSED_MEMORY, .text = "memory is short"};
+    struct control_context context = {.peer = peer, .request = &request};
+    json_t *result = NULL;
+    bool well = rpc_read(&request, line, length, control->lines, &refusal);
+    if (well) {
+        control_method *method = find(request.method);
+        context.bus = control->buses[request.line];
+        result = method ? method(&context, &refusal) : command(&context, &refusal);
+    }
+    if (result)
+        control_answer(peer, request.id, result);
+    else if (!context.later && !context.again)
+        control_refuse(peer, request.id, &refusal);
+    rpc_end(&request);
+    return context.again ? CONTROL_LATER : CONTROL_DONE;
+}

@@ -1,0 +1,174 @@
+#include "control_socket.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "log.h"
+
+#define RECORD "rkm04 process %ld, control socket %ju:%ju" /* in the lock file: whose it is; device and number of the file */
+#define RECORD_MAX 128
+
+/* ---- The lock ------------------------------------------------------------------------------------------------------- */
+
+/* Open and lock PATH.lock. Returns false with errno; EWOULDBLOCK: another holds it, its record is in `record`. */
+static bool lock(struct control_socket *control, char record[RECORD_MAX])
+{
+    struct stat ours, there;
+    for (;;) {
+        int fd = open(control->lock_path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0600);
+        if (fd < 0)
+            return false;
+        bool locked = flock(fd, LOCK_EX | LOCK_NB) == 0;
+        int why = errno;
+        ssize_t length = pread(fd, record, RECORD_MAX - 1, 0);
+        record[length > 0 ? length : 0] = '\0';
+        record[strcspn(record, "\n")] = '\0';
+        if (!locked) {
+            close(fd);
+            errno = why;
+            return false;
+        }
+        /* The one before us may have removed the file between our open and our lock. */
+        if (fstat(fd, &ours) == 0 && lstat(control->lock_path, &there) == 0 && ours.st_ino == there.st_ino &&
+            ours.st_dev == there.st_dev) {
+            control->lock = fd;
+            return true;
+        }
+        close(fd);
+    }
+}
+
+static void unlock(struct control_socket *control)
+{
+    unlink(control->lock_path);
+    close(control->lock);
+    control->lock = -1;
+}
+
+/* Say in the lock file which socket is ours. */
+static bool write_record(struct control_socket *control)
+{
+    char record[RECORD_MAX];
+    struct stat made;
+    if (lstat(control->path, &made) != 0)
+        return false;
+    control->device = made.st_dev;
+    control->inode = made.st_ino;
+    int length = snprintf(record, sizeof record, RECORD "\n", (long)getpid(), (uintmax_t)made.st_dev, (uintmax_t)made.st_ino);
+    return ftruncate(control->lock, 0) == 0 && pwrite(control->lock, record, (size_t)length, 0) == length;
+}
+
+/* ---- What is there -------------------------------------------------------------------------------------------------- */
+
+static bool is_socket(const char *path, uintmax_t device, uintmax_t inode)
+{
+    struct stat found;
+    return lstat(path, &found) == 0 && S_ISSOCK(found.st_mode) && found.st_dev == device && found.st_ino == inode;
+}
+
+/* Does nobody listen any more? */
+static bool is_dead(const struct sockaddr_un *address)
+{
+    int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    bool dead = fd >= 0 && connect(fd, (const struct sockaddr *)address, sizeof *address) != 0 && errno == ECONNREFUSED;
+    if (fd >= 0)
+        close(fd);
+    return dead;
+}
+
+/* Remove what a killed emulator has left. Returns false if something else is there (reported). */
+static bool clear_stale(const struct control_socket *control, const struct sockaddr_un *address, const char *record)
+{
+    struct stat found;
+    long pid;
+    uintmax_t device, inode;
+    if (lstat(control->path, &found) != 0 && errno == ENOENT)
+        return true;
+    if (sscanf(record, RECORD, &pid, &device, &inode) == 3 && is_socket(control->path, device, inode) && is_dead(address) &&
+        unlink(control->path) == 0)
+        return true;
+    log_error("%s is there already and is not a control socket that an emulator left behind: remove it, or choose another "
+              "--control", control->path);
+    return false;
+}
+
+/* ---- Begin and end -------------------------------------------------------------------------------------------------- */
+
+static bool claim(struct control_socket *control, const struct sockaddr_un *address)
+{
+    char record[RECORD_MAX];
+    if (!lock(control, record)) {
+        if (errno == EWOULDBLOCK)
+            log_error("another emulator (%s) holds the control socket %s: end it, or choose another --control",
+                      record[0] ? record : "about to start", control->path);
+        else
+            log_error("cannot lock %s: %s; choose a --control in a folder that is there and that you may write to",
+                      control->lock_path, strerror(errno));
+        return false;
+    }
+    long pid;
+    uintmax_t device, inode;
+    if (record[0] != '\0' && sscanf(record, RECORD, &pid, &device, &inode) != 3) {
+        log_error("%s is not a lock file of an emulator: remove it, or choose another --control", control->lock_path);
+        close(control->lock);
+        control->lock = -1;
+        return false;
+    }
+    if (!clear_stale(control, address, record)) {
+        unlock(control);
+        return false;
+    }
+    return true;
+}
+
+/* Mode 0600 from the beginning: there is no moment at which others could connect. bind() makes a file and follows no link. */
+static bool bind_private(struct control_socket *control, const struct sockaddr_un *address)
+{
+    control->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    mode_t mask = umask(0177);
+    bool bound = control->fd >= 0 && bind(control->fd, (const struct sockaddr *)address, sizeof *address) == 0;
+    int why = errno;
+    umask(mask);
+    errno = why;
+    return bound && write_record(control);
+}
+
+bool control_socket_open(struct control_socket *control, const char *path)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    *control = (struct control_socket){.lock = -1, .fd = -1};
+    if (path[0] == '\0' || strlen(path) >= sizeof address.sun_path) {
+        log_error("--control %s: expected a path of 1 to %zu characters: the system takes no longer one for a socket", path,
+                  sizeof address.sun_path - 1);
+        return false;
+    }
+    snprintf(address.sun_path, sizeof address.sun_path, "%s", path);
+    snprintf(control->path, sizeof control->path, "%s", path);
+    snprintf(control->lock_path, sizeof control->lock_path, "%s.lock", path);
+    if (!claim(control, &address))
+        return false;
+    if (bind_private(control, &address))
+        return true;
+    log_error("cannot make the control socket %s: %s; choose another --control", path, strerror(errno));
+    if (control->fd >= 0)
+        close(control->fd);
+    control->fd = -1;
+    control_socket_release(control);
+    return false;
+}
+
+void control_socket_release(struct control_socket *control)
+{
+    if (control->lock < 0)
+        return;
+    if (control->inode != 0 && is_socket(control->path, control->device, control->inode))
+        unlink(control->path);
+    unlock(control);
+}

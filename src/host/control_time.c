@@ -1,0 +1,232 @@
+/* wait and advance: answers that come when something has come true.
+ *
+ * An `advance` of a client that subscribes is done in slices, and goes on only when the client has read what it led to: nothing
+ * is lost however fast time runs. */
+#include <stdlib.h>
+
+#include "control_inside.h"
+
+#define HOUR UINT64_C(3600000000) /* ticks */
+#define SLICE 50000u              /* ticks: at 16 000 steps/s and motor some 400 KB of events */
+
+/* A request that is not yet answered. */
+struct control_call {
+    struct peer *peer;
+    struct bus *bus;
+    json_t *id;            /* NULL: it is not to be answered */
+    struct bus_waiter waiter;
+    uint64_t limit;        /* tick; waiter.limit may be a slice on the way to it */
+    bool moves;            /* it is an `advance` */
+    bool pausing;          /* between two slices, until the client has read */
+    struct control_call *next; /* of the same client */
+};
+
+/* ---- The end of a call ---------------------------------------------------------------------------------------------- */
+
+static void take_off(struct control_call *call)
+{
+    struct peer *peer = call->peer;
+    for (struct control_call **at = &peer->calls; *at; at = &(*at)->next) {
+        if (*at == call) {
+            *at = call->next;
+            break;
+        }
+    }
+    if (call->moves)
+        peer->advance = NULL;
+    else
+        peer->waits--;
+    control_work(peer->control); /* those who wanted to move the same clock, and what stands behind this call */
+}
+
+static void free_call(struct control_call *call)
+{
+    condition_free(call->waiter.condition);
+    json_decref(call->id);
+    free(call);
+}
+
+static json_t *outcome(const struct control_call *call, bool holds)
+{
+    json_t *result = json_pack("{s:I}", "t_us", (json_int_t)sim_now(&call->bus->sim));
+    struct condition *condition = call->waiter.condition;
+    if (!condition)
+        return result;
+    json_object_set_new(result, "holds", json_boolean(holds));
+    if (!holds) {
+        char *text = condition_text(condition);
+        json_object_set_new(result, "text", json_string(text ? text : ""));
+        free(text);
+    }
+    return result;
+}
+
+static void finish(struct control_call *call, bool holds)
+{
+    take_off(call);
+    control_answer(call->peer, call->id, outcome(call, holds));
+    free_call(call);
+}
+
+void control_time_forget(struct peer *peer)
+{
+    while (peer->calls) {
+        struct control_call *call = peer->calls;
+        if (!call->pausing)
+            bus_wait_cancel(call->bus, &call->waiter);
+        take_off(call);
+        free_call(call);
+    }
+}
+
+/* ---- On the way ----------------------------------------------------------------------------------------------------- */
+
+/* The end of a slice that begins now. A while in which nothing happens does not count. */
+static uint64_t slice_end(const struct sim *sim)
+{
+    uint64_t event = sim_next_event(sim), byte = sim_due(sim);
+    uint64_t from = event < byte ? event : byte;
+    if (from < sim_now(sim))
+        from = sim_now(sim);
+    return from > RKM04_NEVER - SLICE ? RKM04_NEVER : from + SLICE;
+}
+
+/* Let time run: to the limit, or to the end of a slice. Returns false if the clock no longer stands. */
+static bool move_on(struct control_call *call)
+{
+    uint64_t end = call->peer->subscriptions ? slice_end(&call->bus->sim) : RKM04_NEVER;
+    call->waiter.limit = end < call->limit ? end : call->limit;
+    call->pausing = false;
+    return bus_advance(call->bus, &call->waiter);
+}
+
+static void on_done(struct bus_waiter *waiter, bool holds)
+{
+    struct control_call *call = waiter->context;
+    if (holds || sim_now(&call->bus->sim) >= call->limit) {
+        finish(call, holds);
+        return;
+    }
+    call->pausing = true;
+    if (peer_queue(call->peer) <= PEER_QUEUE_SMALL && !move_on(call))
+        finish(call, false);
+}
+
+void control_time_go_on(struct peer *peer)
+{
+    struct control_call *call = peer->advance;
+    if (!call || !call->pausing || peer_queue(peer) > PEER_QUEUE_SMALL)
+        return;
+    control_work(peer->control); /* what this leads to is sent in the next turn */
+    if (!move_on(call))
+        finish(call, false);
+}
+
+/* ---- The methods ---------------------------------------------------------------------------------------------------- */
+
+static struct control_call *new_call(struct control_context *context, struct condition *condition, uint64_t limit, bool moves)
+{
+    struct control_call *call = calloc(1, sizeof *call);
+    if (!call)
+        return NULL;
+    struct peer *peer = context->peer;
+    uint64_t now = sim_now(&context->bus->sim);
+    call->peer = peer;
+    call->bus = context->bus;
+    call->id = json_incref((json_t *)context->request->id);
+    call->limit = limit > RKM04_NEVER - now ? RKM04_NEVER : now + limit;
+    call->moves = moves;
+    call->waiter = (struct bus_waiter){.condition = condition, .limit = call->limit, .done = on_done, .context = call};
+    call->next = peer->calls;
+    peer->calls = call;
+    if (moves)
+        peer->advance = call;
+    else
+        peer->waits++;
+    if (condition)
+        condition_arm(condition);
+    return call;
+}
+
+static struct condition *read_until(struct control_context *context, struct refusal *refusal)
+{
+    const json_t *until = json_object_get(context->request->params, "until");
+    if (!until) {
+        refuse(refusal, REFUSED_PARAMS, "until: missing: expected a condition, as in {\"motor\": 1, \"state\": \"idle\"}");
+        return NULL;
+    }
+    return condition_read(bus_sim(context->bus), until, refusal);
+}
+
+json_t *control_wait(struct control_context *context, struct refusal *refusal)
+{
+    static const char *const names[] = {"until", "limit", NULL};
+    const json_t *params = context->request->params;
+    uint64_t limit = RKM04_NEVER;
+    if (!params_known(params, names, refusal) ||
+        (json_object_get(params, "limit") && !param_time(params, "limit", 0, &limit, refusal)))
+        return NULL;
+    if (context->peer->waits == CONTROL_WAITS)
+        return refuse(refusal, REFUSED_STATE, "too many waits: expected at most %u of a client at a time", CONTROL_WAITS);
+    struct condition *condition = read_until(context, refusal);
+    struct control_call *call = condition ? new_call(context, condition, limit, false) : NULL;
+    if (!call) {
+        condition_free(condition);
+        return NULL;
+    }
+    context->later = true;
+    bus_wait(context->bus, &call->waiter);
+    return NULL;
+}
+
+/* What `advance` is to do: either of `ticks`, `until`. */
+static bool read_advance(struct control_context *context, struct condition **condition, uint64_t *ticks, struct refusal *refusal)
+{
+    static const char *const names[] = {"ticks", "until", "limit", NULL};
+    const json_t *params = context->request->params;
+    bool until = json_object_get(params, "until") != NULL, given = json_object_get(params, "ticks") != NULL;
+    if (!params_known(params, names, refusal))
+        return false;
+    if (until == given || (given && json_object_get(params, "limit"))) {
+        refuse(refusal, REFUSED_PARAMS, "expected either ticks, a time, or until, a condition, with limit, a time");
+        return false;
+    }
+    if (given)
+        return param_time(params, "ticks", RKM04_NEVER, ticks, refusal);
+    if (!param_time(params, "limit", HOUR, ticks, refusal))
+        return false;
+    *condition = read_until(context, refusal);
+    return *condition != NULL;
+}
+
+/* Is another client moving this clock, perhaps between two slices? */
+static bool is_being_moved(const struct control_context *context)
+{
+    if (context->bus->advancing)
+        return true;
+    for (const struct peer *peer = context->peer->control->peers; peer; peer = peer->next)
+        if (peer->advance && peer->advance->bus == context->bus)
+            return true;
+    return false;
+}
+
+json_t *control_advance(struct control_context *context, struct refusal *refusal)
+{
+    struct condition *condition = NULL;
+    uint64_t ticks;
+    if (!bus_stepped(context->bus))
+        return refuse(refusal, REFUSED_STATE, "the clock goes by itself (%s): set it to stepped with clock, or wait",
+                      context->bus->clock_text);
+    context->again = is_being_moved(context);
+    if (context->again || !read_advance(context, &condition, &ticks, refusal))
+        return NULL;
+    struct control_call *call = new_call(context, condition, ticks, true);
+    if (!call) {
+        condition_free(condition);
+        return NULL;
+    }
+    context->later = true;
+    if (!move_on(call))
+        finish(call, false);
+    return NULL;
+}

@@ -1,0 +1,137 @@
+/* trace.start and trace.stop: files begun and ended while the emulator runs. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "control_inside.h"
+#include "log.h"
+#include "trace_file.h"
+#include "wire_file.h"
+
+/* End a file. Returns 0 or the errno of the first failure. */
+static int end(struct control_trace *trace)
+{
+    int error = trace->trace ? trace_file_end(trace->trace) : wire_file_end(trace->wire);
+    free(trace->path);
+    *trace = (struct control_trace){0};
+    return error;
+}
+
+void control_trace_end(struct control *control)
+{
+    for (unsigned i = 0; i < CONTROL_TRACES; i++) {
+        struct control_trace *trace = &control->traces[i];
+        if (trace->number == 0)
+            continue;
+        bus_sim(control->buses[trace->line]);
+        char *path = strdup(trace->path);
+        int error = end(trace);
+        if (error != 0)
+            log_error("cannot write %s: %s", path ? path : "a trace", strerror(error));
+        free(path);
+    }
+}
+
+/* ---- Begin ---------------------------------------------------------------------------------------------------------- */
+
+static struct control_trace *free_place(struct control *control)
+{
+    for (unsigned i = 0; i < CONTROL_TRACES; i++)
+        if (control->traces[i].number == 0)
+            return &control->traces[i];
+    return NULL;
+}
+
+/* Nobody writes the same file twice. */
+static bool is_written(const struct control *control, const char *path)
+{
+    for (unsigned i = 0; i < CONTROL_TRACES; i++)
+        if (control->traces[i].number != 0 && strcmp(control->traces[i].path, path) == 0)
+            return true;
+    return false;
+}
+
+static bool begin(struct control_trace *trace, struct sim *sim, const char *path, struct refusal *refusal)
+{
+    char *error = NULL;
+    if (trace_file_named(path))
+        trace->trace = trace_file_begin(sim, path, &error);
+    else
+        trace->wire = wire_file_begin(sim, path, &error);
+    if (trace->trace || trace->wire)
+        return true;
+    if (error)
+        refuse(refusal, REFUSED_STATE, "%s", error);
+    free(error);
+    return false;
+}
+
+json_t *control_trace_start(struct control_context *context, struct refusal *refusal)
+{
+    static const char *const names[] = {"file", NULL};
+    struct control *control = context->peer->control;
+    const json_t *params = context->request->params;
+    const char *path = params_known(params, names, refusal) ? param_string(params, "file", refusal) : NULL;
+    if (!path)
+        return NULL;
+    if (!trace_file_named(path) && !wire_file_named(path))
+        return refuse(refusal, REFUSED_PARAMS, "file: expected %s, or %s", TRACE_FILE_EXPECTED, WIRE_FILE_EXPECTED);
+    if (is_written(control, path))
+        return refuse(refusal, REFUSED_STATE, "file: %.200s is being written already", path);
+    struct control_trace *trace = free_place(control);
+    if (!trace)
+        return refuse(refusal, REFUSED_STATE, "too many traces: expected at most %u at a time", CONTROL_TRACES);
+    char *copy = strdup(path);
+    struct sim *sim = bus_sim(context->bus);
+    if (!copy || !begin(trace, sim, path, refusal)) {
+        free(copy);
+        return NULL;
+    }
+    trace->number = ++control->last_trace;
+    trace->line = context->request->line;
+    trace->path = copy;
+    bus_changed(context->bus); /* it looks more often while somebody watches */
+    return json_pack("{s:I, s:i, s:s}", "t_us", (json_int_t)sim_now(sim), "trace", (int)trace->number, "file", trace->path);
+}
+
+/* ---- End ------------------------------------------------------------------------------------------------------------ */
+
+/* The trace that is meant: by its number, or the only one. */
+static struct control_trace *find(struct control *control, const json_t *params, struct refusal *refusal)
+{
+    int64_t number;
+    struct control_trace *found = NULL;
+    unsigned count = 0;
+    if (!param_integer_or(params, "trace", 1, INT32_MAX, 0, &number, refusal))
+        return NULL;
+    for (unsigned i = 0; i < CONTROL_TRACES; i++) {
+        struct control_trace *trace = &control->traces[i];
+        if (trace->number != 0 && (number == 0 || trace->number == number)) {
+            found = trace;
+            count++;
+        }
+    }
+    if (count == 1)
+        return found;
+    if (number != 0)
+        return refuse(refusal, REFUSED_PARAMS, "trace: there is no trace %lld", (long long)number), NULL;
+    return refuse(refusal, REFUSED_PARAMS, count == 0 ? "there is no trace" : "trace: missing: there are several"), NULL;
+}
+
+json_t *control_trace_stop(struct control_context *context, struct refusal *refusal)
+{
+    static const char *const names[] = {"trace", NULL};
+    struct control *control = context->peer->control;
+    const json_t *params = context->request->params;
+    struct control_trace *trace = params_known(params, names, refusal) ? find(control, params, refusal) : NULL;
+    if (!trace)
+        return NULL;
+    struct sim *sim = bus_sim(control->buses[trace->line]);
+    json_t *result = json_pack("{s:I, s:s}", "t_us", (json_int_t)sim_now(sim), "file", trace->path);
+    int error = end(trace);
+    if (error == 0)
+        return result;
+    refuse(refusal, REFUSED_STATE, "cannot write %.200s: %s", json_string_value(json_object_get(result, "file")),
+           strerror(error));
+    json_decref(result);
+    return NULL;
+}
