@@ -56,8 +56,8 @@ static void on_news(void *context, const struct watch_event *event)
     const char *unit = event->unit > 0 ? bus->sim.unit[event->unit - 1u].name : "";
     if (event->kind == WATCH_FAULT)
         tell_fault(bus, event);
-    else if (event->kind == WATCH_BYTE)
-        bus_listener_hear(&bus->listener, &event->byte);
+    else if (event->kind == WATCH_MESSAGE)
+        bus_coverage_message(bus->coverage, event->message);
     else if (event->kind == WATCH_POWER)
         bus_say(bus, event->tick, "unit %s: power %s", unit, event->value ? "on" : "off");
     else if (event->kind == WATCH_PLANT)
@@ -70,7 +70,7 @@ static void watch_for_log(struct bus *bus)
 {
     bus->news = (struct watcher){
         .kinds = WATCH_BIT(WATCH_FAULT) | WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_PLANT) | WATCH_BIT(WATCH_INJECTED) |
-                 (bus->coverage ? WATCH_BIT(WATCH_BYTE) : 0),
+                 (bus->coverage ? WATCH_BIT(WATCH_MESSAGE) : 0),
         .see = on_news,
         .context = bus,
     };
@@ -219,10 +219,6 @@ bool bus_begin(struct bus *bus, unsigned number, const struct serve_options *opt
     line_none(&bus->ports.line);
     bus->clock = options->clock;
     snprintf(bus->clock_text, sizeof bus->clock_text, "%s", options->clock_text);
-    if (!bus_listener_begin(&bus->listener, coverage, options->config.framing, &options->nodes)) {
-        log_error("out of memory");
-        return false;
-    }
     if (!bus_ports_open(bus, loop, watch) || !open_flash(bus) || !begin_sim(bus))
         return false;
     watch_for_log(bus);
@@ -258,7 +254,6 @@ bool bus_end(struct bus *bus)
     bus_ports_close(bus);
     if (!bus_files_end(bus))
         well = false;
-    bus_listener_end(&bus->listener);
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
         if (bus->unit[at].open && !flash_file_close(&bus->unit[at].flash))
             well = false;

@@ -48,7 +48,6 @@ struct bus {
     const struct bus_calls *calls;
     void *context;
     struct coverage *coverage; /* NULL: not wanted */
-    struct bus_listener listener;
     struct watcher news;  /* for the log */
 
     struct sim sim;
