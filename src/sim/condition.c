@@ -74,7 +74,7 @@ static int64_t value(const struct term *term, struct sim *sim)
     }
 }
 
-static bool compares(int64_t is, enum term_relation relation, int64_t wanted)
+bool term_compares(int64_t is, enum term_relation relation, int64_t wanted)
 {
     switch (relation) {
     case TERM_EQUAL:
@@ -97,7 +97,7 @@ static bool holds(const struct term *term, struct sim *sim)
     if (term->kind == TERM_MESSAGE)
         return term->message.seen;
     if (term->kind != TERM_ALL && term->kind != TERM_ANY)
-        return compares(value(term, sim), (enum term_relation)term->relation, term->value);
+        return term_compares(value(term, sim), (enum term_relation)term->relation, term->value);
     bool any = term->kind == TERM_ANY;
     for (size_t i = 0; i < term->subs; i++) {
         if (holds(&term->sub[i], sim) == any)
@@ -275,7 +275,9 @@ static void print_value(FILE *out, const struct term *term, int64_t number)
     }
 }
 
-static void print_message(FILE *out, const struct term_message *message, struct sim *sim)
+enum part { PART_WANTED, PART_FOUND, PART_BOTH };
+
+static void print_message(FILE *out, const struct term_message *message, struct sim *sim, enum part part)
 {
     fputs(message->dropped ? "a dropped message" : "a message", out);
     if (message->number >= 0)
@@ -288,14 +290,15 @@ static void print_message(FILE *out, const struct term_message *message, struct 
         fputs(" from a unit", out);
     else if (message->from > 0)
         fprintf(out, " from unit %s", sim->unit[message->from - 1].name);
-    fputs(message->seen ? " (one has passed)" : " (none has passed)", out);
+    if (part != PART_WANTED)
+        fputs(message->seen ? " (one has passed)" : " (none has passed)", out);
 }
 
-static void print_term(FILE *out, const struct term *term, struct sim *sim)
+static void print_term(FILE *out, const struct term *term, struct sim *sim, enum part part)
 {
     bool bit = term->kind == TERM_INPUT || term->kind == TERM_OUTPUT || term->kind == TERM_VARIABLE;
     if (term->kind == TERM_MESSAGE) {
-        print_message(out, &term->message, sim);
+        print_message(out, &term->message, sim, part);
         return;
     }
     if (term->unit != 0 && sim_units(sim) > 1)
@@ -305,42 +308,66 @@ static void print_term(FILE *out, const struct term *term, struct sim *sim)
     fputs(term_name((enum term_kind)term->kind), out);
     if (bit)
         fprintf(out, " %02u", term->number);
-    fprintf(out, " %s ", term_relation_name((enum term_relation)term->relation));
+    fputc(' ', out);
+    if (part == PART_FOUND) {
+        print_value(out, term, value(term, sim));
+        return;
+    }
+    fprintf(out, "%s ", term_relation_name((enum term_relation)term->relation));
     print_value(out, term, term->value);
+    if (part == PART_WANTED)
+        return;
     fputs(" (is ", out);
     print_value(out, term, value(term, sim));
     fputc(')', out);
 }
 
-static void print(FILE *out, const struct term *term, struct sim *sim, bool inside)
+/* What is found is a list; what is wanted has its structure. */
+static void print(FILE *out, const struct term *term, struct sim *sim, enum part part, bool inside)
 {
     if (term->kind != TERM_ALL && term->kind != TERM_ANY) {
-        print_term(out, term, sim);
+        print_term(out, term, sim, part);
         return;
     }
-    bool brackets = inside && term->subs > 1;
+    bool brackets = inside && term->subs > 1 && part != PART_FOUND;
+    const char *between = part == PART_FOUND ? ", " : term->kind == TERM_ANY ? " or " : " and ";
     if (brackets)
         fputc('(', out);
     for (size_t i = 0; i < term->subs; i++) {
         if (i > 0)
-            fputs(term->kind == TERM_ANY ? " or " : " and ", out);
-        print(out, &term->sub[i], sim, inside || term->subs > 1);
+            fputs(between, out);
+        print(out, &term->sub[i], sim, part, inside || term->subs > 1);
     }
     if (brackets)
         fputc(')', out);
 }
 
-char *condition_text(struct condition *condition)
+static char *text_of(struct condition *condition, enum part part)
 {
     char *text = NULL;
     size_t length;
     FILE *out = open_memstream(&text, &length);
     if (out == NULL)
         return NULL;
-    print(out, &condition->root, condition->sim, false);
+    print(out, &condition->root, condition->sim, part, false);
     if (fclose(out) != 0) {
         free(text);
         return NULL;
     }
     return text;
+}
+
+char *condition_text(struct condition *condition)
+{
+    return text_of(condition, PART_BOTH);
+}
+
+char *condition_wanted(struct condition *condition)
+{
+    return text_of(condition, PART_WANTED);
+}
+
+char *condition_found(struct condition *condition)
+{
+    return text_of(condition, PART_FOUND);
 }

@@ -41,4 +41,8 @@ bool condition_run(struct condition *condition, uint64_t limit);
  * NULL: memory is short. */
 char *condition_text(struct condition *condition);
 
+/* The same in two: "motor 1 position >= 5000", "motor 1 position 1200". */
+char *condition_wanted(struct condition *condition);
+char *condition_found(struct condition *condition);
+
 #endif

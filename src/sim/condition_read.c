@@ -26,6 +26,17 @@ const char *term_relation_name(enum term_relation relation)
     return relation_names[relation];
 }
 
+bool term_relation_named(const char *name, enum term_relation *relation)
+{
+    for (size_t i = 0; i < RELATIONS; i++) {
+        if (strcmp(name, relation_names[i]) == 0) {
+            *relation = (enum term_relation)i;
+            return true;
+        }
+    }
+    return false;
+}
+
 void term_clear(struct term *term)
 {
     for (size_t i = 0; i < term->subs; i++)
@@ -96,10 +107,8 @@ static bool read_number(struct reader *r, struct term *group, struct term term, 
     if (json_object_size(json) == 0)
         return REFUSE("%s: expected %s, found {}", key, what);
     json_object_foreach((json_t *)json, name, bound) {
-        size_t relation = 0;
-        while (relation < RELATIONS && strcmp(name, relation_names[relation]) != 0)
-            relation++;
-        if (relation == RELATIONS)
+        enum term_relation relation;
+        if (!term_relation_named(name, &relation))
             return REFUSE("%s: expected one of ==, !=, <, <=, >, >=, found \"%.20s\"", key, name);
         if (!is_whole(bound, &term, &term.value))
             return REFUSE("%s: expected %s behind \"%s\"", key, what, name);

@@ -60,5 +60,9 @@ void term_clear(struct term *term);
 
 /* Names of the relations, as they are written: ">=". */
 const char *term_relation_name(enum term_relation relation);
+bool term_relation_named(const char *name, enum term_relation *relation);
+
+/* Does `is` stand in this relation to `wanted`? */
+bool term_compares(int64_t is, enum term_relation relation, int64_t wanted);
 
 #endif

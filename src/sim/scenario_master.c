@@ -1,0 +1,205 @@
+/* What the master of a scenario sends, and what it makes of the answers. */
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scenario_running.h"
+
+/* ---- Listening ------------------------------------------------------------------------------------------------------ */
+
+static const struct rkm04_framing *framing_of(const struct running *running)
+{
+    return running->scenario->config.unit.framing;
+}
+
+void running_hear(void *context, const uint8_t *bytes, size_t length)
+{
+    struct running *running = context;
+    struct master *master = &running->master;
+    for (size_t i = 0; i < length && !master->answered; i++) {
+        if (!framing_of(running)->receive(&master->receiver, bytes[i], sim_now(running->sim), master->buffer,
+                                          sizeof master->buffer))
+            continue;
+        if (!master->listening)
+            continue;
+        master->answered = true;
+        master->dnode = master->receiver.dnode;
+        master->snode = master->receiver.snode;
+        master->length = master->receiver.length;
+    }
+}
+
+static void listen(struct master *master)
+{
+    master->receiver = (struct rkm04_receiver){0};
+    master->listening = true;
+    master->answered = false;
+}
+
+/* ---- Sending -------------------------------------------------------------------------------------------------------- */
+
+static unsigned address_of(const struct running *running, unsigned unit)
+{
+    return unit == 0 ? 0 : sim_core(running->sim, unit)->config.node;
+}
+
+/* The bytes on the line. Returns them, to be freed, or NULL if memory is short. */
+static uint8_t *frame(const struct running *running, const struct scenario_step *step, size_t *length)
+{
+    const struct rkm04_framing *framing = framing_of(running);
+    const struct scenario_bytes *bytes = &step->bytes;
+    struct rkm04_sender sender;
+    uint8_t *out = malloc(bytes->length * RKM04_FRAME_EDGE_MAX + 2 * RKM04_FRAME_EDGE_MAX);
+    if (out == NULL)
+        return NULL;
+    if (step->action == ACTION_BYTES) {
+        memcpy(out, bytes->byte, bytes->length);
+        *length = bytes->length;
+        return out;
+    }
+    *length = framing->begin(&sender, (uint8_t)address_of(running, step->unit), 0, bytes->length, false, out);
+    for (size_t i = 0; i < bytes->length; i++)
+        *length += framing->put(&sender, bytes->byte[i], out + *length);
+    *length += framing->end(&sender, out + *length);
+    return out;
+}
+
+/* Hand the bytes over and let them pass. *passed: when the last one has. */
+static bool send_bytes(struct running *running, const uint8_t *bytes, size_t length, uint64_t *passed)
+{
+    struct sim *sim = running->sim;
+    size_t handed = 0;
+    *passed = sim_now(sim);
+    while (handed < length) {
+        size_t room = sim_room(sim), part = length - handed < room ? length - handed : room;
+        if (part > 0) {
+            sim_take(sim, bytes + handed, part, sim_now(sim));
+            if (sim->segment.config.timed)
+                *passed = sim_now(sim) + (SEGMENT_ROOM - sim_room(sim) + 1) * WIRE_BYTE / WIRE_TICK + 1;
+            handed += part;
+            sim_advance(sim, sim_now(sim));
+        } else if (!running_turn(running, sim_now(sim) + RKM04_SLOT_TICKS, NULL)) {
+            return false;
+        }
+    }
+    while (!running->over && !running->master.answered && sim_now(sim) < *passed)
+        running_turn(running, *passed, NULL);
+    return !running->over;
+}
+
+/* ---- Judging -------------------------------------------------------------------------------------------------------- */
+
+static char *bytes_text(const struct scenario_bytes *bytes)
+{
+    char *text = NULL;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    if (out == NULL)
+        return NULL;
+    scenario_bytes_print(out, bytes);
+    if (bytes->length == 0 && !bytes->rest)
+        fputs("an empty message", out);
+    fclose(out);
+    return text;
+}
+
+/* `format` has one %s, for the bytes. */
+__attribute__((format(printf, 2, 0))) static char *text_with(const struct scenario_bytes *bytes, const char *format)
+{
+    char *inside = bytes_text(bytes), *text = NULL;
+    if (inside != NULL && asprintf(&text, format, inside) < 0)
+        text = NULL;
+    free(inside);
+    return text;
+}
+
+static char *wanted_text(const struct scenario_step *step)
+{
+    if (step->action == ACTION_SET)
+        return running_text("the answer to the program with flag %u", step->flag);
+    if (step->answer == ANSWER_ANY)
+        return running_text("an answer");
+    if (step->answer == ANSWER_NONE)
+        return running_text("no answer");
+    return text_with(&step->wanted, "the answer %s");
+}
+
+/* Why there is none. */
+static char *silence_text(const struct running *running, uint64_t since)
+{
+    const struct rkm04_receiver *receiver = &running->master.receiver;
+    uint64_t ticks = sim_now(running->sim) - since;
+    unsigned dropped = receiver->bad_check + receiver->malformed + receiver->too_long;
+    char why[80] = "";
+    if (dropped > 0)
+        snprintf(why, sizeof why, "; dropped: %u with a wrong check sum, %u malformed, %u too long", receiver->bad_check,
+                 receiver->malformed, receiver->too_long);
+    else if (receiver->length > 0)
+        snprintf(why, sizeof why, "; an incomplete one, of %u bytes so far", receiver->length);
+    return running_text("no answer within %" PRIu64 ".%06" PRIu64 " s%s", ticks / RKM04_TICKS_PER_SECOND,
+                        ticks % RKM04_TICKS_PER_SECOND, why);
+}
+
+static char *flag_text(const uint8_t *answer)
+{
+    static const char *const meanings[] = {"all right", "bad value", "unknown command", "memory has overflowed"};
+    unsigned flag = answer[2];
+    const char *meaning = flag < sizeof meanings / sizeof meanings[0] ? meanings[flag] : "?";
+    if (flag != 1 && flag != 2)
+        return running_text("flag %u (%s)", flag, meaning);
+    if (answer[3] >= 0x20 && answer[3] < 0x7F)
+        return running_text("flag %u (%s '%c')", flag, meaning, answer[3]);
+    return running_text("flag %u (%s, character %02X)", flag, meaning, answer[3]);
+}
+
+static bool judge_program(struct running *running, const struct scenario_step *step)
+{
+    const struct master *master = &running->master;
+    struct scenario_bytes answer = {.length = master->length, .byte = running->master.buffer};
+    if (master->length != 4 || answer.byte[0] != 2 || answer.byte[1] != step->bytes.byte[1])
+        return running_failed(running, step, sim_now(running->sim), wanted_text(step), text_with(&answer, "the answer %s"));
+    if (answer.byte[2] != step->flag)
+        return running_failed(running, step, sim_now(running->sim), wanted_text(step), flag_text(answer.byte));
+    return true;
+}
+
+static bool judge(struct running *running, const struct scenario_step *step)
+{
+    const struct master *master = &running->master;
+    struct scenario_bytes answer = {.length = master->length, .byte = running->master.buffer};
+    unsigned from = framing_of(running)->answer_names_sender ? master->snode : master->dnode;
+    uint64_t now = sim_now(running->sim);
+    if (step->answer == ANSWER_NONE)
+        return running_failed(running, step, now, wanted_text(step), text_with(&answer, "the answer %s"));
+    if (step->unit > 0 && from != address_of(running, step->unit))
+        return running_failed(running, step, now, wanted_text(step), running_text("an answer from address %u", from));
+    if (step->action == ACTION_SET)
+        return judge_program(running, step);
+    if (step->answer == ANSWER_THIS && !scenario_bytes_match(&step->wanted, answer.byte, answer.length))
+        return running_failed(running, step, now, wanted_text(step), text_with(&answer, "the answer %s"));
+    return true;
+}
+
+bool running_send(struct running *running, const struct scenario_step *step)
+{
+    size_t length;
+    uint64_t passed;
+    uint8_t *bytes = frame(running, step, &length);
+    if (bytes == NULL)
+        return running_no_memory(running);
+    if (step->answer != ANSWER_UNASKED)
+        listen(&running->master);
+    bool well = send_bytes(running, bytes, length, &passed);
+    free(bytes);
+    if (step->answer == ANSWER_UNASKED || !well)
+        return well;
+    while (!running->over && !running->master.answered && sim_now(running->sim) < passed + step->within)
+        running_turn(running, passed + step->within, NULL);
+    running->master.listening = false;
+    if (running->over)
+        return false;
+    if (running->master.answered)
+        return judge(running, step);
+    return step->answer == ANSWER_NONE ||
+           running_failed(running, step, sim_now(running->sim), wanted_text(step), silence_text(running, passed));
+}

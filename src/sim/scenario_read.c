@@ -1,0 +1,306 @@
+/* Scenarios from texts. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "scenario_parts.h"
+#include "time_value.h"
+
+#define TIMEOUT 60000000u /* ticks */
+#define STEPS_MAX 10000u  /* and stimuli, and conditions of `always` */
+#define LATENCY_MAX 2000000u
+#define VERSION_MAX 255u
+
+static const char *const known[] = {
+    "name",    "description", "units", "framing", "baud",    "turnaround",   "speed_change_latency", "version_text", "seed",
+    "plant",   "di",          "timeout", "allow_faults", "always", "stimuli", "steps", NULL,
+};
+
+/* ---- Values --------------------------------------------------------------------------------------------------------- */
+
+static const char *text_of(const struct config_node *map, const char *key, bool *well)
+{
+    const struct config_node *node = config_get(map, key);
+    if (node == NULL)
+        return NULL;
+    if (config_type(node) == CONFIG_TEXT)
+        return config_text(node);
+    *well = config_error(node, "expected %s, a text", key);
+    return NULL;
+}
+
+static bool read_time_up_to(const struct config_node *map, const char *key, uint64_t most, uint64_t *ticks)
+{
+    const struct config_node *node = config_get(map, key);
+    if (node == NULL)
+        return true;
+    if (!config_time(node, key, ticks))
+        return false;
+    return *ticks <= most ||
+           config_error(node, "expected %s of at most %llu us", key, (unsigned long long)most);
+}
+
+static bool read_line(struct scenario *scenario, const struct config_node *root)
+{
+    bool well = true;
+    uint64_t turnaround = SEGMENT_TURNAROUND, latency = 0;
+    struct sim_config *config = &scenario->config;
+    const char *units = text_of(root, "units", &well), *framing = text_of(root, "framing", &well);
+    const char *baud = text_of(root, "baud", &well);
+    if (!node_list_read(&config->nodes, units != NULL ? units : "1"))
+        well = config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED);
+    config->unit.framing = rkm04_framing_named(framing != NULL ? framing : "hdlc");
+    if (config->unit.framing == NULL)
+        well = config_error(config_get(root, "framing"), "expected framing, hdlc or plain, found \"%.20s\"", framing);
+    config->timed = baud == NULL || strcmp(baud, "0") != 0;
+    if (baud != NULL && strcmp(baud, "0") != 0 && strcmp(baud, "19200") != 0)
+        well = config_error(config_get(root, "baud"), "expected baud, 19200 or 0, found \"%.20s\"", baud);
+    well = read_time_up_to(root, "turnaround", SEGMENT_TURNAROUND_MAX, &turnaround) && well;
+    well = read_time_up_to(root, "speed_change_latency", LATENCY_MAX, &latency) && well;
+    if (latency % 1000 != 0)
+        well = config_error(config_get(root, "speed_change_latency"), "expected speed_change_latency in whole ms");
+    config->turnaround = (uint32_t)turnaround;
+    config->unit.speed_change_latency = (uint16_t)(latency / 1000);
+    return well;
+}
+
+static bool read_rest(struct scenario *scenario, const struct config_node *root)
+{
+    bool well = true;
+    int64_t seed = 1;
+    const struct config_node *node = config_get(root, "seed");
+    scenario->name = text_of(root, "name", &well);
+    text_of(root, "description", &well);
+    scenario->config.unit.version_text = text_of(root, "version_text", &well);
+    if (scenario->config.unit.version_text != NULL && strlen(scenario->config.unit.version_text) > VERSION_MAX)
+        well = config_error(config_get(root, "version_text"), "expected version_text of up to %u bytes", VERSION_MAX);
+    if (node != NULL)
+        well = config_integer(node, "seed", 0, INT64_MAX, &seed) && well;
+    scenario->config.seed = (uint64_t)seed;
+    scenario->timeout = TIMEOUT;
+    well = read_time_up_to(root, "timeout", TIME_VALUE_MAX, &scenario->timeout) && well;
+    node = config_get(root, "allow_faults");
+    return (node == NULL || config_flag(node, "allow_faults", &scenario->allow_faults)) && well;
+}
+
+/* ---- Files ---------------------------------------------------------------------------------------------------------- */
+
+/* `name` as seen from the folder of the scenario. */
+static char *beside(const char *scenario, const char *name)
+{
+    const char *slash = strrchr(scenario, '/');
+    size_t folder = slash != NULL && name[0] != '/' ? (size_t)(slash - scenario) + 1 : 0;
+    char *path = malloc(folder + strlen(name) + 1);
+    if (path == NULL)
+        return NULL;
+    memcpy(path, scenario, folder);
+    strcpy(path + folder, name);
+    return path;
+}
+
+char *scenario_file(struct scenario_reader *reader, const struct config_node *node, char **path, size_t *length)
+{
+    const char *why = "there are no files here";
+    if (config_type(node) != CONFIG_TEXT || config_text(node)[0] == '\0') {
+        config_error(node, "expected the name of a file");
+        return NULL;
+    }
+    *path = beside(reader->name, config_text(node));
+    if (*path == NULL || reader->files->read == NULL) {
+        config_error(node, "cannot read %s: %s", config_text(node), *path == NULL ? "memory is short" : why);
+        return NULL;
+    }
+    char *text = reader->files->read(reader->files->context, *path, length, &why);
+    if (text == NULL)
+        config_error(node, "cannot read %s: %s", *path, why);
+    return text;
+}
+
+static bool read_plant(struct scenario_reader *reader, const struct config_node *root)
+{
+    struct scenario *scenario = reader->scenario;
+    const struct config_node *node = config_get(root, "plant");
+    if (node == NULL)
+        return true;
+    if (config_type(node) != CONFIG_MAP) {
+        scenario->plant = scenario_file(reader, node, &scenario->plant_name, &scenario->plant_length);
+        return scenario->plant != NULL;
+    }
+    json_t *json = config_json(node); /* which is YAML, too */
+    scenario->plant = json != NULL ? json_dumps(json, 0) : NULL;
+    json_decref(json);
+    if (scenario->plant == NULL)
+        return config_error(node, "memory is short");
+    scenario->plant_length = strlen(scenario->plant);
+    return true;
+}
+
+/* ---- Lists ---------------------------------------------------------------------------------------------------------- */
+
+/* How many there are; -1: it is no list of one or more, reported. */
+static int list_length(const struct config_node *map, const char *key)
+{
+    const struct config_node *node = config_get(map, key);
+    if (node == NULL)
+        return 0;
+    if (config_type(node) == CONFIG_LIST && config_count(node) > 0 && config_count(node) <= STEPS_MAX)
+        return (int)config_count(node);
+    config_error(node, "expected %s, a list of 1 to %u", key, STEPS_MAX);
+    return -1;
+}
+
+static bool read_always(struct scenario_reader *reader, const struct config_node *root)
+{
+    bool well = true;
+    int count = list_length(root, "always");
+    struct scenario *scenario = reader->scenario;
+    scenario->always_node = config_get(root, "always");
+    scenario->always = json_array();
+    for (int i = 0; i < count; i++) {
+        json_t *json = scenario_condition(reader, config_at(scenario->always_node, (size_t)i), 0);
+        if (json == NULL || json_array_append_new(scenario->always, json) != 0)
+            well = false;
+    }
+    return well && count >= 0;
+}
+
+/* Steps before stimuli: a stimulus may clear a fault that a step injects. */
+static bool read_lists(struct scenario_reader *reader, const struct config_node *root)
+{
+    struct scenario *scenario = reader->scenario;
+    bool well = read_always(reader, root);
+    int steps = list_length(root, "steps"), stimuli = list_length(root, "stimuli");
+    if (config_get(root, "steps") == NULL)
+        return config_error(root, "expected steps, a list of what is to be done");
+    if (steps < 0 || stimuli < 0)
+        return false;
+    scenario->step = calloc((size_t)steps, sizeof scenario->step[0]);
+    scenario->stimulus = calloc((size_t)stimuli + 1, sizeof scenario->stimulus[0]);
+    if (scenario->step == NULL || scenario->stimulus == NULL)
+        return config_error(root, "memory is short");
+    for (size_t i = 0; i < (size_t)steps; i++) {
+        well = scenario_step_read(reader, config_at(config_get(root, "steps"), i), &scenario->step[i]) && well;
+        scenario->steps = i + 1;
+    }
+    for (size_t i = 0; i < (size_t)stimuli; i++) {
+        well = scenario_stimulus_read(reader, config_at(config_get(root, "stimuli"), i), &scenario->stimulus[i]) && well;
+        scenario->stimuli = i + 1;
+    }
+    return well;
+}
+
+/* ---- The line ------------------------------------------------------------------------------------------------------- */
+
+bool scenario_power_up(const struct scenario *scenario, struct sim *sim, FILE *errors)
+{
+    if (!sim_begin(sim, &scenario->config))
+        return false;
+    return scenario->plant == NULL ||
+           plant_configure(sim, scenario->plant_name != NULL ? scenario->plant_name : "plant", scenario->plant,
+                           scenario->plant_length, errors);
+}
+
+bool scenario_begin_inputs(const struct scenario *scenario, struct sim *sim, struct refusal *refusal)
+{
+    for (unsigned number = 1; scenario->di != NULL && number <= sim_units(sim); number++) {
+        json_t *params = json_pack("{s:s, s:O}", "unit", sim->unit[number - 1].name, "di", scenario->di);
+        json_t *result = params != NULL ? sim_command(sim, "di.set", params, refusal) : NULL;
+        json_decref(params);
+        json_decref(result);
+        if (result == NULL)
+            return false;
+    }
+    return true;
+}
+
+/* A plant in the middle of the scenario has no lines of its own: its first error is told at its node. */
+static bool try_power_up(struct scenario_reader *reader, const struct config_node *root, FILE *errors)
+{
+    char *said = NULL;
+    size_t length;
+    bool inside = reader->scenario->plant != NULL && reader->scenario->plant_name == NULL;
+    FILE *out = inside ? open_memstream(&said, &length) : errors;
+    bool well = out != NULL && scenario_power_up(reader->scenario, reader->sim, out);
+    if (!inside)
+        return well;
+    if (out != NULL)
+        fclose(out);
+    if (!well && said != NULL) {
+        const char *error = strstr(said, "error: ");
+        said[strcspn(said, "\n")] = '\0';
+        config_error(config_get(root, "plant"), "%s", error != NULL ? error + strlen("error: ") : "memory is short");
+    }
+    free(said);
+    return well;
+}
+
+static bool read_inputs(struct scenario_reader *reader, const struct config_node *root)
+{
+    struct refusal refusal = {0};
+    const struct config_node *node = config_get(root, "di");
+    if (node == NULL)
+        return true;
+    reader->scenario->di = config_json(node);
+    return scenario_begin_inputs(reader->scenario, reader->sim, &refusal) || config_error(node, "%s", refusal.text);
+}
+
+/* ---- The whole ------------------------------------------------------------------------------------------------------ */
+
+static bool read_all(struct scenario_reader *reader, const struct config_node *root, FILE *errors)
+{
+    if (config_type(root) != CONFIG_MAP)
+        return config_error(root, "expected a map with steps");
+    bool well = config_keys(root, known);
+    well = read_line(reader->scenario, root) && well;
+    well = read_rest(reader->scenario, root) && well;
+    well = read_plant(reader, root) && well;
+    if (!well) /* without a line nothing can be tried out */
+        return false;
+    reader->sim = calloc(1, sizeof *reader->sim);
+    if (reader->sim == NULL)
+        return config_error(root, "memory is short");
+    well = try_power_up(reader, root, errors) && read_inputs(reader, root) && read_lists(reader, root);
+    sim_end(reader->sim);
+    free(reader->sim);
+    return well;
+}
+
+struct scenario *scenario_read(const char *name, const char *text, size_t length, const struct scenario_files *files,
+                               FILE *errors)
+{
+    struct scenario *scenario = calloc(1, sizeof *scenario);
+    struct scenario_reader reader = {.name = name, .scenario = scenario, .files = files};
+    if (scenario == NULL) {
+        fprintf(errors, "%s: error: memory is short\n", name);
+        return NULL;
+    }
+    scenario->tree = config_read(name, text, length, errors);
+    if (scenario->tree != NULL && read_all(&reader, config_root(scenario->tree), errors))
+        return scenario;
+    scenario_free(scenario);
+    return NULL;
+}
+
+void scenario_free(struct scenario *scenario)
+{
+    if (scenario == NULL)
+        return;
+    for (size_t i = 0; i < scenario->steps; i++)
+        scenario_step_free(&scenario->step[i]);
+    for (size_t i = 0; i < scenario->stimuli; i++) {
+        scenario_step_free(&scenario->stimulus[i].step);
+        json_decref(scenario->stimulus[i].when);
+    }
+    free(scenario->step);
+    free(scenario->stimulus);
+    json_decref(scenario->always);
+    json_decref(scenario->di);
+    free(scenario->plant);
+    free(scenario->plant_name);
+    config_free(scenario->tree);
+    free(scenario);
+}
+
+const char *scenario_name(const struct scenario *scenario)
+{
+    return scenario->name;
+}

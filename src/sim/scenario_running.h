@@ -1,0 +1,76 @@
+/* scenario_running.h: a scenario while it runs. Inside: scenario_run.c has time and stimuli, scenario_do.c the steps,
+ * scenario_master.c what the master sends and hears. */
+#ifndef RKM04_SIM_SCENARIO_RUNNING_H
+#define RKM04_SIM_SCENARIO_RUNNING_H
+
+#include "scenario_parts.h"
+
+#define ANSWER_ROOM 16384 /* the longest answer, a full memory, has 9101 bytes */
+
+struct running_stimulus {
+    struct condition *when; /* NULL: at a time */
+    uint64_t due;           /* RKM04_NEVER: not known yet */
+    bool acted;
+};
+
+struct pulse_count {
+    int64_t forward, back;
+};
+
+/* The first fault of a motor. */
+struct running_fault {
+    bool there;
+    uint64_t tick;
+    unsigned unit, motor;
+    enum rkm04_fault fault;
+};
+
+struct master {
+    struct rkm04_receiver receiver;
+    uint8_t buffer[ANSWER_ROOM];
+    bool listening, answered; /* the first answer since it began to listen is kept */
+    uint8_t dnode, snode;
+    size_t length;            /* of the answer in the buffer */
+};
+
+struct running {
+    const struct scenario *scenario;
+    struct sim *sim;
+    struct scenario_result *result;
+    enum scenario_end end;
+    bool over;                /* it has failed, or cannot go on */
+    bool (*interrupted)(void *context, uint64_t tick);
+    void *context;
+    unsigned turns;           /* of time, between two questions whether it is to end */
+    const struct scenario_step *step; /* being done */
+    struct condition **always;
+    struct running_stimulus *stimulus;
+    struct master master;
+    struct watcher watcher;
+    struct running_fault fault;
+    uint8_t forward[SEGMENT_UNITS]; /* direction outputs, bit 0: motor 1 */
+    struct pulse_count count[SEGMENT_UNITS][RKM04_MOTORS], last[SEGMENT_UNITS][RKM04_MOTORS];
+};
+
+/* The run has failed, at `tick` and because of what stands in `step`. `expected` and `seen` are taken over; NULL: memory was
+ * short. Always returns false. */
+bool running_failed(struct running *running, const struct scenario_step *step, uint64_t tick, char *expected, char *seen);
+bool running_no_memory(struct running *running);
+
+/* printf into a string to be freed. */
+char *running_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Let time go on, up to `limit` at most, but no further than to where `condition` (NULL: none) may have come to hold, or an
+ * answer may be there while the master listens. Returns false if the run is over. */
+bool running_turn(struct running *running, uint64_t limit, struct condition *condition);
+
+/* Do a step, or what a stimulus has to do. Returns false if the run is over. */
+bool running_do(struct running *running, const struct scenario_step *step);
+
+/* The master's ear, for sim_config.out. */
+void running_hear(void *context, const uint8_t *bytes, size_t length);
+
+/* Send what the step says and judge the answer. */
+bool running_send(struct running *running, const struct scenario_step *step);
+
+#endif
