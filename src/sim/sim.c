@@ -92,17 +92,17 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_ev
 
 static int on_flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
 {
-    return sim_flash_read(context, block, offset, data, length);
+    return faults_flash_read(context, block, offset, data, length);
 }
 
 static int on_flash_erase(void *context, unsigned block)
 {
-    return sim_flash_erase(context, block);
+    return faults_flash_erase(context, block);
 }
 
 static int on_flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
 {
-    return sim_flash_program(context, block, offset, data, length);
+    return faults_flash_program(context, block, offset, data, length);
 }
 
 /* Pulses cost time: they are asked for while somebody wants them. */
@@ -202,14 +202,30 @@ void sim_set_di(struct sim *sim, unsigned number, uint8_t mask)
     sim_look_at_inputs(sim, number);
 }
 
-/* The plants' changes before the present tick. They are told with the tick at which they came about. */
+static void tell_plant(struct sim *sim, const struct sim_unit *unit)
+{
+    struct plant_report report;
+    while (plant_take_report(unit->plant, &report)) {
+        struct watch_event event = {.tick = report.tick,
+                                    .value = report.news,
+                                    .kind = WATCH_PLANT,
+                                    .unit = (uint8_t)unit->number,
+                                    .motor = report.motor};
+        sim_tell_text(sim, WATCH_PULSES, &event, "%s", report.text);
+    }
+}
+
+/* The plants' changes up to the present tick. They are told with the tick at which they came about. */
 static void take_changes(struct sim *sim)
 {
     struct plant_change change;
     for (unsigned at = 0; at < sim->segment.units; at++) {
         struct sim_unit *unit = &sim->unit[at];
-        while (unit->plant && plant_take_change(unit->plant, sim_now(sim) + 1u, &change))
+        if (!unit->plant)
+            continue;
+        while (plant_take_change(unit->plant, sim_now(sim) + 1u, &change))
             set_inputs(sim, unit, change.tick);
+        tell_plant(sim, unit);
     }
 }
 
@@ -226,7 +242,7 @@ static void on_byte(void *context, const struct segment_byte *byte)
 static void on_out(void *context, const uint8_t *bytes, size_t length)
 {
     struct sim *sim = context;
-    if (sim->config.out && !fault_lasts(sim, FAULT_CABLE, 0) && !fault_lasts(sim, FAULT_UNPLUGGED, 0))
+    if (sim->config.out)
         sim->config.out(sim->config.context, bytes, length);
 }
 
@@ -239,8 +255,7 @@ void sim_take(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tic
 {
     if (sim->journal)
         sim->journal->bytes(sim->journal->context, sim_now(sim), tick, bytes, length);
-    if (!fault_lasts(sim, FAULT_CABLE, 0) && !fault_lasts(sim, FAULT_UNPLUGGED, 0))
-        segment_take(&sim->segment, bytes, length, tick);
+    segment_take(&sim->segment, bytes, length, tick);
 }
 
 size_t sim_purge(struct sim *sim)
@@ -294,27 +309,29 @@ uint64_t sim_next_event(const struct sim *sim)
     return earlier(segment_next_event(&sim->segment), earlier(plants_next(sim), faults_next(sim)));
 }
 
-/* Has somebody to look at what happens slot by slot? */
-static bool in_slots(const struct sim *sim)
+/* The first slot of a unit after `tick`: its time began when it was powered up. */
+static uint64_t slot_after(const struct sim *sim, unsigned number, uint64_t tick)
 {
-    for (unsigned at = 0; at < sim->segment.units; at++)
-        if (sim->unit[at].port.step)
-            return true;
-    return false;
+    uint64_t since = segment_since(&sim->segment, number);
+    return since + ((tick - since) / RKM04_SLOT_TICKS + 1u) * RKM04_SLOT_TICKS;
 }
 
 /* The end of the next leap on the way to `tick`: where a fault begins or ends, and with pulses to be told of, the slot after
- * something happens. */
+ * something happens; a switch that bounces in a slot is seen in it. */
 static uint64_t leap_end(const struct sim *sim, uint64_t tick)
 {
-    uint64_t end = earlier(tick, faults_next(sim));
-    if (!in_slots(sim))
-        return end;
-    uint64_t event = earlier(segment_next_event(&sim->segment), earlier(plants_next(sim), sim_due(sim)));
-    if (event >= end)
-        return end;
-    uint64_t now = sim_now(sim), slot = (earlier(event, end) / RKM04_SLOT_TICKS + 1u) * RKM04_SLOT_TICKS;
-    return earlier(end, slot > now ? slot : now + 1u);
+    uint64_t now = sim_now(sim), end = earlier(tick, faults_next(sim)), bounce = plants_next(sim);
+    uint64_t event = earlier(segment_next_event(&sim->segment), sim_due(sim));
+    event = event > now ? event : now;
+    for (unsigned number = 1; number <= sim->segment.units; number++) {
+        if (!sim->unit[number - 1u].port.step)
+            continue;
+        if (event < end)
+            end = earlier(end, slot_after(sim, number, event));
+        if (bounce < end)
+            end = earlier(end, slot_after(sim, number, bounce > now ? bounce - 1u : now));
+    }
+    return end;
 }
 
 void sim_advance(struct sim *sim, uint64_t tick)
