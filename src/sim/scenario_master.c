@@ -75,7 +75,7 @@ static bool send_bytes(struct running *running, const uint8_t *bytes, size_t len
         if (part > 0) {
             sim_take(sim, bytes + handed, part, sim_now(sim));
             if (sim->segment.config.timed)
-                *passed = sim_now(sim) + (SEGMENT_ROOM - sim_room(sim) + 1) * WIRE_BYTE / WIRE_TICK + 1;
+                *passed = (sim->segment.master_free + WIRE_TICK - 1) / WIRE_TICK;
             handed += part;
             sim_advance(sim, sim_now(sim));
         } else if (!running_turn(running, sim_now(sim) + RKM04_SLOT_TICKS, NULL)) {

@@ -65,7 +65,7 @@ static void see(void *context, const struct watch_event *event)
     if (event->kind == WATCH_POWER) {
         *forward = 0;
     } else if (event->kind == WATCH_DIRECTION) {
-        *forward = event->value > 0 ? (uint8_t)(*forward | bit) : (uint8_t)(*forward & ~bit);
+        *forward = (uint8_t)(event->value > 0 ? *forward | bit : *forward & (0xFFu ^ bit));
     } else if (event->kind == WATCH_STEP) {
         *(*forward & bit ? &count->forward : &count->back) += 1;
     } else if (event->value != RKM04_FAULT_NONE && !running->fault.there) {
