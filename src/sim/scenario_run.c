@@ -59,13 +59,13 @@ bool running_failed(struct running *running, const struct scenario_step *step, u
 static void see(void *context, const struct watch_event *event)
 {
     struct running *running = context;
-    uint8_t bit = event->motor > 0 ? (uint8_t)(1u << (event->motor - 1u)) : 0;
+    uint8_t bit = (uint8_t)(1u << (event->motor & 7u) >> 1);
     uint8_t *forward = &running->forward[event->unit - 1u];
     struct pulse_count *count = event->motor > 0 ? &running->count[event->unit - 1u][event->motor - 1u] : NULL;
     if (event->kind == WATCH_POWER) {
         *forward = 0;
     } else if (event->kind == WATCH_DIRECTION) {
-        *forward = (uint8_t)(event->value > 0 ? *forward | bit : *forward & (0xFFu ^ bit));
+        *forward = event->value > 0 ? (uint8_t)(*forward | bit) : (uint8_t)(*forward & ~bit);
     } else if (event->kind == WATCH_STEP) {
         *(*forward & bit ? &count->forward : &count->back) += 1;
     } else if (event->value != RKM04_FAULT_NONE && !running->fault.there) {
