@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -67,8 +68,11 @@ static void report(struct client_rpc *rpc, const char *format, ...)
         warnx("%s", rpc->trouble);
 }
 
-static const char *advice(int error)
+static const char *advice(const char *path, int error)
 {
+    struct stat found;
+    if (stat(path, &found) == 0 && !S_ISSOCK(found.st_mode))
+        return "; expected the control socket of `rkm04 serve', by default its link with .control behind";
     switch (error) {
     case ENOENT:
         return "; is `rkm04 serve' running? --control PATH names another socket";
@@ -76,8 +80,6 @@ static const char *advice(int error)
         return "; the emulator that made it has ended";
     case EACCES:
         return "; it belongs to another user";
-    case ENOTSOCK:
-        return "; expected the control socket of `rkm04 serve', by default its link with .control behind";
     default:
         return "";
     }
@@ -96,7 +98,8 @@ bool client_rpc_open(struct client_rpc *rpc, const char *path)
     rpc->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (rpc->fd >= 0 && connect(rpc->fd, (const struct sockaddr *)&address, sizeof address) == 0)
         return true;
-    warnx("cannot connect to %s: %s%s", rpc->path, strerror(errno), advice(errno));
+    int error = errno;
+    warnx("cannot connect to %s: %s%s", rpc->path, strerror(error), advice(rpc->path, error));
     if (rpc->fd >= 0)
         close(rpc->fd);
     return false;

@@ -1,0 +1,145 @@
+/* test_client_panel.c: the front panel in a terminal of any size.
+ * One test alone: CK_RUN_CASE=sizes ./test_client_panel */
+#include <check.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../src/host/client_panel.h"
+
+static struct panel panel;
+static char text[PANEL_ROWS * (PANEL_COLUMNS + 1) + 1];
+
+/* Motor `number` as `state` shows it; `more` replaces members. Takes the reference to `more`. */
+static json_t *motor(int number, json_t *more)
+{
+    json_t *json = json_pack("{s:i, s:i, s:n, s:s, s:i, s:n, s:n, s:n, s:s, s:b, s:i, s:b, s:{s:n, s:n, s:n}}", "motor", number,
+                             "position", 0, "true_position", "state", "idle", "index", 0, "command", "waits_for", "fault", "led",
+                             "off", "lit", 0, "speed", 0, "forward", 1, "guards", "m", "n", "x");
+    json_object_update(json, more);
+    json_decref(more);
+    return json;
+}
+
+static json_t *state(json_t *first, json_t *second)
+{
+    return json_pack("{s:i, s:s, s:b, s:s, s:i, s:i, s:i, s:[o, o, o, o], s:{s:i, s:i, s:i, s:i}}", "t_us", 12345678, "unit", "3",
+                     "powered", 1, "clock", "x10", "di", 0x81, "do", 0x02, "var", 0x8001, "motors", motor(1, first),
+                     motor(2, second), motor(3, NULL), motor(4, NULL), "counters", "requests", 17, "answers", 16, "others", 5,
+                     "dropped", 1);
+}
+
+/* Draw at a size; the result is in `text`. Takes the reference. */
+static void draw(json_t *what, int rows, int columns)
+{
+    struct panel_view view = {.state = what};
+    FILE *file = fmemopen(text, sizeof text, "w");
+    ck_assert_ptr_nonnull(file);
+    client_panel_draw(&panel, &view, rows, columns);
+    client_panel_print(&panel, file);
+    fclose(file);
+    json_decref(what);
+}
+
+static void assert_shown(const char *part)
+{
+    ck_assert_msg(strstr(text, part) != NULL, "'%s' is not shown:\n%s", part, text);
+}
+
+START_TEST(what_a_motor_does_stands_in_its_row)
+{
+    draw(state(json_pack("{s:s, s:i, s:i, s:i, s:i, s:s, s:b, s:b}", "state", "moving", "position", -1234, "true_position", -1200,
+                         "speed", 2500, "index", 7, "command", "R", "lit", 1, "forward", 0),
+               json_pack("{s:s, s:i, s:s, s:s, s:{s:i}}", "state", "wait", "index", 2, "command", "O01", "waits_for", "DI 01 = 1",
+                         "guards", "m", 5)),
+         24, 100);
+    assert_shown("RKM04 unit 3  12.345678 s  clock x10");
+    assert_shown(" 1   *   moving         -1234        -1200   -2500      7  R\n");
+    assert_shown(" 2   .   wait               0            -       0      2  O01  DI 01 = 1 M05\n");
+    assert_shown(" 3   .   idle               0            -       0      -  -\n");
+    assert_shown("17 requests   16 answers   5 for others   1 dropped");
+}
+END_TEST
+
+START_TEST(lamps_stand_under_their_numbers)
+{
+    draw(state(NULL, NULL), 24, 80);
+    assert_shown("      01 02 03 04 05 06 07 08\n DI    *  .  .  .  .  .  .  *\n DO    .  *  .  .  .  .  .  .\n");
+    assert_shown("      80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95\n VAR   *  .  .  .");
+}
+END_TEST
+
+START_TEST(true_positions_are_shown_where_there_is_a_plant)
+{
+    draw(state(NULL, NULL), 24, 100);
+    ck_assert_ptr_null(strstr(text, "true"));
+    draw(state(json_pack("{s:i}", "true_position", 7), NULL), 24, 100);
+    assert_shown("true pos.");
+}
+END_TEST
+
+START_TEST(a_fault_is_named_and_a_unit_without_power_is_called_so)
+{
+    json_t *off = state(json_pack("{s:s, s:s, s:s}", "state", "fault", "fault", "no_label", "command", "J05"), NULL);
+    json_object_set_new(off, "powered", json_false());
+    draw(off, 24, 100);
+    assert_shown("J05  fault: no_label");
+    assert_shown("RKM04 unit 3: no power");
+}
+END_TEST
+
+START_TEST(at_every_size_nothing_is_wider_or_higher_and_positions_stay_longest)
+{
+    for (int rows = 0; rows <= 30; rows++) {
+        for (int columns = 0; columns <= 130; columns++) {
+            draw(state(json_pack("{s:i, s:i}", "position", 4711, "true_position", 9), NULL), rows, columns);
+            ck_assert_int_le(panel.rows, rows);
+            ck_assert_int_le(panel.columns, columns);
+            if (rows >= 5 && columns >= 20)
+                assert_shown("4711");
+        }
+    }
+}
+END_TEST
+
+START_TEST(what_the_state_lacks_is_a_dash)
+{
+    draw(json_object(), 24, 100);
+    assert_shown("RKM04 unit -");
+    assert_shown(" 4   .   -");
+    assert_shown("- requests");
+}
+END_TEST
+
+START_TEST(control_characters_and_others_do_not_reach_the_terminal)
+{
+    draw(state(json_pack("{s:s}", "command", "\033[2JF5 \302\233m"), NULL), 24, 100);
+    ck_assert_ptr_null(strchr(text, '\033'));
+    assert_shown("?[2JF5 ??m");
+}
+END_TEST
+
+static Suite *client_panel_suite(void)
+{
+    Suite *suite = suite_create("client_panel");
+    TCase *values = tcase_create("values"), *sizes = tcase_create("sizes");
+    tcase_add_test(values, what_a_motor_does_stands_in_its_row);
+    tcase_add_test(values, lamps_stand_under_their_numbers);
+    tcase_add_test(values, true_positions_are_shown_where_there_is_a_plant);
+    tcase_add_test(values, a_fault_is_named_and_a_unit_without_power_is_called_so);
+    tcase_add_test(values, what_the_state_lacks_is_a_dash);
+    tcase_add_test(values, control_characters_and_others_do_not_reach_the_terminal);
+    tcase_add_test(sizes, at_every_size_nothing_is_wider_or_higher_and_positions_stay_longest);
+    tcase_set_timeout(sizes, 60);
+    suite_add_tcase(suite, values);
+    suite_add_tcase(suite, sizes);
+    return suite;
+}
+
+int main(void)
+{
+    SRunner *runner = srunner_create(client_panel_suite());
+    srunner_run_all(runner, CK_ENV);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
