@@ -1,11 +1,316 @@
 #include "fault.h"
 
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "sim.h"
 
-void faults_begin(struct faults *faults, uint64_t seed) { *faults = (struct faults){.random = seed}; }
-const struct fault *fault_acts(struct sim *sim, enum fault_kind kind, unsigned unit, enum fault_direction direction) { (void)sim, (void)kind, (void)unit, (void)direction; return NULL; }
-const struct fault *fault_lasts(const struct sim *sim, enum fault_kind kind, unsigned unit) { (void)sim, (void)kind, (void)unit; return NULL; }
-uint8_t faults_hold_inputs(const struct sim *sim, unsigned unit, uint8_t levels) { (void)sim, (void)unit; return levels; }
-void faults_look(struct sim *sim) { (void)sim; }
-uint64_t faults_next(const struct sim *sim) { (void)sim; return RKM04_NEVER; }
-void faults_shift(struct faults *faults, uint64_t shift) { (void)faults, (void)shift; }
+#define SURE 1000000u /* millionths */
+
+static const char *const names[FAULT_KINDS] = {
+    [FAULT_DROP] = "drop",           [FAULT_FLIP] = "flip",   [FAULT_DUPLICATE] = "duplicate", [FAULT_INSERT] = "insert",
+    [FAULT_ECHO] = "echo",           [FAULT_DELAY] = "delay", [FAULT_NO_ANSWER] = "no_answer", [FAULT_WRONG_FCS] = "wrong_fcs",
+    [FAULT_CUT] = "cut",             [FAULT_FLASH] = "flash", [FAULT_POWER] = "power",         [FAULT_BREAK] = "break",
+    [FAULT_UNPLUGGED] = "unplugged", [FAULT_CABLE] = "cable", [FAULT_INPUT] = "input",
+};
+
+const char *fault_kind_name(enum fault_kind kind)
+{
+    return names[kind];
+}
+
+enum fault_kind fault_kind_named(const char *name)
+{
+    unsigned kind = 0;
+    while (kind < FAULT_KINDS && strcmp(names[kind], name) != 0)
+        kind++;
+    return (enum fault_kind)kind;
+}
+
+void fault_tell(struct sim *sim, const struct fault *fault, unsigned unit, const char *format, ...)
+{
+    char text[160];
+    va_list list;
+    if ((sim->watch.kinds & WATCH_BIT(WATCH_INJECTED)) == 0)
+        return;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    struct watch_event event = {
+        .tick = sim_now(sim),
+        .value = (int32_t)fault->id,
+        .kind = WATCH_INJECTED,
+        .unit = (uint8_t)unit,
+    };
+    sim_tell_text(sim, WATCH_DELIVERED, &event, "%s: %s", names[fault->kind], text);
+}
+
+/* ---- Chance --------------------------------------------------------------------------------------------------------- */
+
+/* SplitMix64: any seed is a good one. */
+uint64_t faults_random(struct faults *faults)
+{
+    uint64_t z = faults->random += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
+/* An occasion within the window. Returns whether the fault acts, and counts it. */
+static bool takes(struct faults *faults, struct fault *fault)
+{
+    if (fault->counted && fault->left == 0)
+        return false;
+    if (fault->skip > 0) {
+        fault->skip--;
+        return false;
+    }
+    if (fault->millionths < SURE && (faults_random(faults) >> 32) * SURE >> 32 >= fault->millionths)
+        return false;
+    fault->left -= fault->counted;
+    fault->acted++;
+    return true;
+}
+
+struct fault *fault_acts(struct sim *sim, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation)
+{
+    struct faults *faults = &sim->faults;
+    struct fault *acting = NULL;
+    if ((faults->kinds >> kind & 1u) == 0)
+        return NULL;
+    for (unsigned i = 0; i < faults->count && !acting; i++) {
+        struct fault *fault = &faults->fault[i];
+        bool meant = fault->kind == kind && (fault->unit == 0 || fault->unit == unit) &&
+                     (direction == 0 || (fault->direction & direction) != 0) &&
+                     (operation == 0 || (fault->operations & operation) != 0);
+        if (meant && fault->from <= sim_now(sim) && sim_now(sim) < fault->until && takes(faults, fault))
+            acting = fault;
+    }
+    return acting;
+}
+
+/* ---- Spells --------------------------------------------------------------------------------------------------------- */
+
+static bool has_spells(const struct fault *fault)
+{
+    return fault->kind >= FAULT_BREAK;
+}
+
+const struct fault *fault_lasts(const struct sim *sim, enum fault_kind kind, unsigned unit)
+{
+    const struct faults *faults = &sim->faults;
+    if ((faults->kinds >> kind & 1u) == 0)
+        return NULL;
+    for (unsigned i = 0; i < faults->count; i++) {
+        const struct fault *fault = &faults->fault[i];
+        if (fault->kind == kind && fault->active && fault->unit == unit)
+            return fault;
+    }
+    return NULL;
+}
+
+uint8_t faults_hold_inputs(const struct sim *sim, unsigned unit, uint8_t levels)
+{
+    const struct faults *faults = &sim->faults;
+    for (unsigned i = 0; i < faults->count; i++) {
+        const struct fault *fault = &faults->fault[i];
+        if (fault->kind != FAULT_INPUT || !fault->active || (fault->unit != 0 && fault->unit != unit))
+            continue;
+        uint8_t bit = (uint8_t)(1u << (fault->number - 1u));
+        levels = fault->level ? (uint8_t)(levels | bit) : (uint8_t)(levels & ~bit);
+    }
+    return levels;
+}
+
+static uint64_t later(uint64_t tick, uint64_t ticks)
+{
+    return ticks >= RKM04_NEVER - tick ? RKM04_NEVER : tick + ticks;
+}
+
+static uint64_t earlier(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static const char *what_begins(const struct fault *fault)
+{
+    switch (fault->kind) {
+    case FAULT_BREAK:
+        return "the line is held at 0";
+    case FAULT_UNPLUGGED:
+        return "the adapter is unplugged";
+    case FAULT_CABLE:
+        return fault->unit > 0 ? "the cable of the unit is cut" : "the cable is cut";
+    default:
+        return fault->level ? "the input is stuck at 1" : "the input is stuck at 0";
+    }
+}
+
+/* Begin and end the spells of a fault that are due by now. */
+static void follow(struct sim *sim, struct fault *fault)
+{
+    uint64_t now = sim_now(sim);
+    if (fault->active && fault->ends <= now) {
+        fault->active = false;
+        fault_tell(sim, fault, fault->unit, "over");
+    }
+    while (!fault->active && fault->next <= now) {
+        uint64_t at = fault->next;
+        fault->next = fault->every > 0 ? later(at, fault->every) : RKM04_NEVER;
+        if (fault->next >= fault->until)
+            fault->next = RKM04_NEVER;
+        if (!takes(&sim->faults, fault))
+            continue;
+        if (fault->counted && fault->left == 0)
+            fault->next = RKM04_NEVER;
+        fault->ends = earlier(later(at, fault->ticks), fault->until);
+        fault->active = fault->ends > now;
+        if (fault->active)
+            fault_tell(sim, fault, fault->unit, "%s", what_begins(fault));
+    }
+}
+
+/* Give the power back to a unit that has lost it. */
+static void give_power(struct sim *sim, struct fault *fault)
+{
+    unsigned unit = fault->victim;
+    fault->victim = 0;
+    fault->ends = RKM04_NEVER;
+    if (sim_powered(sim, unit))
+        return;
+    fault_tell(sim, fault, unit, "the power is back");
+    sim_power(sim, unit, true);
+}
+
+/* Let the line, the adapter and the inputs be as the spells in force want them. */
+static void apply(struct sim *sim)
+{
+    bool unplugged = fault_lasts(sim, FAULT_UNPLUGGED, 0) != NULL;
+    bool disturbed = fault_lasts(sim, FAULT_BREAK, 0) != NULL;
+    if (disturbed != sim->segment.disturbed)
+        segment_disturb(&sim->segment, disturbed);
+    for (unsigned number = 1; number <= sim_units(sim); number++)
+        sim_look_at_inputs(sim, number);
+    if (unplugged == sim->faults.unplugged)
+        return;
+    sim->faults.unplugged = unplugged;
+    if (unplugged)
+        segment_purge(&sim->segment); /* what the adapter had in its memory is gone with it */
+    if (sim->config.adapter)
+        sim->config.adapter(sim->config.context, !unplugged);
+}
+
+void faults_look(struct sim *sim)
+{
+    struct faults *faults = &sim->faults;
+    for (unsigned number = 1; number <= sim_units(sim) && faults->dying != 0; number++)
+        faults_hooks.obeyed(sim, number);
+    for (unsigned i = 0; i < faults->count; i++) {
+        struct fault *fault = &faults->fault[i];
+        if (has_spells(fault))
+            follow(sim, fault);
+        else if (fault->victim != 0 && fault->ends <= sim_now(sim))
+            give_power(sim, fault);
+    }
+    apply(sim);
+}
+
+uint64_t faults_next(const struct sim *sim)
+{
+    const struct faults *faults = &sim->faults;
+    uint64_t next = faults->dying != 0 ? sim_now(sim) : RKM04_NEVER;
+    for (unsigned i = 0; i < faults->count; i++) {
+        const struct fault *fault = &faults->fault[i];
+        if (has_spells(fault))
+            next = earlier(next, fault->active ? fault->ends : fault->next);
+        else if (fault->victim != 0)
+            next = earlier(next, fault->ends);
+    }
+    return next;
+}
+
+static void shift_time(uint64_t *tick, uint64_t shift)
+{
+    *tick = later(*tick, shift);
+}
+
+void faults_shift(struct faults *faults, uint64_t shift)
+{
+    for (unsigned i = 0; i < faults->count; i++) {
+        struct fault *fault = &faults->fault[i];
+        shift_time(&fault->from, shift);
+        shift_time(&fault->until, shift);
+        shift_time(&fault->next, shift);
+        shift_time(&fault->ends, shift);
+    }
+}
+
+/* ---- The list ------------------------------------------------------------------------------------------------------- */
+
+void faults_begin(struct faults *faults, uint64_t seed)
+{
+    *faults = (struct faults){.random = seed};
+    for (unsigned at = 0; at < SEGMENT_UNITS; at++)
+        faults->answer[at] = fault_answer_well;
+}
+
+bool fault_spent(const struct fault *fault, uint64_t now)
+{
+    bool done = fault->until <= now || (fault->counted && fault->left == 0);
+    if (has_spells(fault))
+        return !fault->active && (done || fault->next == RKM04_NEVER);
+    return done && fault->victim == 0;
+}
+
+static void drop_at(struct faults *faults, unsigned at)
+{
+    faults->count--;
+    memmove(&faults->fault[at], &faults->fault[at + 1u], (faults->count - at) * sizeof faults->fault[0]);
+    faults->kinds = 0;
+    for (unsigned i = 0; i < faults->count; i++)
+        faults->kinds |= UINT32_C(1) << faults->fault[i].kind;
+}
+
+/* Make room for one more, if need be at the cost of the oldest that will not act again. */
+static bool make_room(struct faults *faults, uint64_t now)
+{
+    for (unsigned i = 0; i < faults->count && faults->count == FAULTS_MAX; i++)
+        if (fault_spent(&faults->fault[i], now))
+            drop_at(faults, i);
+    return faults->count < FAULTS_MAX;
+}
+
+uint32_t faults_add(struct sim *sim, const struct fault *fault)
+{
+    struct faults *faults = &sim->faults;
+    if (!make_room(faults, sim_now(sim)))
+        return 0;
+    struct fault *added = &faults->fault[faults->count++];
+    *added = *fault;
+    added->id = ++faults->last_id;
+    added->next = has_spells(fault) ? fault->from : RKM04_NEVER;
+    added->ends = RKM04_NEVER;
+    added->acted = 0;
+    added->victim = 0;
+    added->active = false;
+    faults->kinds |= UINT32_C(1) << added->kind;
+    sim->segment.config.hooks = &faults_hooks;
+    uint32_t id = added->id;
+    faults_look(sim);
+    return id;
+}
+
+unsigned faults_remove(struct sim *sim, uint32_t id)
+{
+    struct faults *faults = &sim->faults;
+    unsigned removed = 0;
+    for (unsigned i = faults->count; i-- > 0;) {
+        if (id != 0 && faults->fault[i].id != id)
+            continue;
+        drop_at(faults, i);
+        removed++;
+    }
+    faults_look(sim);
+    return removed;
+}

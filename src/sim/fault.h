@@ -1,6 +1,18 @@
-/* fault.h: faults on demand, each with an optional unit, count, probability (seeded) and window of time. The sim asks at each
- * place where something could go wrong whether it does. All of it is plain data and virtual time: the same faults at the same
- * ticks do the same. */
+/* fault.h: faults on demand. Each has an optional unit, count, probability (seeded) and window of time. All of it is plain data
+ * and virtual time: the same faults at the same ticks do the same. docs/FAULTS.md describes every kind.
+ *
+ * A fault waits for occasions. Those of the faults of bytes are bytes that set out, those of the faults of answers are answers,
+ * those of the faults of the flash are its operations. The others have spells (FAULT_BREAK and following): their occasions are
+ * the begin of their window, and one every `every` ticks from then on.
+ *
+ * What a sim has to do:
+ *   begin:        faults_begin(); the hooks of the segment are put in with the first fault, so that a line without faults pays
+ *                 nothing
+ *   each leap:    end at faults_next() at the latest, then faults_look() if that is the present tick
+ *   the units' port: faults_flash_read(), faults_flash_erase(), faults_flash_program() stand before the flash
+ *   inputs:       faults_hold_inputs() has the last word
+ *   snapshots:    struct faults is part of them (struct segment, too); after coming back faults_shift(); config.adapter is to be
+ *                 told if `unplugged` is another than before */
 #ifndef RKM04_SIM_FAULT_H
 #define RKM04_SIM_FAULT_H
 
@@ -8,72 +20,132 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "segment.h"
+
 struct sim;
+struct sim_unit;
 
 #define FAULTS_MAX 64u
 
 enum fault_kind {
-    FAULT_DROP,        /* a byte is not heard by anybody */
-    FAULT_FLIP,        /* bits of a byte are inverted: `mask` */
+    FAULT_DROP,        /* a byte is not there, for anybody; silence in its place */
+    FAULT_FLIP,        /* bits of a byte are inverted: `number` is the mask */
     FAULT_DUPLICATE,   /* a byte is there twice */
-    FAULT_INSERT,      /* `byte` is there before a byte */
+    FAULT_INSERT,      /* byte `number` is there before a byte */
+    FAULT_ECHO,        /* the master hears its own byte, too (two-wire adapter) */
     FAULT_DELAY,       /* the answer sets out `ticks` later */
     FAULT_NO_ANSWER,   /* the answer is not sent; the unit believes that it was */
     FAULT_WRONG_FCS,   /* hdlc: the check value of the answer is wrong, everything else is right */
-    FAULT_CUT,         /* the answer ends after `bytes` bytes */
-    FAULT_ECHO,        /* the master hears itself, too (two-wire adapter) */
-    FAULT_BREAK,       /* the line is held at 0 for `ticks` */
+    FAULT_CUT,         /* the answer ends after `number` bytes */
+    FAULT_FLASH,       /* an operation of the flash fails: one of `operations`; `torn`: it is done in part */
+    FAULT_POWER,       /* the unit loses its power in the middle of an erase or program; it comes back after `ticks` */
+    FAULT_BREAK,       /* from here on kinds with spells, `ticks` long. The line is held at 0 */
     FAULT_UNPLUGGED,   /* the adapter is gone: the pty goes away, later a new one comes under the same link */
-    FAULT_CABLE,       /* the cable is cut: silence both ways, the port stays */
-    FAULT_FLASH,       /* an operation of the flash fails */
-    FAULT_POWER,       /* the unit loses its power at its `operation`-th flash operation from now, in the middle of it */
-    FAULT_INPUT,       /* input `input` is held at `level` */
+    FAULT_CABLE,       /* the cable is cut: silence both ways, the port stays. `unit`: that unit's own cable */
+    FAULT_INPUT,       /* input `number` (1..8) is held at `level` */
     FAULT_KINDS
 };
 
 enum fault_direction { FAULT_TO_UNITS = 1, FAULT_TO_MASTER = 2, FAULT_BOTH = 3 };
 
+/* Operations of the flash, as a mask. */
+enum fault_operation { FAULT_READ = 1, FAULT_ERASE = 2, FAULT_PROGRAM = 4 };
+
 struct fault {
     uint32_t id;         /* 1, 2, … */
     uint8_t kind;        /* enum fault_kind */
     uint8_t unit;        /* number on the line; 0: all */
-    uint8_t direction;   /* enum fault_direction, of the kinds about bytes */
+    uint8_t direction;   /* enum fault_direction, of the faults of bytes */
+    uint8_t operations;  /* of FAULT_FLASH, FAULT_POWER: mask of enum fault_operation */
+    bool torn, level;
     bool counted;        /* `left` counts */
     uint32_t left;       /* times it will still act */
+    uint32_t skip;       /* occasions that it lets pass before */
     uint32_t acted;      /* times it has */
     uint32_t millionths; /* probability, 1..1 000 000 */
+    uint32_t number;     /* a mask, byte, number of bytes, or input */
     uint64_t from, until; /* window: acts at from <= tick < until; RKM04_NEVER: no end */
-    uint64_t ticks;
-    uint32_t number;     /* bytes, operation, mask, byte, input */
-    bool level;
+    uint64_t ticks;      /* how long; RKM04_NEVER: to the end of the window */
+    uint64_t every;      /* spells: from one occasion to the next; 0: there is one only */
+    uint64_t next;       /* spells: tick of the next occasion; RKM04_NEVER: none */
+    uint64_t ends;       /* of the present spell, or when the power comes back; RKM04_NEVER: open */
+    uint8_t victim;      /* FAULT_POWER: the unit that has lost its power; 0: none */
+    bool active;         /* a spell is in force */
 };
+
+/* What is wrong with the answer that a unit is sending. */
+struct fault_answer {
+    uint32_t at;       /* bytes of it that have set out */
+    uint32_t end;      /* of these, the ones that are sent at all */
+    uint32_t wrong_at; /* byte that is changed; UINT32_MAX: none */
+    uint8_t mask;      /* bits that are inverted there */
+};
+
+extern const struct fault_answer fault_answer_well; /* nothing is */
 
 struct faults {
     uint32_t last_id;
-    uint64_t random;     /* state of the generator, seeded */
+    uint64_t random;   /* state of the generator, seeded */
+    uint32_t kinds;    /* there are some of these: bit n is kind n */
+    bool unplugged;    /* config.adapter of the sim has been told so */
+    uint32_t dying;    /* bit n: unit n has lost its power in the middle of an operation, and is to be switched off */
     unsigned count;
-    struct fault fault[FAULTS_MAX];
+    struct fault fault[FAULTS_MAX]; /* in order of their ids */
+    struct fault_answer answer[SEGMENT_UNITS];
 };
 
 void faults_begin(struct faults *faults, uint64_t seed);
 
-/* Does a fault of this kind act now? Counts it, and tells the watchers. `unit`: whom it would befall. `direction`: for the kinds
- * about bytes, one of the two. Returns it (valid until the next call), or NULL. */
-const struct fault *fault_acts(struct sim *sim, enum fault_kind kind, unsigned unit, enum fault_direction direction);
+/* Add a fault; `id`, `acted`, `next`, `ends` and `active` are set here. One that begins now acts from now on. Returns its id; 0:
+ * there are FAULTS_MAX that may still act. */
+uint32_t faults_add(struct sim *sim, const struct fault *fault);
 
-/* Is there such a fault in force now? For the kinds that last (echo, unplugged, cable, input). Returns it, or NULL. */
+/* Take fault `id` away, or all with 0; a spell in force ends. Returns how many it were. */
+unsigned faults_remove(struct sim *sim, uint32_t id);
+
+/* Will it never act again? It is kept for a while so that it can be seen how often it did. */
+bool fault_spent(const struct fault *fault, uint64_t now);
+
+/* Is there a spell of this kind in force now, for unit `unit` alone, or with 0 for all? Returns it, or NULL. */
 const struct fault *fault_lasts(const struct sim *sim, enum fault_kind kind, unsigned unit);
 
 /* `levels` of the inputs of a unit, with those that a fault holds as it holds them. */
 uint8_t faults_hold_inputs(const struct sim *sim, unsigned unit, uint8_t levels);
 
-/* The present tick is one at which a fault may have begun or ended: do what follows (inputs, echo, adapter, break). */
+/* The flash as the unit finds it: sim_flash_read(), … with what goes wrong. */
+int faults_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);
+int faults_flash_erase(struct sim_unit *unit, unsigned block);
+int faults_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length);
+
+/* Begin and end what is due by now, and do what follows (inputs, line, adapter, power). */
 void faults_look(struct sim *sim);
 
-/* The next tick at which that is so; RKM04_NEVER: none. */
+/* The next tick at which that is due, which may be over; RKM04_NEVER: never. */
 uint64_t faults_next(const struct sim *sim);
 
-/* All windows `shift` ticks later, for snapshots. */
+/* All times `shift` ticks later, for snapshots. */
 void faults_shift(struct faults *faults, uint64_t shift);
+
+/* "drop", "flip", … as in fault.inject. Never NULL. */
+const char *fault_kind_name(enum fault_kind kind);
+
+/* Find a kind by its name. Returns FAULT_KINDS if there is none of that name. */
+enum fault_kind fault_kind_named(const char *name);
+
+/* The hooks of a line with faults; config.context of the segment is the sim. fault_line.c */
+extern const struct segment_hooks faults_hooks;
+
+/* ---- Inside: between the parts of this module ------------------------------------------------------------------------- */
+
+/* An occasion: does a fault of this kind act? Counts it. `direction`, `operation`: for kinds that have one, else 0. Returns it (valid
+ * until the next call), or NULL. */
+struct fault *fault_acts(struct sim *sim, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation);
+
+/* The next random number. */
+uint64_t faults_random(struct faults *faults);
+
+/* A fault has done something to unit `unit` (0: the line): tell the watchers. */
+void fault_tell(struct sim *sim, const struct fault *fault, unsigned unit, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 #endif

@@ -1,5 +1,297 @@
+#include <string.h>
+
 #include "command.h"
 
-json_t *command_fault_inject(struct sim *sim, const json_t *params, struct refusal *refusal) { (void)sim, (void)params; return refuse(refusal, REFUSED_STATE, "no faults"); }
-json_t *command_fault_clear(struct sim *sim, const json_t *params, struct refusal *refusal) { (void)sim, (void)params; return refuse(refusal, REFUSED_STATE, "no faults"); }
-json_t *command_fault_list(struct sim *sim, const json_t *params, struct refusal *refusal) { (void)sim, (void)params; return refuse(refusal, REFUSED_STATE, "no faults"); }
+#define SURE 1000000u        /* millionths */
+#define COUNT_MAX UINT32_MAX
+
+/* What a kind of fault can be given besides kind, count, skip, probability, after and for. */
+enum { UNIT = 1, DIRECTION = 2, DURATION = 4, EVERY = 8 };
+
+typedef bool read_function(const json_t *params, struct fault *fault, struct refusal *refusal);
+
+static read_function read_nothing, read_mask, read_byte, read_delay, read_bytes, read_flash, read_power, read_input;
+
+static const struct kind {
+    unsigned takes;
+    const char *own[3]; /* further parameters */
+    read_function *read;
+} kinds[FAULT_KINDS] = {
+    [FAULT_DROP] = {UNIT | DIRECTION, {NULL}, read_nothing},
+    [FAULT_FLIP] = {UNIT | DIRECTION, {"mask"}, read_mask},
+    [FAULT_DUPLICATE] = {UNIT | DIRECTION, {NULL}, read_nothing},
+    [FAULT_INSERT] = {UNIT | DIRECTION, {"byte"}, read_byte},
+    [FAULT_ECHO] = {0, {NULL}, read_nothing},
+    [FAULT_DELAY] = {UNIT, {"delay"}, read_delay},
+    [FAULT_NO_ANSWER] = {UNIT, {NULL}, read_nothing},
+    [FAULT_WRONG_FCS] = {UNIT, {NULL}, read_nothing},
+    [FAULT_CUT] = {UNIT, {"bytes"}, read_bytes},
+    [FAULT_FLASH] = {UNIT, {"operation", "torn"}, read_flash},
+    [FAULT_POWER] = {UNIT | DURATION, {"operation"}, read_power},
+    [FAULT_BREAK] = {DURATION | EVERY, {NULL}, read_nothing},
+    [FAULT_UNPLUGGED] = {DURATION | EVERY, {NULL}, read_nothing},
+    [FAULT_CABLE] = {UNIT | DURATION | EVERY, {NULL}, read_nothing},
+    [FAULT_INPUT] = {UNIT | DURATION | EVERY, {"input", "level"}, read_input},
+};
+
+/* ---- Reading: one kind's own ---------------------------------------------------------------------------------------- */
+
+static bool read_nothing(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    (void)params, (void)fault, (void)refusal;
+    return true;
+}
+
+/* A number of the kind's own. `missing` < 0: it must be given. */
+static bool read_number(const json_t *params, const char *name, int64_t low, int64_t high, int64_t missing, struct fault *fault,
+                        struct refusal *refusal)
+{
+    int64_t number;
+    bool read = missing < 0 ? param_integer(params, name, low, high, &number, refusal)
+                            : param_integer_or(params, name, low, high, missing, &number, refusal);
+    if (read)
+        fault->number = (uint32_t)number;
+    return read;
+}
+
+static bool read_mask(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    return read_number(params, "mask", 1, 255, 1, fault, refusal);
+}
+
+static bool read_byte(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    return read_number(params, "byte", 0, 255, 0, fault, refusal);
+}
+
+static bool read_delay(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    if (!param_time(params, "delay", RKM04_NEVER, &fault->ticks, refusal))
+        return false;
+    if (fault->ticks <= SEGMENT_DELAY_MAX)
+        return true;
+    refuse(refusal, REFUSED_PARAMS, "delay: expected a time up to %llus",
+           (unsigned long long)(SEGMENT_DELAY_MAX / RKM04_TICKS_PER_SECOND));
+    return false;
+}
+
+static bool read_bytes(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    return read_number(params, "bytes", 0, UINT16_MAX, -1, fault, refusal);
+}
+
+/* A truth value: true, false, 1, 0. `missing` < 0: it must be given. */
+static bool read_truth(const json_t *params, const char *name, int missing, bool *truth, struct refusal *refusal)
+{
+    const json_t *value = json_object_get(params, name);
+    int64_t number = json_is_boolean(value) ? json_is_true(value) : json_is_integer(value) ? json_integer_value(value) : -1;
+    if (!value && missing >= 0)
+        number = missing;
+    if (number != 0 && number != 1) {
+        refuse(refusal, REFUSED_PARAMS, "%s: expected 1, 0, true or false", name);
+        return false;
+    }
+    *truth = number != 0;
+    return true;
+}
+
+static bool read_flash(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    static const struct {
+        const char *name;
+        uint8_t operations;
+    } choices[] = {
+        {"write", FAULT_ERASE | FAULT_PROGRAM}, {"erase", FAULT_ERASE}, {"program", FAULT_PROGRAM}, {"read", FAULT_READ},
+    };
+    const char *name = "write";
+    if (!read_truth(params, "torn", 0, &fault->torn, refusal))
+        return false;
+    if (json_object_get(params, "operation") && !(name = param_string(params, "operation", refusal)))
+        return false;
+    for (size_t i = 0; i < sizeof choices / sizeof choices[0]; i++)
+        if (strcmp(choices[i].name, name) == 0)
+            fault->operations = choices[i].operations;
+    if (fault->operations != 0)
+        return true;
+    refuse(refusal, REFUSED_PARAMS, "operation: expected \"write\" (an erase or a program), \"erase\", \"program\" or \"read\"");
+    return false;
+}
+
+static bool read_power(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    if (!read_number(params, "operation", 1, COUNT_MAX, 1, fault, refusal))
+        return false;
+    fault->operations = FAULT_ERASE | FAULT_PROGRAM;
+    fault->skip += fault->number - 1u;
+    if (!fault->counted)
+        fault->left = 1;
+    fault->counted = true;
+    return true;
+}
+
+static bool read_input(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    return read_number(params, "input", 1, 8, -1, fault, refusal) &&
+           read_truth(params, "level", -1, &fault->level, refusal);
+}
+
+/* ---- Reading: what several kinds have ------------------------------------------------------------------------------- */
+
+static bool read_kind(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    char list[200] = "";
+    const char *name = json_string_value(json_object_get(params, "kind"));
+    enum fault_kind kind = name ? fault_kind_named(name) : FAULT_KINDS;
+    fault->kind = (uint8_t)kind;
+    if (kind != FAULT_KINDS)
+        return true;
+    for (unsigned i = 0; i < FAULT_KINDS; i++) {
+        strncat(list, i > 0 ? ", " : "", sizeof list - strlen(list) - 1u);
+        strncat(list, fault_kind_name((enum fault_kind)i), sizeof list - strlen(list) - 1u);
+    }
+    refuse(refusal, REFUSED_PARAMS, "kind: expected one of %s", list);
+    return false;
+}
+
+static bool check_names(const json_t *params, const struct kind *kind, struct refusal *refusal)
+{
+    const char *names[16] = {"kind", "count", "skip", "probability", "after", "for"};
+    unsigned count = 6;
+    for (unsigned i = 0; i < 3 && kind->own[i]; i++)
+        names[count++] = kind->own[i];
+    if (kind->takes & UNIT)
+        names[count++] = "unit";
+    if (kind->takes & DIRECTION)
+        names[count++] = "direction";
+    if (kind->takes & DURATION)
+        names[count++] = "duration";
+    if (kind->takes & EVERY)
+        names[count++] = "every";
+    names[count] = NULL;
+    return params_known(params, names, refusal);
+}
+
+static bool read_probability(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    const json_t *value = json_object_get(params, "probability");
+    double probability = json_number_value(value);
+    fault->millionths = SURE;
+    if (!value)
+        return true;
+    if (!json_is_number(value) || !(probability >= 1.0 / SURE && probability <= 1.0)) {
+        refuse(refusal, REFUSED_PARAMS, "probability: expected a number from 0.000001 to 1");
+        return false;
+    }
+    fault->millionths = (uint32_t)(probability * SURE + 0.5);
+    return true;
+}
+
+static bool read_occasions(const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    int64_t count, skip;
+    if (!param_integer_or(params, "count", 1, COUNT_MAX, 0, &count, refusal) ||
+        !param_integer_or(params, "skip", 0, INT32_MAX, 0, &skip, refusal) || !read_probability(params, fault, refusal))
+        return false;
+    fault->counted = count > 0;
+    fault->left = (uint32_t)count;
+    fault->skip = (uint32_t)skip;
+    return true;
+}
+
+static bool read_window(const struct sim *sim, const json_t *params, struct fault *fault, struct refusal *refusal)
+{
+    uint64_t after, length = RKM04_NEVER;
+    if (!param_time(params, "after", 0, &after, refusal))
+        return false;
+    if (json_object_get(params, "for") && !param_time(params, "for", RKM04_NEVER, &length, refusal))
+        return false;
+    if (length == 0) {
+        refuse(refusal, REFUSED_PARAMS, "for: expected a time of at least 1us");
+        return false;
+    }
+    fault->from = sim_now(sim) + after;
+    fault->until = length == RKM04_NEVER ? RKM04_NEVER : fault->from + length;
+    return true;
+}
+
+static bool read_spell(const json_t *params, unsigned takes, struct fault *fault, struct refusal *refusal)
+{
+    if (!(takes & DURATION))
+        return true;
+    bool given = json_object_get(params, "duration") != NULL;
+    fault->ticks = RKM04_NEVER;
+    if (given && !param_time(params, "duration", RKM04_NEVER, &fault->ticks, refusal))
+        return false;
+    if (!param_time(params, "every", 0, &fault->every, refusal))
+        return false;
+    const char *wrong = NULL;
+    if (given && fault->ticks == 0)
+        wrong = "duration: expected a time of at least 1us";
+    else if (fault->kind == FAULT_BREAK && !given && fault->until == RKM04_NEVER)
+        wrong = "duration: missing: how long the line is to be held at 0, as in \"20ms\"";
+    else if (fault->every > 0 && (!given || fault->ticks >= fault->every))
+        wrong = "every: expected a duration, and a longer time than that";
+    else if (json_object_get(params, "every") && fault->every == 0)
+        wrong = "every: expected a time of at least 1us";
+    if (wrong)
+        refuse(refusal, REFUSED_PARAMS, "%s", wrong);
+    return !wrong;
+}
+
+/* Which unit, and which way: bytes of the master cannot be those of one unit. Without a unit: all of them. */
+static bool read_whose(struct sim *sim, const json_t *params, unsigned takes, struct fault *fault, struct refusal *refusal)
+{
+    static const char *const ways[] = {[FAULT_TO_UNITS] = "to_units", [FAULT_TO_MASTER] = "to_master", [FAULT_BOTH] = "both"};
+    if ((takes & UNIT) && json_object_get(params, "unit") && !(fault->unit = (uint8_t)param_unit(sim, params, refusal)))
+        return false;
+    if (!(takes & DIRECTION))
+        return true;
+    fault->direction = fault->unit > 0 ? FAULT_TO_MASTER : FAULT_BOTH;
+    if (!json_object_get(params, "direction"))
+        return true;
+    const char *way = json_string_value(json_object_get(params, "direction"));
+    fault->direction = 0;
+    for (uint8_t i = FAULT_TO_UNITS; way && i <= FAULT_BOTH; i++)
+        if (strcmp(ways[i], way) == 0)
+            fault->direction = i;
+    if (fault->direction == 0)
+        refuse(refusal, REFUSED_PARAMS, "direction: expected \"to_units\", \"to_master\" or \"both\"");
+    else if (fault->unit > 0 && fault->direction != FAULT_TO_MASTER)
+        refuse(refusal, REFUSED_PARAMS, "direction: all units hear the same bytes of the master: leave out unit, or expect "
+                                        "\"to_master\"");
+    else
+        return true;
+    return false;
+}
+
+/* ---- Methods -------------------------------------------------------------------------------------------------------- */
+
+json_t *command_fault_inject(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    struct fault fault = {0};
+    if (!read_kind(params, &fault, refusal))
+        return NULL;
+    const struct kind *kind = &kinds[fault.kind];
+    if (!check_names(params, kind, refusal) || !read_occasions(params, &fault, refusal) ||
+        !read_window(sim, params, &fault, refusal) || !read_spell(params, kind->takes, &fault, refusal) ||
+        !read_whose(sim, params, kind->takes, &fault, refusal) || !kind->read(params, &fault, refusal))
+        return NULL;
+    if (fault.kind == FAULT_WRONG_FCS && sim->config.unit.framing && sim->config.unit.framing != &rkm04_hdlc)
+        return refuse(refusal, REFUSED_STATE, "wrong_fcs: framing `%s' has no check value", sim->config.unit.framing->name);
+    uint32_t id = faults_add(sim, &fault);
+    if (id == 0)
+        return refuse(refusal, REFUSED_STATE, "there are %u faults already that may still act: clear some", FAULTS_MAX);
+    return json_pack("{s:I}", "id", (json_int_t)id);
+}
+
+json_t *command_fault_clear(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {"id", NULL};
+    int64_t id;
+    if (!params_known(params, names, refusal) || !param_integer_or(params, "id", 1, UINT32_MAX, 0, &id, refusal))
+        return NULL;
+    unsigned cleared = faults_remove(sim, (uint32_t)id);
+    if (id != 0 && cleared == 0)
+        return refuse(refusal, REFUSED_PARAMS, "id: there is no fault %lld: see fault.list", (long long)id);
+    return json_pack("{s:i}", "cleared", (int)cleared);
+}

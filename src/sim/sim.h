@@ -129,7 +129,7 @@ void sim_set_di(struct sim *sim, unsigned number, uint8_t mask);
  * one of these. */
 void sim_look_at_inputs(struct sim *sim, unsigned number);
 
-/* Flash of a unit, with faults on demand. As in struct rkm04_port. */
+/* Flash of a unit as it is, without faults on demand. As in struct rkm04_port. */
 int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);
 int sim_flash_erase(struct sim_unit *unit, unsigned block);
 int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length);

@@ -1,0 +1,164 @@
+/* Faults of bytes and answers: what the hooks of the segment do on a line with faults. */
+#include <stdio.h>
+
+#include "sim.h"
+
+#define ESCAPE 0x7d
+#define FLAG 0x7e
+
+const struct fault_answer fault_answer_well = {.end = UINT32_MAX, .wrong_at = UINT32_MAX};
+
+struct name {
+    char text[16];
+};
+
+/* "the master", "unit 3". */
+static struct name name_of(const struct sim *sim, unsigned station)
+{
+    struct name name = {"the master"};
+    if (station > 0)
+        snprintf(name.text, sizeof name.text, "unit %s", sim->unit[station - 1u].name);
+    return name;
+}
+
+/* ---- Answers -------------------------------------------------------------------------------------------------------- */
+
+static uint32_t answers_sent(const struct rkm04_unit *unit)
+{
+    return rkm04_counters(unit).answers;
+}
+
+/* Where the check value of the answer that a unit is about to send can be made wrong, and by which bits, so that the frame stays
+ * as long as it is: in the low byte, or what stands for it. The answer is the one that a copy of the unit sends. */
+static void find_check_value(const struct rkm04_unit *unit, struct fault_answer *answer)
+{
+    static const struct rkm04_port nothing;
+    struct rkm04_unit copy = *unit;
+    uint8_t last[8] = {0}; /* bytes, the last one first */
+    uint32_t sent = answers_sent(&copy), length = 0;
+    copy.port = &nothing;
+    while (answers_sent(&copy) == sent && rkm04_send(&copy, &last[0], 1) == 1) {
+        length++;
+        for (unsigned i = sizeof last - 1u; i > 0; i--)
+            last[i] = last[i - 1u];
+    }
+    /* last[1] is the closing flag, the high byte before it may take two. */
+    unsigned low = last[3] == ESCAPE ? 4 : 3;
+    bool escaped = last[low + 1u] == ESCAPE;
+    uint8_t other = last[low] ^ 1u;
+    answer->wrong_at = length - low;
+    answer->mask = escaped ? ESCAPE ^ FLAG : other == ESCAPE || other == FLAG ? 4 : 1;
+}
+
+static uint64_t on_answer(void *context, unsigned number)
+{
+    struct sim *sim = context;
+    struct fault_answer *answer = &sim->faults.answer[number - 1u];
+    const struct fault *fault;
+    uint64_t delay = 0;
+    *answer = fault_answer_well;
+    if ((fault = fault_acts(sim, FAULT_NO_ANSWER, number, 0, 0))) {
+        answer->end = 0;
+        fault_tell(sim, fault, number, "no answer");
+        return 0;
+    }
+    if ((fault = fault_acts(sim, FAULT_DELAY, number, 0, 0))) {
+        delay = fault->ticks;
+        fault_tell(sim, fault, number, "the answer is late by %llu us", (unsigned long long)delay);
+    }
+    if ((fault = fault_acts(sim, FAULT_CUT, number, 0, 0))) {
+        answer->end = fault->number;
+        fault_tell(sim, fault, number, "the answer ends after %u bytes", (unsigned)fault->number);
+    }
+    if ((fault = fault_acts(sim, FAULT_WRONG_FCS, number, 0, 0))) {
+        find_check_value(segment_unit(&sim->segment, number), answer);
+        fault_tell(sim, fault, number, "the check value of the answer is wrong");
+    }
+    return delay;
+}
+
+/* What the unit has sent as the next byte of its answer. Returns false if nothing of it goes out. */
+static bool as_answered(struct fault_answer *answer, uint8_t *byte)
+{
+    uint32_t at = answer->at++;
+    if (at == answer->wrong_at)
+        *byte ^= answer->mask;
+    return at < answer->end;
+}
+
+/* ---- Bytes ---------------------------------------------------------------------------------------------------------- */
+
+/* Does what a station sends get as far as the line? */
+static bool connected(const struct sim *sim, unsigned station)
+{
+    if (station == 0 && fault_lasts(sim, FAULT_UNPLUGGED, 0))
+        return false;
+    return !fault_lasts(sim, FAULT_CABLE, station);
+}
+
+static size_t on_send(void *context, unsigned station, uint8_t byte, uint8_t *bytes)
+{
+    struct sim *sim = context;
+    unsigned direction = station == 0 ? FAULT_TO_UNITS : FAULT_TO_MASTER;
+    const struct fault *fault;
+    size_t length = 0;
+    if (station > 0 && !as_answered(&sim->faults.answer[station - 1u], &byte))
+        return 0;
+    if (!connected(sim, station))
+        return 0;
+    if ((fault = fault_acts(sim, FAULT_DROP, station, direction, 0))) {
+        fault_tell(sim, fault, station, "%02X of %s is lost", byte, name_of(sim, station).text);
+        return 0;
+    }
+    if ((fault = fault_acts(sim, FAULT_FLIP, station, direction, 0))) {
+        uint8_t flipped = (uint8_t)(byte ^ fault->number);
+        fault_tell(sim, fault, station, "%02X of %s becomes %02X", byte, name_of(sim, station).text, flipped);
+        byte = flipped;
+    }
+    if ((fault = fault_acts(sim, FAULT_INSERT, station, direction, 0))) {
+        bytes[length++] = (uint8_t)fault->number;
+        fault_tell(sim, fault, station, "%02X comes before %02X of %s", (unsigned)fault->number, byte,
+                   name_of(sim, station).text);
+    }
+    bytes[length++] = byte;
+    if ((fault = fault_acts(sim, FAULT_DUPLICATE, station, direction, 0))) {
+        bytes[length++] = byte;
+        fault_tell(sim, fault, station, "%02X of %s comes twice", byte, name_of(sim, station).text);
+    }
+    return length;
+}
+
+static bool on_hears(void *context, unsigned station, uint32_t senders)
+{
+    const struct sim *sim = context;
+    if (!connected(sim, station))
+        return false;
+    return senders != 1u || connected(sim, 0); /* cut while the byte was under way */
+}
+
+static bool on_echoes(void *context, uint8_t byte)
+{
+    struct sim *sim = context;
+    const struct fault *fault = fault_acts(sim, FAULT_ECHO, 0, 0, 0);
+    if (fault)
+        fault_tell(sim, fault, 0, "the master hears its own %02X", byte);
+    return fault != NULL;
+}
+
+static void on_obeyed(void *context, unsigned number)
+{
+    struct sim *sim = context;
+    uint32_t bit = UINT32_C(1) << number;
+    if ((sim->faults.dying & bit) == 0)
+        return;
+    sim->faults.dying &= ~bit;
+    sim_power(sim, number, false);
+}
+
+const struct segment_hooks faults_hooks = {
+    .answer = on_answer,
+    .send = on_send,
+    .hears = on_hears,
+    .echoes = on_echoes,
+    .obeyed = on_obeyed,
+};
