@@ -1,9 +1,212 @@
-#include <stdio.h>
+/* `rkm04 test`: scenarios in virtual time. Its options and exit status; a scenario itself is src/sim/scenario.c. */
+#include <argp.h>
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "subcommands.h"
+#include "test_case.h"
+#include "test_report.h"
+
+enum option_key { KEY_NO_RECORDS = 256 };
+
+struct options {
+    const char **path; /* in the order of the command line */
+    size_t paths;
+    bool stdin_taken, json, no_records;
+    const char *junit, *records;
+};
+
+static const struct argp_option option_table[] = {
+    {"junit", 'x', "FILE", 0, "Write the results as JUnit XML", 0},
+    {"json", 'j', NULL, 0, "Print the results as JSON, instead of a line for each scenario", 0},
+    {"records", 'r', "FOLDER", 0, "Where the records of failed scenarios are kept; the default is the present folder", 0},
+    {"no-records", KEY_NO_RECORDS, NULL, 0, "Keep no records", 0},
+    {0},
+};
+
+static const char doc[] =
+    "Run scenarios in virtual time, as fast as the machine can, and say which pass. A scenario is a text file with programs and "
+    "messages to send, inputs, faults and a plant, and with what must come of it; - is standard input. "
+    "docs/SCENARIOS.md describes the format."
+    "\v"
+    "A scenario, in YAML:\n"
+    "  name: Five thousand steps and back\n"
+    "  steps:\n"
+    "    - set: 'S100 V1000 A2000 F5000 R'\n"
+    "    - wait: {motor: 1, position: 5000}\n"
+    "      within: 6s\n"
+    "    - message: '04 \"1\"'\n"
+    "      answer: '04 \"1\" 0A \"      5000\"'\n"
+    "    - set: 'H'\n"
+    "    - wait: {motor: 1, state: idle, position: 0}\n"
+    "    - pulses: {motor: 1, forward: 5000, back: 5000}\n"
+    "\n"
+    "A line for each, \"pass FILE: NAME (TIME)\" or \"FAIL FILE:LINE:COLUMN: NAME: expected ...; seen ...; at tick ...\". What "
+    "went in and out of a scenario that fails is kept in NAME.record, which `rkm04 replay' repeats.\n"
+    "\n"
+    "Examples:\n"
+    "  rkm04 test homing.yaml\n"
+    "  rkm04 test --junit report.xml --records build scenarios/*.yaml\n"
+    "  rkm04 replay --trace homing.vcd homing.record\n"
+    "\n"
+    "Exit status: 0 all passed; 3 any failed; 1 a file could not be read or written, or the run was interrupted; 2 wrong usage, "
+    "or a file that is no scenario: each error is a line FILE:LINE:COLUMN: error: ..., and nothing is run.";
+
+/* ---- Command line --------------------------------------------------------------------------------------------------- */
+
+static void take_path(struct argp_state *state, struct options *options, const char *path)
+{
+    bool standard = strcmp(path, "-") == 0;
+    if (standard && options->stdin_taken)
+        argp_error(state, "standard input (-) can be read only once");
+    options->stdin_taken = options->stdin_taken || standard;
+    options->path[options->paths++] = path;
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case 'x':
+        options->junit = text;
+        return 0;
+    case 'j':
+        options->json = true;
+        return 0;
+    case 'r':
+        options->records = text;
+        return 0;
+    case KEY_NO_RECORDS:
+        options->no_records = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        take_path(state, options, text);
+        return 0;
+    case ARGP_KEY_END:
+        if (options->paths == 0)
+            argp_error(state, "no scenario given");
+        if (options->no_records && options->records != NULL)
+            argp_error(state, "expected either --records or --no-records");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static void parse_options(int argc, char **argv, struct options *options)
+{
+    static const struct argp argp = {option_table, parse_option, "SCENARIO...", doc, NULL, NULL, NULL};
+    argp_err_exit_status = STATUS_USAGE;
+    argp_parse(&argp, argc, argv, 0, NULL, options);
+}
+
+/* ---- The run -------------------------------------------------------------------------------------------------------- */
+
+/* A second signal ends the process at once. */
+static void catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = test_case_interrupt, .sa_flags = (int)SA_RESETHAND};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    signal(SIGPIPE, SIG_IGN); /* a closed pipe is a failed write, which is reported */
+}
+
+/* Read all files, to tell all their errors. Returns 0 or the exit status. */
+static int read_all(struct test_case *tests, const struct options *options)
+{
+    int status = STATUS_WELL;
+    for (size_t i = 0; i < options->paths; i++) {
+        int wrong = test_case_read(&tests[i], options->path[i]);
+        if (wrong == STATUS_USAGE || status == STATUS_WELL)
+            status = wrong != STATUS_WELL ? wrong : status;
+    }
+    return status;
+}
+
+/* Returns false if something could not be written. */
+static bool run_all(struct test_case *tests, const struct options *options)
+{
+    struct test_progress progress = {.wanted = isatty(STDERR_FILENO) != 0, .count = options->paths};
+    const char *folder = options->no_records ? NULL : options->records != NULL ? options->records : ".";
+    bool well = true;
+    for (size_t i = 0; i < options->paths && !test_case_interrupted(); i++) {
+        unsigned number = 1;
+        for (size_t before = 0; before < i; before++)
+            number += test_case_alike(&tests[before], &tests[i]);
+        progress.at = i + 1;
+        well = test_case_run(&tests[i], folder, number, &progress) && well;
+        if (!options->json)
+            test_report_line(stdout, &tests[i]);
+        fflush(stdout);
+    }
+    return well;
+}
+
+static bool finish(FILE *file, const char *what)
+{
+    errno = 0;
+    bool well = !ferror(file) && fflush(file) == 0;
+    if (file != stdout)
+        well = fclose(file) == 0 && well;
+    if (!well)
+        fprintf(stderr, "rkm04 test: cannot write %s: %s\n", what, strerror(errno != 0 ? errno : EIO));
+    return well;
+}
+
+static bool report_all(const struct test_case *tests, const struct options *options, FILE *junit)
+{
+    bool well = true;
+    if (junit != NULL) {
+        test_report_junit(junit, tests, options->paths);
+        well = finish(junit, options->junit);
+    }
+    if (options->json)
+        test_report_json(stdout, tests, options->paths);
+    else if (options->paths > 1)
+        test_report_sum(stdout, tests, options->paths);
+    return finish(stdout, "the results") && well;
+}
+
+static int run(struct test_case *tests, const struct options *options)
+{
+    FILE *junit = NULL;
+    int status = read_all(tests, options);
+    if (status != STATUS_WELL)
+        return status;
+    if (options->junit != NULL) {
+        junit = fopen(options->junit, "w");
+        if (junit == NULL) {
+            fprintf(stderr, "rkm04 test: cannot write %s: %s\n", options->junit, strerror(errno));
+            return STATUS_FAILURE;
+        }
+    }
+    catch_signals();
+    bool well = run_all(tests, options);
+    well = report_all(tests, options, junit) && well;
+    if (test_case_interrupted())
+        fputs("rkm04 test: interrupted\n", stderr);
+    if (test_report_count(tests, options->paths, TEST_FAILED) > 0)
+        return STATUS_FAILED;
+    return well && test_report_count(tests, options->paths, TEST_PASSED) == options->paths ? STATUS_WELL : STATUS_FAILURE;
+}
 
 int test_main(int argc, char **argv)
 {
-    (void)argc, (void)argv;
-    return 1;
+    struct options options = {.path = calloc((size_t)argc, sizeof(const char *))};
+    struct test_case *tests = calloc((size_t)argc, sizeof *tests);
+    int status = STATUS_FAILURE;
+    if (options.path == NULL || tests == NULL) {
+        fprintf(stderr, "rkm04 test: %s\n", strerror(ENOMEM));
+    } else {
+        parse_options(argc, argv, &options);
+        status = run(tests, &options);
+    }
+    for (size_t i = 0; tests != NULL && i < options.paths; i++)
+        test_case_free(&tests[i]);
+    free(tests);
+    free(options.path);
+    return status;
 }

@@ -1,0 +1,210 @@
+#include "test_case.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <rkm04/limits.h>
+
+#include "program_text.h"
+#include "subcommands.h"
+
+#define TEXT_MAX ((size_t)4 << 20) /* bytes of a file */
+#define FIRST_ROOM 4096
+#define PROGRESS_AFTER 0.5 /* s */
+#define PROGRESS_EVERY 0.2
+
+static volatile sig_atomic_t interrupted;
+
+void test_case_interrupt(int signal_number)
+{
+    (void)signal_number;
+    interrupted = 1;
+}
+
+bool test_case_interrupted(void)
+{
+    return interrupted != 0;
+}
+
+/* ---- Files ---------------------------------------------------------------------------------------------------------- */
+
+/* Read all of `file`. Returns a text to be freed, or NULL and the reason. */
+static char *read_stream(FILE *file, size_t *length, const char **why)
+{
+    char *text = NULL;
+    *length = 0;
+    for (size_t room = FIRST_ROOM; room <= TEXT_MAX; room *= 2) {
+        char *grown = realloc(text, room);
+        if (grown == NULL)
+            break;
+        text = grown;
+        *length += fread(text + *length, 1, room - *length, file);
+        if (ferror(file)) {
+            *why = strerror(errno);
+            free(text);
+            return NULL;
+        }
+        if (*length < room)
+            return text;
+    }
+    *why = "it is too large";
+    free(text);
+    return NULL;
+}
+
+static char *read_file(void *context, const char *path, size_t *length, const char **why)
+{
+    (void)context;
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        *why = strerror(errno);
+        return NULL;
+    }
+    char *text = read_stream(file, length, why);
+    fclose(file);
+    return text;
+}
+
+int test_case_read(struct test_case *test, const char *path)
+{
+    static const struct scenario_files files = {.read = read_file, .map = program_text_map};
+    bool standard = strcmp(path, "-") == 0;
+    const char *why = "";
+    size_t length;
+    *test = (struct test_case){.file = standard ? "<stdin>" : path};
+    char *text = standard ? read_stream(stdin, &length, &why) : read_file(NULL, path, &length, &why);
+    if (text == NULL) {
+        fprintf(stderr, "rkm04 test: cannot read %s: %s\n", test->file, why);
+        return STATUS_FAILURE;
+    }
+    test->scenario = scenario_read(test->file, text, length, &files, stderr);
+    free(text);
+    return test->scenario != NULL ? STATUS_WELL : STATUS_USAGE;
+}
+
+const char *test_case_name(const struct test_case *test)
+{
+    const char *name = test->scenario != NULL ? scenario_name(test->scenario) : NULL;
+    return name != NULL && name[0] != '\0' ? name : test->file;
+}
+
+void test_case_free(struct test_case *test)
+{
+    scenario_free(test->scenario);
+    scenario_result_free(&test->result);
+    free(test->record);
+    *test = (struct test_case){0};
+}
+
+/* ---- Records -------------------------------------------------------------------------------------------------------- */
+
+/* The name of the file without folder and suffix. */
+static const char *base_of(const struct test_case *test, int *length)
+{
+    const char *slash = strrchr(test->file, '/'), *base = slash != NULL ? slash + 1 : test->file;
+    if (strcmp(base, "<stdin>") == 0)
+        base = "stdin";
+    const char *dot = strrchr(base, '.');
+    *length = dot != NULL && dot != base ? (int)(dot - base) : (int)strlen(base);
+    return base;
+}
+
+bool test_case_alike(const struct test_case *left, const struct test_case *right)
+{
+    int left_length, right_length;
+    const char *left_base = base_of(left, &left_length), *right_base = base_of(right, &right_length);
+    return left_length == right_length && memcmp(left_base, right_base, (size_t)left_length) == 0;
+}
+
+static char *record_path(const struct test_case *test, const char *folder, unsigned number)
+{
+    int length;
+    const char *base = base_of(test, &length);
+    char *path, suffix[16] = "";
+    if (number > 1)
+        snprintf(suffix, sizeof suffix, "-%u", number);
+    return asprintf(&path, "%s/%.*s%s.record", folder, length, base, suffix) < 0 ? NULL : path;
+}
+
+static bool write_record(const char *path, const char *text, size_t length)
+{
+    FILE *file = fopen(path, "w");
+    if (file == NULL)
+        return false;
+    bool well = fwrite(text, 1, length, file) == length;
+    return fclose(file) == 0 && well;
+}
+
+static bool keep_record(struct test_case *test, const char *folder, unsigned number, const char *text, size_t length)
+{
+    char *path = record_path(test, folder, number);
+    if (test->result.record_error == 0 && path != NULL && write_record(path, text, length)) {
+        /* as one would write it */
+        test->record = strncmp(path, "./", 2) == 0 ? strdup(path + 2) : strdup(path);
+        free(path);
+        return true;
+    }
+    fprintf(stderr, "rkm04 test: cannot write the record %s: %s\n", path != NULL ? path : "",
+            strerror(test->result.record_error != 0 ? test->result.record_error : errno));
+    free(path);
+    return false;
+}
+
+/* ---- The run -------------------------------------------------------------------------------------------------------- */
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + (double)time.tv_nsec * 1e-9;
+}
+
+static void show(struct test_progress *progress, uint64_t tick)
+{
+    double real = now();
+    if (!progress->wanted || real < progress->next)
+        return;
+    double virtual = (double)tick / RKM04_TICKS_PER_SECOND;
+    progress->next = real + PROGRESS_EVERY;
+    progress->shown = true;
+    fprintf(stderr, "\r%zu of %zu: %.60s: %.1f s of the units' time; Ctrl-C ends the run\033[K", progress->at, progress->count,
+            test_case_name(progress->test), virtual);
+}
+
+static bool ask(void *context, uint64_t tick)
+{
+    show(context, tick);
+    return interrupted != 0;
+}
+
+bool test_case_run(struct test_case *test, const char *folder, unsigned number, struct test_progress *progress)
+{
+    static const enum test_outcome outcomes[] = {
+        [SCENARIO_PASSED] = TEST_PASSED,
+        [SCENARIO_FAILED] = TEST_FAILED,
+        [SCENARIO_INTERRUPTED] = TEST_NOT_RUN,
+        [SCENARIO_NO_MEMORY] = TEST_BROKEN,
+    };
+    char *record = NULL;
+    size_t length = 0;
+    bool well = true;
+    FILE *out = folder != NULL ? open_memstream(&record, &length) : NULL;
+    double begin = now();
+    progress->test = test;
+    progress->next = begin + PROGRESS_AFTER;
+    test->outcome = outcomes[scenario_run(test->scenario, out, ask, progress, &test->result)];
+    test->seconds = now() - begin;
+    if (progress->shown)
+        fputs("\r\033[K", stderr);
+    progress->shown = false;
+    if (out != NULL && fclose(out) != 0)
+        test->result.record_error = errno;
+    if (test->outcome == TEST_FAILED && folder != NULL)
+        well = keep_record(test, folder, number, record, length);
+    free(record);
+    return well;
+}

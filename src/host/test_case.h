@@ -1,0 +1,54 @@
+/* test_case.h: a scenario of `rkm04 test`: its file, its run, what came of it. */
+#ifndef RKM04_HOST_TEST_CASE_H
+#define RKM04_HOST_TEST_CASE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "scenario.h"
+
+enum test_outcome {
+    TEST_NOT_RUN,
+    TEST_PASSED,
+    TEST_FAILED,
+    TEST_BROKEN /* memory was short: it says nothing about the scenario */
+};
+
+struct test_case {
+    const char *file;         /* as given, "<stdin>" for "-" */
+    struct scenario *scenario;
+    enum test_outcome outcome;
+    struct scenario_result result;
+    double seconds;           /* of real time */
+    char *record;             /* where the record of the failure is; NULL: nowhere */
+};
+
+/* Where a run tells a person how far it is. */
+struct test_progress {
+    bool wanted, shown;
+    size_t at, count;         /* this one, of so many */
+    double next;              /* s */
+    const struct test_case *test;
+};
+
+/* Read the file `path`, "-" for standard input. Errors are reported on stderr.
+ * Returns 0, or what the exit status is to be. */
+int test_case_read(struct test_case *test, const char *path);
+
+/* Run it. `folder`: where the record of a failure goes; NULL: it is not kept. `number`: 2, 3, … for the second, third of a run
+ * whose files are called alike. A record that cannot be written is reported on stderr: then false. */
+bool test_case_run(struct test_case *test, const char *folder, unsigned number, struct test_progress *progress);
+
+/* Would the records of both have the same name? */
+bool test_case_alike(const struct test_case *left, const struct test_case *right);
+
+/* What people call it: its name, or its file. */
+const char *test_case_name(const struct test_case *test);
+
+void test_case_free(struct test_case *test);
+
+/* For signals: the present run ends soon, and test_case_interrupted() is true from then on. */
+void test_case_interrupt(int signal_number);
+bool test_case_interrupted(void);
+
+#endif

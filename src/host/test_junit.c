@@ -1,0 +1,110 @@
+/* JUnit XML. There is no standard; this is what Jenkins, GitLab and the publishers of GitHub read. */
+#include <inttypes.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "test_report.h"
+
+/* The length of the UTF-8 character at `text` if it is one that XML 1.0 may have; 0: it is not. */
+static size_t character_length(const unsigned char *text)
+{
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    size_t length = *text < 0x80 ? 1 : *text >> 5 == 6 ? 2 : *text >> 4 == 14 ? 3 : *text >> 3 == 30 ? 4 : 0;
+    uint32_t code = length < 2 ? *text : *text & (0x7Fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if (text[i] >> 6 != 2)
+            return 0;
+        code = code << 6 | (text[i] & 0x3Fu);
+    }
+    if (length == 0 || code < least[length] || code > 0x10FFFF)
+        return 0;
+    if (code < 0x20)
+        return code == '\t' || code == '\n' || code == '\r' ? 1 : 0;
+    return (code >= 0xD800 && code < 0xE000) || code == 0xFFFE || code == 0xFFFF ? 0 : length;
+}
+
+static void print_escaped(FILE *out, const char *text)
+{
+    static const char special[] = "&<>\"'\t\n\r";
+    static const char *const escapes[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;", "&#9;", "&#10;", "&#13;"};
+    while (*text != '\0') {
+        size_t length = character_length((const unsigned char *)text);
+        const char *found = strchr(special, *text);
+        if (length == 0)
+            fputs("\xEF\xBF\xBD", out); /* no character: U+FFFD in its place */
+        else if (found != NULL)
+            fputs(escapes[found - special], out);
+        else
+            fwrite(text, 1, length, out);
+        text += length > 0 ? length : 1;
+    }
+}
+
+static void print_attribute(FILE *out, const char *name, const char *value)
+{
+    fprintf(out, " %s=\"", name);
+    print_escaped(out, value);
+    fputc('"', out);
+}
+
+static void print_failure(FILE *out, const struct test_case *test)
+{
+    const struct scenario_result *result = &test->result;
+    fputs("      <failure type=\"expectation\" message=\"expected ", out);
+    print_escaped(out, result->expected);
+    fputs("; seen ", out);
+    print_escaped(out, result->seen);
+    fprintf(out, "; at tick %" PRIu64 "\">", result->tick);
+    print_escaped(out, test->file);
+    fprintf(out, ":%zu:%zu", result->line, result->column);
+    if (result->label != NULL) {
+        fputs("\nstep: ", out);
+        print_escaped(out, result->label);
+    }
+    fputs("\nexpected: ", out);
+    print_escaped(out, result->expected);
+    fputs("\nseen: ", out);
+    print_escaped(out, result->seen);
+    fprintf(out, "\ntick: %" PRIu64, result->tick);
+    if (test->record != NULL) {
+        fputs("\nrecord: ", out);
+        print_escaped(out, test->record);
+    }
+    fputs("</failure>\n", out);
+}
+
+static void print_case(FILE *out, const struct test_case *test)
+{
+    fputs("    <testcase classname=\"rkm04\"", out);
+    print_attribute(out, "name", test_case_name(test));
+    print_attribute(out, "file", test->file);
+    fprintf(out, " time=\"%.6f\">\n", test->seconds);
+    if (test->outcome == TEST_FAILED)
+        print_failure(out, test);
+    else if (test->outcome == TEST_BROKEN)
+        fputs("      <error type=\"memory\" message=\"memory is short\"/>\n", out);
+    else if (test->outcome == TEST_NOT_RUN)
+        fputs("      <skipped message=\"interrupted\"/>\n", out);
+    fprintf(out, "      <system-out>virtual time: %" PRIu64 " us</system-out>\n    </testcase>\n", test->result.tick);
+}
+
+static void print_counts(FILE *out, const struct test_case *tests, size_t count)
+{
+    double seconds = 0;
+    for (size_t i = 0; i < count; i++)
+        seconds += tests[i].seconds;
+    fprintf(out, " name=\"rkm04 test\" tests=\"%zu\" failures=\"%zu\" errors=\"%zu\" skipped=\"%zu\" time=\"%.6f\">\n", count,
+            test_report_count(tests, count, TEST_FAILED), test_report_count(tests, count, TEST_BROKEN),
+            test_report_count(tests, count, TEST_NOT_RUN), seconds);
+}
+
+void test_report_junit(FILE *out, const struct test_case *tests, size_t count)
+{
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites", out);
+    print_counts(out, tests, count);
+    fputs("  <testsuite", out);
+    print_counts(out, tests, count);
+    for (size_t i = 0; i < count; i++)
+        print_case(out, &tests[i]);
+    fputs("  </testsuite>\n</testsuites>\n", out);
+}

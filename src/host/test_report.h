@@ -1,0 +1,26 @@
+/* test_report.h: what `rkm04 test` tells: a line a scenario for people, JSON for programs, JUnit XML for CI servers. */
+#ifndef RKM04_HOST_TEST_REPORT_H
+#define RKM04_HOST_TEST_REPORT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "test_case.h"
+
+/* A line about one that has been run. */
+void test_report_line(FILE *out, const struct test_case *test);
+
+/* A line about all of them. */
+void test_report_sum(FILE *out, const struct test_case *tests, size_t count);
+
+/* All of them as one JSON object. Returns false if it could not be written. */
+bool test_report_json(FILE *out, const struct test_case *tests, size_t count);
+
+/* All of them as JUnit XML: whatever stands in names and texts, it is well formed. */
+void test_report_junit(FILE *out, const struct test_case *tests, size_t count);
+
+/* How many of them came out so? */
+size_t test_report_count(const struct test_case *tests, size_t count, enum test_outcome outcome);
+
+#endif
