@@ -81,7 +81,8 @@ unsigned param_unit(struct sim *sim, const json_t *params, struct refusal *refus
         return 1;
     if (json_is_integer(value) && json_integer_value(value) >= 1 && json_integer_value(value) <= RKM04_NODE_MAX)
         snprintf(name, sizeof name, "%d", (int)json_integer_value(value));
-    else if (json_is_string(value) && json_string_length(value) < sizeof name)
+    else if (json_is_string(value) && json_string_length(value) < sizeof name &&
+             json_string_length(value) == strlen(json_string_value(value)))
         memcpy(name, json_string_value(value), json_string_length(value) + 1);
     unsigned number = sim_unit_named(sim, name);
     if (number > 0)
