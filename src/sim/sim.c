@@ -382,6 +382,8 @@ void sim_power(struct sim *sim, unsigned number, bool on)
     if (sim_powered(sim, number))
         tell_power(sim, number, false);
     unit->forward = 0;
+    if (on)
+        segment_unit(&sim->segment, number)->config.node = sim->config.nodes.node[number - 1u]; /* S1 is read now (U4) */
     segment_power(&sim->segment, number, on);
     if (!on)
         return;
