@@ -1,6 +1,6 @@
 /* record.h: a record of a session: the configuration, everything that came in from outside with its tick, and what went out:
- * answers as they are, pulses and outputs as running digests. `rkm04 replay` does it again and names the first difference.
- * docs/RECORD.md describes the file: JSON, one object a line. */
+ * answers as they are, pulses, outputs and bytes on the wires as running digests. `rkm04 replay` does it again and names the first
+ * difference. docs/RECORD.md describes the file: JSON, one object a line. */
 #ifndef RKM04_SIM_RECORD_H
 #define RKM04_SIM_RECORD_H
 
@@ -10,8 +10,9 @@
 
 struct record;
 
-/* Begin to take down what comes in and goes out, on `out`, which stays the caller's. To be called at tick 0, before anything has
- * come in. Returns NULL if memory is short. */
+/* Begin to take down what comes in and goes out, on `out`, which stays the caller's. To be called at tick 0, when the plant is there
+ * and before anything has come in. Every line is flushed as it is written. Returns NULL if memory is short or a flash image cannot
+ * be read. */
 struct record *record_begin(struct sim *sim, FILE *out);
 
 /* End: write the last digests, and flush. Returns 0 or the errno of the first failure. Frees the record. */
@@ -20,26 +21,57 @@ int record_end(struct record *record);
 /* Everything that could not be written so far is (nothing is lost if the process is killed). */
 void record_flush(struct record *record);
 
+/* 0, or the errno with which writing has failed. Nothing is written after the first failure. */
+int record_failed(const struct record *record);
+
 struct replay;
 
 /* What became of a replay. */
 enum replay_end {
-    REPLAY_SAME,      /* everything went out as recorded */
-    REPLAY_DIFFERENT, /* it did not: replay_text() says where and how */
-    REPLAY_WRONG,     /* the file is no record or damaged: replay_text() says line, column, what was expected */
+    REPLAY_SAME,        /* everything went out as recorded */
+    REPLAY_DIFFERENT,   /* it did not: replay_text() says where and how */
+    REPLAY_WRONG,       /* the file is no record or damaged: replay_text() says line, column, what was expected */
+    REPLAY_INTERRUPTED,
     REPLAY_NO_MEMORY
 };
 
+/* The first difference. */
+struct replay_difference {
+    unsigned unit, motor; /* 0: the bytes that reach the master, or pass on the wires; the unit */
+    const char *what;     /* "answer", "motor", "unit", "wires", "command" */
+    uint64_t from, until; /* ticks: where it may lie, both included */
+    char recorded[200], came[200];
+};
+
+struct replay_counts {
+    uint64_t lines;               /* of the file, read so far */
+    uint64_t inputs;              /* bytes and commands, lines with */
+    uint64_t bytes_in, bytes_out; /* of the master */
+    uint64_t steps;
+    bool whole;                   /* the record has been brought to its end */
+};
+
 /* Read the head of a record and power up a sim like the one recorded. NULL: memory is short; otherwise replay_sim() is NULL if
- * the file is wrong. `in` must stay open until replay_free(). */
+ * the file is wrong. `name` is for messages; it and `in` must stay until replay_free(). */
 struct replay *replay_open(const char *name, FILE *in);
 struct sim *replay_sim(struct replay *replay);
 
-/* Do it all. Traces may have joined the sim before. `interrupted`: NULL, or looked at now and then: true ends it. */
+/* Last tick to be done; RKM04_NEVER, without this: to the end of the record. */
+void replay_until(struct replay *replay, uint64_t tick);
+
+/* Do it all. Traces may have joined the sim before. `interrupted`: NULL, or looked at after each tenth of a second or less of
+ * virtual time in which something happens: true ends it. No file is read or written on behalf of a record. */
 enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *context), void *context);
 
 /* Why: "unit 1, motor 2: …". Never NULL. */
 const char *replay_text(const struct replay *replay);
+
+/* What was strange about the file without being wrong: its last line is incomplete, …; NULL: nothing. */
+const char *replay_note(const struct replay *replay);
+
+/* NULL: there is none. */
+const struct replay_difference *replay_difference(const struct replay *replay);
+struct replay_counts replay_counts(const struct replay *replay);
 
 void replay_free(struct replay *replay);
 

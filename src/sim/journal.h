@@ -1,0 +1,37 @@
+/* journal.h: what has come in, in memory, in the form of a record, for snapshots to files. Coming back to a snapshot takes the
+ * journal back, too: so it holds what led to the present state and nothing else. */
+#ifndef RKM04_SIM_JOURNAL_H
+#define RKM04_SIM_JOURNAL_H
+
+#include <stdio.h>
+
+#include "sim.h"
+
+struct journal;
+struct journal_page; /* a piece of the past */
+
+/* Begin with the line as it stands, at tick 0. NULL: memory is short. */
+struct journal *journal_begin(struct sim *sim);
+void journal_free(struct journal *journal);
+
+/* Somebody who was there before this journal is no more; `next` was before him. */
+void journal_pass_over(struct journal *journal, const struct sim_journal *gone, const struct sim_journal *next);
+
+/* The past up to now; to be given back. NULL: memory is short. */
+struct journal_page *journal_mark(struct journal *journal);
+void journal_page_free(struct journal_page *page);
+
+/* The past is that page from now on, `later` ticks ago. page NULL: what the text of a record tells (it is copied). Returns false
+ * if memory is short: the past is unknown then. */
+bool journal_turn(struct journal *journal, struct journal_page *page, const char *text, size_t length, uint64_t later);
+
+/* Why the journal cannot be written: "…"; NULL: it can. */
+const char *journal_gap(const struct journal *journal);
+
+/* Write it all, up to the present tick. Returns false if that failed (errno). */
+bool journal_write(struct journal *journal, FILE *out);
+
+/* Its length, in bytes. */
+size_t journal_length(const struct journal *journal);
+
+#endif

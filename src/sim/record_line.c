@@ -1,0 +1,142 @@
+#include "record_line.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+void record_hex(FILE *out, const uint8_t *bytes, size_t length)
+{
+    static const char digits[] = "0123456789abcdef";
+    for (size_t i = 0; i < length; i++) {
+        putc_unlocked(digits[bytes[i] >> 4], out);
+        putc_unlocked(digits[bytes[i] & 15u], out);
+    }
+}
+
+bool record_waiting(const struct sim *sim)
+{
+    return sim_due(sim) <= sim_now(sim);
+}
+
+/* ---- Head ----------------------------------------------------------------------------------------------------------- */
+
+/* A text as "name", or as "name_hex" if it is not UTF-8. */
+static bool put_text(json_t *head, const char *name, const char *text)
+{
+    json_t *string = json_string(text);
+    if (string)
+        return json_object_set_new(head, name, string) == 0;
+    char *hex = NULL, hex_name[40];
+    size_t size;
+    FILE *stream = open_memstream(&hex, &size);
+    if (!stream)
+        return false;
+    record_hex(stream, (const uint8_t *)text, strlen(text));
+    snprintf(hex_name, sizeof hex_name, "%s_hex", name);
+    bool well = fclose(stream) == 0 && json_object_set_new(head, hex_name, json_string(hex)) == 0;
+    free(hex);
+    return well;
+}
+
+static bool put(json_t *head, const char *name, json_t *value)
+{
+    return json_object_set_new(head, name, value) == 0;
+}
+
+static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
+{
+    const struct sim_config *config = &sim->config;
+    json_t *nodes = json_array();
+    char seed[24];
+    snprintf(seed, sizeof seed, "%" PRIu64, config->seed);
+    for (unsigned at = 0; at < config->nodes.count; at++)
+        if (json_array_append_new(nodes, json_integer(config->nodes.node[at])) != 0)
+            return json_decref(nodes), false;
+    return put(head, "rkm04_record", json_integer(RECORD_VERSION)) && put(head, "program", json_string("rkm04 " RKM04_VERSION)) &&
+           put(head, "nodes", nodes) &&
+           put(head, "framing", json_string(config->unit.framing ? config->unit.framing->name : rkm04_hdlc.name)) &&
+           put_text(head, "version_text", config->unit.version_text ? config->unit.version_text : RKM04_VERSION_TEXT) &&
+           put(head, "speed_change_latency", json_integer(config->unit.speed_change_latency)) &&
+           put(head, "timed", json_boolean(config->timed)) && put(head, "turnaround", json_integer(config->turnaround)) &&
+           put(head, "seed", json_string(seed)) && (!sim->plant_text || put_text(head, "plant", sim->plant_text)) &&
+           put(head, "outputs", json_boolean(outputs));
+}
+
+/* Blocks that are not erased, without the erased bytes at their ends. */
+static bool write_flash(FILE *out, struct sim *sim, unsigned number)
+{
+    struct sim_unit *unit = &sim->unit[number - 1u];
+    const struct sim_flash *flash = &sim->config.flash;
+    uint8_t data[RKM04_FLASH_BLOCK_SIZE];
+    if (!flash->read && !unit->memory)
+        return true;
+    for (unsigned block = 0; block < RKM04_FLASH_BLOCKS; block++) {
+        size_t length = sizeof data;
+        if (flash->read && flash->read(flash->context, number, block, 0, data, sizeof data) != 0)
+            return false;
+        for (unsigned i = 0; !flash->read && i < sizeof data; i++)
+            data[i] = (uint8_t)~unit->memory[block * RKM04_FLASH_BLOCK_SIZE + i];
+        while (length > 0 && data[length - 1u] == 0xFF)
+            length--;
+        if (length == 0)
+            continue;
+        fprintf(out, "{\"flash\":%u,\"block\":%u,\"hex\":\"", number, block);
+        record_hex(out, data, length);
+        fputs("\"}\n", out);
+    }
+    return true;
+}
+
+bool record_line_head(FILE *out, struct sim *sim, bool outputs)
+{
+    json_t *head = json_object();
+    bool well = put_settings(head, sim, outputs) && json_dumpf(head, out, JSON_COMPACT) == 0;
+    json_decref(head);
+    putc('\n', out);
+    for (unsigned number = 1; well && number <= sim_units(sim); number++)
+        well = write_flash(out, sim, number);
+    return well;
+}
+
+/* ---- What comes in -------------------------------------------------------------------------------------------------- */
+
+static void begin(FILE *out, uint64_t now, bool waiting)
+{
+    fprintf(out, "{\"t\":%" PRIu64 "%s", now, waiting ? ",\"waiting\":true" : "");
+}
+
+void record_line_bytes(FILE *out, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length)
+{
+    begin(out, now, false);
+    if (tick > now)
+        fprintf(out, ",\"at\":%" PRIu64, tick);
+    fputs(",\"in\":\"", out);
+    record_hex(out, bytes, length);
+    fputs("\"}\n", out);
+}
+
+void record_line_purge(FILE *out, uint64_t now, bool waiting)
+{
+    begin(out, now, waiting);
+    fputs(",\"purge\":true}\n", out);
+}
+
+void record_line_break(FILE *out, uint64_t now, bool on)
+{
+    begin(out, now, false);
+    fprintf(out, ",\"break\":%s}\n", on ? "true" : "false");
+}
+
+void record_line_timed(FILE *out, uint64_t now, bool timed)
+{
+    begin(out, now, false);
+    fprintf(out, ",\"timed\":%s}\n", timed ? "true" : "false");
+}
+
+bool record_line_command(FILE *out, uint64_t now, const char *method, const json_t *params, bool waiting)
+{
+    begin(out, now, waiting);
+    fprintf(out, ",\"command\":\"%s\",\"params\":", method);
+    bool well = params ? json_dumpf(params, out, JSON_COMPACT) == 0 : fputs("{}", out) >= 0;
+    fputs("}\n", out);
+    return well;
+}

@@ -1,0 +1,33 @@
+/* record_line.h: the lines of a record about what came in (docs/RECORD.md), each written by a function of its own. */
+#ifndef RKM04_SIM_RECORD_LINE_H
+#define RKM04_SIM_RECORD_LINE_H
+
+#include <stdio.h>
+
+#include "sim.h"
+
+#define RECORD_VERSION 1
+#define RECORD_SPAN UINT64_C(100000)       /* ticks from digest to digest */
+#define RECORD_LINE_MAX (2u << 20)         /* bytes */
+#define RECORD_EMBEDDED_MAX (16u << 20)    /* bytes of a file within a record, and of the journal */
+
+/* The configuration, flash and plant: `outputs` says whether what goes out will be taken down, too. Returns false if memory is
+ * short or a flash image cannot be read. */
+bool record_line_head(FILE *out, struct sim *sim, bool outputs);
+
+/* Bytes of the master. `waiting`: bytes that were due before this have not been moved yet; likewise in all that follow. */
+void record_line_bytes(FILE *out, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length);
+void record_line_purge(FILE *out, uint64_t now, bool waiting);
+void record_line_break(FILE *out, uint64_t now, bool on);
+void record_line_timed(FILE *out, uint64_t now, bool timed);
+
+/* A command that was obeyed. Returns false if memory is short. */
+bool record_line_command(FILE *out, uint64_t now, const char *method, const json_t *params, bool waiting);
+
+/* "hex":"…" without the name. */
+void record_hex(FILE *out, const uint8_t *bytes, size_t length);
+
+/* Are there bytes that are due at the present tick and have not been moved? */
+bool record_waiting(const struct sim *sim);
+
+#endif

@@ -1,0 +1,417 @@
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "record_line.h"
+#include "replay_inside.h"
+#include "snapshot_store.h"
+#include "time_value.h"
+
+/* ---- Time ----------------------------------------------------------------------------------------------------------- */
+
+/* The end of the next step towards `tick`: a span in which nothing happens, or RECORD_SPAN. */
+static uint64_t step_end(struct replay *replay, uint64_t tick)
+{
+    uint64_t end = sim_now(replay->sim) + RECORD_SPAN;
+    if (end < tick) {
+        uint64_t event = sim_next_event(replay->sim), due = sim_due(replay->sim);
+        event = due < event ? due : event;
+        if (end <= event)
+            end = event == RKM04_NEVER ? RKM04_NEVER : event + 1u;
+    }
+    return end < tick ? end : tick;
+}
+
+/* Let time run to `tick`; only `bytes` bytes may come that have not been compared. */
+static bool go(struct replay *replay, uint64_t tick, size_t bytes)
+{
+    struct sim *sim = replay->sim;
+    while (sim_now(sim) < tick) {
+        if (replay->interrupted && replay->interrupted(replay->context)) {
+            snprintf(replay->text, sizeof replay->text, "interrupted at tick %" PRIu64, sim_now(sim));
+            replay->ended = true;
+            replay->end = REPLAY_INTERRUPTED;
+            return false;
+        }
+        sim_advance(sim, step_end(replay, tick));
+        if (!replay->outputs)
+            continue;
+        tally_settle(&replay->tally);
+        if (!replay_nothing_more(replay, tick, bytes))
+            return false;
+    }
+    return !replay->ended;
+}
+
+/* The tick of the present line is over; `last` is that of the replay. Returns false if it comes before. */
+static bool reach(struct replay *replay, uint64_t tick, size_t bytes)
+{
+    if (tick <= replay->until)
+        return go(replay, tick, bytes);
+    if (go(replay, replay->until, bytes)) {
+        replay->ended = true;
+        replay->end = REPLAY_SAME;
+    }
+    return false;
+}
+
+/* Come to a line about what came in: everything before has gone out, and was recorded. */
+static bool come_to_input(struct replay *replay, const char *const *keys, uint64_t *tick)
+{
+    bool waiting;
+    if (!replay_keys(replay, keys) || !replay_flag(replay, "waiting", false, &waiting) ||
+        !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, tick) || !reach(replay, *tick, 0))
+        return false;
+    if (!waiting)
+        sim_advance(replay->sim, *tick); /* moves what is due */
+    if (!replay->outputs)
+        return true;
+    tally_settle(&replay->tally);
+    return replay_nothing_more(replay, RKM04_NEVER, 0);
+}
+
+/* ---- Lines about what came in --------------------------------------------------------------------------------------- */
+
+static bool do_bytes(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "at", "in", NULL};
+    uint64_t tick, at;
+    size_t length, room;
+    if (!come_to_input(replay, keys, &tick) || !replay_number(replay, "at", tick, TIME_VALUE_MAX, tick, &at))
+        return false;
+    room = sim_room(replay->sim);
+    const uint8_t *bytes = replay_bytes(replay, "in", room < SEGMENT_ROOM ? room : SEGMENT_ROOM, &length);
+    if (!bytes)
+        return false;
+    replay->counts.inputs++;
+    replay->counts.bytes_in += length;
+    sim_take(replay->sim, bytes, length, at);
+    return true;
+}
+
+static bool do_purge(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "waiting", "purge", NULL};
+    uint64_t tick;
+    if (!come_to_input(replay, keys, &tick))
+        return false;
+    replay->counts.inputs++;
+    sim_purge(replay->sim);
+    return true;
+}
+
+static bool do_break(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "break", NULL};
+    uint64_t tick;
+    bool on;
+    if (!replay_flag(replay, "break", false, &on) || !come_to_input(replay, keys, &tick))
+        return false;
+    replay->counts.inputs++;
+    sim_break(replay->sim, on);
+    return true;
+}
+
+static bool do_timed(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "timed", NULL};
+    uint64_t tick;
+    bool timed;
+    if (!replay_flag(replay, "timed", false, &timed) || !come_to_input(replay, keys, &tick))
+        return false;
+    replay->counts.inputs++;
+    sim_set_timed(replay->sim, timed);
+    return true;
+}
+
+/* ---- Commands ------------------------------------------------------------------------------------------------------- */
+
+static bool do_embedded(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "embedded", NULL};
+    uint64_t lines, tick;
+    if (!replay_keys(replay, keys) || !replay_number(replay, "t", 0, TIME_VALUE_MAX, RKM04_NEVER, &tick) ||
+        !replay_number(replay, "embedded", 1, RECORD_EMBEDDED_MAX, RKM04_NEVER, &lines))
+        return false;
+    if (replay->depth == REPLAY_DEPTH_MAX)
+        return replay_wrong(replay, "embedded", "expected no more than %u records within one another", REPLAY_DEPTH_MAX);
+    return replay_read_embedded(replay, lines);
+}
+
+static bool refused(struct replay *replay, const char *method, const struct refusal *refusal)
+{
+    struct replay_difference difference = {.what = "the control", .from = sim_now(replay->sim), .until = sim_now(replay->sim)};
+    if (refusal->code == REFUSED_MEMORY)
+        return replay_no_memory(replay);
+    snprintf(difference.recorded, sizeof difference.recorded, "that `%.60s' was obeyed", method);
+    snprintf(difference.came, sizeof difference.came, "a refusal: %.170s", refusal->text);
+    return replay_differs(replay, &difference);
+}
+
+/* No file is touched on behalf of a record: what was read stands in it, what was written is of no concern. */
+static json_t *obey(struct replay *replay, const char *method, const json_t *params, struct refusal *refusal)
+{
+    if (!json_object_get(params, "file"))
+        return sim_command(replay->sim, method, params, refusal);
+    if (strcmp(method, "restore") != 0)
+        return json_object();
+    return restore_text(replay->sim, "the embedded record", replay->embedded, replay->embedded_length, replay->depth + 1u, refusal);
+}
+
+static bool do_command(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "waiting", "command", "params", NULL};
+    const json_t *params = json_object_get(replay->json, "params");
+    const char *method = replay_string(replay, "command");
+    struct refusal refusal = {0};
+    uint64_t tick;
+    if (!method || !come_to_input(replay, keys, &tick))
+        return false;
+    if (!json_is_object(params))
+        return replay_wrong(replay, "params", "expected \"params\", an object");
+    if (!sim_command_known(method))
+        return replay_wrong(replay, "command", "expected \"command\", one that rkm04 " RKM04_VERSION " knows");
+    bool restore = strcmp(method, "restore") == 0 && json_object_get(params, "file");
+    if (restore && !replay->embedded)
+        return replay_wrong(replay, "command", "expected the file that was restored before this line, behind \"embedded\"");
+    replay->counts.inputs++;
+    json_t *result = obey(replay, method, params, &refusal);
+    json_decref(result);
+    if (restore) {
+        free(replay->embedded);
+        replay->embedded = NULL;
+    }
+    return result || refused(replay, method, &refusal);
+}
+
+/* ---- Lines of journals ---------------------------------------------------------------------------------------------- */
+
+/* The state stays, and everything that has a time is moved along: that is what restore did. */
+static bool do_moved(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "moved", NULL};
+    uint64_t tick, by;
+    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, &tick) ||
+        !replay_number(replay, "moved", 0, TIME_VALUE_MAX - tick, RKM04_NEVER, &by))
+        return false;
+    if (replay->outputs)
+        return replay_wrong(replay, "moved", "expected {\"outputs\":false} before this line");
+    if (tick + by > replay->until)
+        return reach(replay, RKM04_NEVER, 0);
+    return reach(replay, tick, 0) && (snapshot_move(replay->sim, by) || replay_no_memory(replay));
+}
+
+static bool do_outputs(struct replay *replay)
+{
+    static const char *const keys[] = {"outputs", NULL};
+    bool outputs;
+    if (!replay_keys(replay, keys) || !replay_flag(replay, "outputs", true, &outputs))
+        return false;
+    if (outputs)
+        return replay_wrong(replay, "outputs", "expected \"outputs\": false");
+    replay_listen_no_more(replay);
+    return true;
+}
+
+/* ---- Lines about what went out -------------------------------------------------------------------------------------- */
+
+static bool wants_outputs(struct replay *replay, const char *key)
+{
+    return replay->outputs || replay_wrong(replay, key, "expected none of what went out: the record says that there is none");
+}
+
+static bool do_out(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "to", "out", NULL};
+    uint64_t from, until;
+    size_t length;
+    if (!wants_outputs(replay, "out") || !replay_keys(replay, keys) ||
+        !replay_number(replay, "t", 0, TIME_VALUE_MAX, RKM04_NEVER, &from) ||
+        !replay_number(replay, "to", from, TIME_VALUE_MAX, from, &until))
+        return false;
+    const uint8_t *bytes = replay_bytes(replay, "out", SEGMENT_ROOM, &length);
+    if (!bytes || !reach(replay, until, length))
+        return false;
+    sim_advance(replay->sim, until > sim_now(replay->sim) ? until : sim_now(replay->sim));
+    tally_settle(&replay->tally);
+    return replay_nothing_more(replay, from, 0) && replay_compare_bytes(replay, from, until, bytes, length);
+}
+
+static bool read_digest(struct replay *replay, uint64_t *digest)
+{
+    const char *text = replay_string(replay, "digest");
+    if (text && (strlen(text) != 16 || text[strspn(text, "0123456789abcdef")] != '\0'))
+        return replay_wrong(replay, "digest", "expected \"digest\", 16 hexadecimal digits 0-9a-f");
+    if (text)
+        *digest = strtoull(text, NULL, 16);
+    return text != NULL;
+}
+
+static bool read_span(struct replay *replay, struct replay_span *span)
+{
+    uint64_t unit, motor;
+    json_int_t position = json_integer_value(json_object_get(replay->json, "position"));
+    if (!replay_number(replay, "t", 0, TIME_VALUE_MAX, RKM04_NEVER, &span->tick) ||
+        !replay_number(replay, "unit", 0, sim_units(replay->sim), RKM04_NEVER, &unit) ||
+        !replay_number(replay, "motor", 0, unit > 0 ? RKM04_MOTORS : 0, RKM04_NEVER, &motor) ||
+        !replay_number(replay, "events", 0, INT64_MAX, RKM04_NEVER, &span->stream.events) ||
+        !replay_number(replay, "steps", 0, INT64_MAX, 0, &span->stream.steps) || !read_digest(replay, &span->stream.digest))
+        return false;
+    if (position < INT32_MIN || position > INT32_MAX)
+        return replay_wrong(replay, "position", "expected \"position\", a whole number of 32 bits");
+    span->stream.position = (int32_t)position;
+    span->unit = (unsigned)unit;
+    span->motor = (unsigned)motor;
+    return true;
+}
+
+static bool do_digest(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "partial", "unit", "motor", "events", "steps", "position", "digest", NULL};
+    struct replay_span span = {0};
+    bool partial;
+    if (!wants_outputs(replay, "digest") || !replay_keys(replay, keys) || !read_span(replay, &span) ||
+        !replay_flag(replay, "partial", false, &partial) || !reach(replay, span.tick, 0))
+        return false;
+    if (partial) {
+        sim_advance(replay->sim, sim_now(replay->sim));
+        tally_finish(&replay->tally);
+    } else {
+        tally_settle(&replay->tally);
+    }
+    return replay_nothing_more(replay, span.tick, 0) && replay_compare_stream(replay, &span, partial);
+}
+
+static bool do_end(struct replay *replay)
+{
+    static const char *const keys[] = {"t", "waiting", "end", NULL};
+    uint64_t tick;
+    bool waiting;
+    if (!replay_keys(replay, keys) || !replay_flag(replay, "waiting", false, &waiting) ||
+        !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, &tick) || !reach(replay, tick, 0))
+        return false;
+    if (!waiting)
+        sim_advance(replay->sim, tick);
+    replay->counts.whole = true;
+    if (!replay->outputs)
+        return true;
+    tally_finish(&replay->tally);
+    return replay_compare_rest(replay);
+}
+
+/* ---- All lines ------------------------------------------------------------------------------------------------------ */
+
+/* A line is what it has: the first of these keys. */
+static const struct kind {
+    const char *key;
+    bool (*obey)(struct replay *replay);
+} kinds[] = {
+    {"in", do_bytes},       {"out", do_out},           {"digest", do_digest}, {"command", do_command}, {"purge", do_purge},
+    {"break", do_break},    {"timed", do_timed},       {"moved", do_moved},   {"end", do_end},         {"embedded", do_embedded},
+    {"outputs", do_outputs},
+};
+
+static bool obey_line(struct replay *replay)
+{
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+        if (json_object_get(replay->json, kinds[i].key))
+            return kinds[i].obey(replay);
+    return replay_wrong(replay, NULL, "expected a line with one of \"in\", \"out\", \"digest\", \"command\", \"purge\", \"break\", "
+                                      "\"timed\", \"moved\", \"embedded\", \"outputs\", \"end\"");
+}
+
+enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *context), void *context)
+{
+    replay->interrupted = interrupted;
+    replay->context = context;
+    if (replay->ended)
+        return replay->end;
+    if (replay->outputs)
+        replay_listen(replay);
+    while (replay_next_line(replay) && obey_line(replay))
+        continue;
+    if (!replay->ended) {
+        replay->end = REPLAY_SAME;
+        if (!replay->counts.whole && replay->note[0] == '\0')
+            snprintf(replay->note, sizeof replay->note, "there is no \"end\": what recorded it was killed, or is still at work");
+    }
+    replay->ended = true;
+    if (replay->end == REPLAY_SAME)
+        snprintf(replay->text, sizeof replay->text, "the same up to tick %" PRIu64, sim_now(replay->sim));
+    for (unsigned unit = 1; unit < TALLY_UNITS; unit++)
+        for (unsigned motor = 1; motor < TALLY_MOTORS; motor++)
+            replay->counts.steps += replay->tally.stream[unit][motor].steps;
+    replay_listen_no_more(replay);
+    return replay->end;
+}
+
+/* ---- Begin and end -------------------------------------------------------------------------------------------------- */
+
+struct replay *replay_open_within(const char *name, FILE *in, unsigned depth)
+{
+    struct replay *replay = calloc(1, sizeof *replay);
+    if (!replay)
+        return NULL;
+    replay->name = name;
+    replay->in = in;
+    replay->depth = depth;
+    replay->until = RKM04_NEVER;
+    if (!replay_begin(replay) && !replay->ended)
+        replay_no_memory(replay);
+    return replay;
+}
+
+struct replay *replay_open(const char *name, FILE *in)
+{
+    return replay_open_within(name, in, 0);
+}
+
+struct sim *replay_sim(struct replay *replay)
+{
+    return replay->ended && replay->end != REPLAY_SAME ? NULL : replay->sim;
+}
+
+void replay_until(struct replay *replay, uint64_t tick)
+{
+    replay->until = tick;
+}
+
+const char *replay_text(const struct replay *replay)
+{
+    return replay->text;
+}
+
+const char *replay_note(const struct replay *replay)
+{
+    return replay->note[0] != '\0' ? replay->note : NULL;
+}
+
+const struct replay_difference *replay_difference(const struct replay *replay)
+{
+    return replay->differs ? &replay->difference : NULL;
+}
+
+struct replay_counts replay_counts(const struct replay *replay)
+{
+    return replay->counts;
+}
+
+void replay_free(struct replay *replay)
+{
+    if (replay->sim) {
+        if (replay->outputs && replay->tally.sim)
+            tally_end(&replay->tally);
+        sim_end(replay->sim);
+    }
+    free(replay->sim);
+    free(replay->flash);
+    free(replay->version_text);
+    free(replay->program);
+    free(replay->line);
+    free(replay->hex);
+    free(replay->embedded);
+    free(replay->bytes);
+    free(replay->spans);
+    json_decref(replay->json);
+    free(replay);
+}

@@ -1,0 +1,251 @@
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "record_line.h"
+#include "replay_inside.h"
+
+#define SHOWN 24u /* bytes shown in a message */
+
+/* ---- What goes out, kept until the record comes to it ----------------------------------------------------------------- */
+
+/* Make room for one more item behind `count`, after what has been compared (`at`) is dropped. Returns NULL: memory is short. */
+static void *room_for(void *list, size_t *at, size_t *count, size_t *room, size_t size)
+{
+    if (*at == *count)
+        *at = *count = 0;
+    if (*count < *room)
+        return list;
+    size_t more = 2 * *room + 64u;
+    void *fresh = realloc(list, more * size);
+    if (fresh)
+        *room = more;
+    return fresh;
+}
+
+static void on_byte(void *context, const struct tally_byte *byte)
+{
+    struct replay *replay = context;
+    struct tally_byte *bytes =
+        room_for(replay->bytes, &replay->bytes_at, &replay->bytes_count, &replay->bytes_room, sizeof *bytes);
+    replay->counts.bytes_out++;
+    if (!bytes) {
+        replay_no_memory(replay);
+        return;
+    }
+    replay->bytes = bytes;
+    bytes[replay->bytes_count++] = *byte;
+}
+
+static void keep_span(struct replay *replay, uint64_t tick, unsigned unit, unsigned motor)
+{
+    struct replay_span *spans =
+        room_for(replay->spans, &replay->spans_at, &replay->spans_count, &replay->spans_room, sizeof *spans);
+    if (!spans) {
+        replay_no_memory(replay);
+        return;
+    }
+    replay->spans = spans;
+    spans[replay->spans_count++] = (struct replay_span){tick, unit, motor, replay->tally.stream[unit][motor]};
+}
+
+static void on_span(void *context, uint64_t tick)
+{
+    struct replay *replay = context;
+    for (unsigned unit = 0; unit < TALLY_UNITS; unit++)
+        for (unsigned motor = 0; motor < TALLY_MOTORS; motor++)
+            if (replay->tally.stream[unit][motor].changed)
+                keep_span(replay, tick, unit, motor);
+}
+
+void replay_listen(struct replay *replay)
+{
+    static const struct tally_calls calls = {.byte = on_byte, .span = on_span};
+    tally_begin(&replay->tally, replay->sim, &calls, replay);
+}
+
+void replay_listen_no_more(struct replay *replay)
+{
+    if (!replay->outputs)
+        return;
+    replay->outputs = false;
+    tally_end(&replay->tally);
+    replay->bytes_at = replay->bytes_count = replay->spans_at = replay->spans_count = 0;
+}
+
+/* ---- Differences ---------------------------------------------------------------------------------------------------- */
+
+static const char *unit_name(const struct replay *replay, unsigned unit)
+{
+    return unit >= 1 && unit <= sim_units(replay->sim) ? replay->sim->unit[unit - 1u].name : "?";
+}
+
+bool replay_differs(struct replay *replay, const struct replay_difference *difference)
+{
+    struct replay_difference *first = &replay->difference;
+    char where[60], when[80];
+    *first = *difference;
+    if (first->motor > 0)
+        snprintf(where, sizeof where, "unit %s, motor %u", unit_name(replay, first->unit), first->motor);
+    else if (first->unit > 0)
+        snprintf(where, sizeof where, "unit %s", unit_name(replay, first->unit));
+    else
+        snprintf(where, sizeof where, "%s", first->what);
+    if (first->from == first->until)
+        snprintf(when, sizeof when, "tick %" PRIu64, first->from);
+    else
+        snprintf(when, sizeof when, "ticks %" PRIu64 " to %" PRIu64, first->from, first->until);
+    int length = snprintf(replay->text, sizeof replay->text, "%s, %s: recorded %s; came %s", where, when, first->recorded,
+                          first->came);
+    if (replay->program && strcmp(replay->program, "rkm04 " RKM04_VERSION) != 0 && length > 0 &&
+        (size_t)length < sizeof replay->text)
+        snprintf(replay->text + length, sizeof replay->text - (size_t)length, " (recorded by %.60s, this is rkm04 " RKM04_VERSION ")",
+                 replay->program);
+    replay->ended = replay->differs = true;
+    replay->end = REPLAY_DIFFERENT;
+    return false;
+}
+
+static void show_bytes(char *text, size_t size, const uint8_t *bytes, size_t length)
+{
+    size_t at = 0;
+    for (size_t i = 0; i < length && i < SHOWN; i++)
+        at += (size_t)snprintf(text + at, size - at, "%02x", bytes[i]);
+    if (length > SHOWN)
+        snprintf(text + at, size - at, "... (%zu bytes)", length);
+}
+
+/* The bytes that have come and were not compared, up to `until`. */
+static void show_came(const struct replay *replay, char *text, size_t size, uint64_t until)
+{
+    uint8_t bytes[SHOWN];
+    size_t count = 0;
+    for (size_t i = replay->bytes_at; i < replay->bytes_count && replay->bytes[i].tick <= until; i++, count++)
+        if (count < SHOWN)
+            bytes[count] = replay->bytes[i].byte;
+    snprintf(text, size, "nothing");
+    if (count > 0)
+        show_bytes(text, size, bytes, count);
+}
+
+static void show_stream(char *text, size_t size, const struct tally_stream *stream, const struct tally_stream *other)
+{
+    if (stream->steps != other->steps || stream->position != other->position)
+        snprintf(text, size, "%" PRIu64 " pulses since the beginning, the last one to %" PRId32, stream->steps, stream->position);
+    else if (stream->events != other->events)
+        snprintf(text, size, "%" PRIu64 " events since the beginning", stream->events);
+    else
+        snprintf(text, size, "%" PRIu64 " events and pulses with the digest %016" PRIx64, stream->events, stream->digest);
+}
+
+/* Streams as recorded and as they came; NULL: nothing since the last digest. */
+static bool streams_differ(struct replay *replay, uint64_t tick, unsigned unit, unsigned motor,
+                           const struct tally_stream *recorded, const struct tally_stream *came)
+{
+    struct replay_difference difference = {
+        .unit = unit,
+        .motor = motor,
+        .what = motor > 0 ? "motor" : unit > 0 ? "unit" : "the wires",
+        .from = tick > 0 ? (tick - 1u) / RECORD_SPAN * RECORD_SPAN : 0,
+        .until = tick % RECORD_SPAN == 0 && tick > 0 ? tick - 1u : tick,
+        .recorded = "nothing",
+        .came = "nothing",
+    };
+    if (recorded)
+        show_stream(difference.recorded, sizeof difference.recorded, recorded, came ? came : &(struct tally_stream){0});
+    if (came)
+        show_stream(difference.came, sizeof difference.came, came, recorded ? recorded : &(struct tally_stream){0});
+    return replay_differs(replay, &difference);
+}
+
+/* ---- Comparing ------------------------------------------------------------------------------------------------------ */
+
+static bool more_bytes(struct replay *replay, uint64_t tick)
+{
+    const struct tally_byte *first = &replay->bytes[replay->bytes_at];
+    struct replay_difference difference = {
+        .what = "the master",
+        .from = first->tick,
+        .until = first->tick,
+        .recorded = "nothing",
+    };
+    show_came(replay, difference.came, sizeof difference.came, tick);
+    return replay_differs(replay, &difference);
+}
+
+bool replay_nothing_more(struct replay *replay, uint64_t tick, size_t bytes)
+{
+    if (replay->ended)
+        return false;
+    if (replay->spans_at < replay->spans_count && replay->spans[replay->spans_at].tick < tick) {
+        const struct replay_span *span = &replay->spans[replay->spans_at];
+        return streams_differ(replay, span->tick, span->unit, span->motor, NULL, &span->stream);
+    }
+    if (replay->bytes_count - replay->bytes_at > bytes && replay->bytes[replay->bytes_at + bytes].tick < tick) {
+        replay->bytes_at += bytes;
+        return more_bytes(replay, tick);
+    }
+    return true;
+}
+
+bool replay_compare_bytes(struct replay *replay, uint64_t from, uint64_t until, const uint8_t *bytes, size_t length)
+{
+    for (size_t i = 0; i < length; i++) {
+        size_t at = replay->bytes_at + i;
+        bool same = at < replay->bytes_count && replay->bytes[at].byte == bytes[i] && replay->bytes[at].tick <= until &&
+                    (i > 0 || replay->bytes[at].tick == from) && (i + 1u < length || replay->bytes[at].tick == until);
+        if (same)
+            continue;
+        struct replay_difference difference = {.what = "the master", .from = from, .until = until};
+        bool late = at < replay->bytes_count && replay->bytes[at].byte == bytes[i];
+        snprintf(difference.recorded, sizeof difference.recorded, "as byte %zu of ", i + 1u);
+        size_t used = strlen(difference.recorded);
+        show_bytes(difference.recorded + used, sizeof difference.recorded - used, bytes, length);
+        if (late)
+            snprintf(difference.came, sizeof difference.came, "it at tick %" PRIu64, replay->bytes[at].tick);
+        else
+            show_came(replay, difference.came, sizeof difference.came, until);
+        return replay_differs(replay, &difference);
+    }
+    replay->bytes_at += length;
+    return true;
+}
+
+static bool is_same(const struct tally_stream *a, const struct tally_stream *b)
+{
+    return a->digest == b->digest && a->events == b->events && a->steps == b->steps && a->position == b->position;
+}
+
+bool replay_compare_stream(struct replay *replay, const struct replay_span *recorded, bool partial)
+{
+    struct tally_stream *present = &replay->tally.stream[recorded->unit][recorded->motor];
+    const struct replay_span *span = replay->spans_at < replay->spans_count ? &replay->spans[replay->spans_at] : NULL;
+    if (partial && !span) {
+        if (!is_same(present, &recorded->stream))
+            return streams_differ(replay, recorded->tick, recorded->unit, recorded->motor, &recorded->stream, present);
+        present->changed = false;
+        return true;
+    }
+    bool other = !span || span->tick != recorded->tick || span->unit != recorded->unit || span->motor != recorded->motor;
+    bool earlier = span && (span->tick < recorded->tick || (span->tick == recorded->tick &&
+                   (span->unit < recorded->unit || (span->unit == recorded->unit && span->motor < recorded->motor))));
+    if (other && earlier)
+        return streams_differ(replay, span->tick, span->unit, span->motor, NULL, &span->stream);
+    if (other)
+        return streams_differ(replay, recorded->tick, recorded->unit, recorded->motor, &recorded->stream, NULL);
+    if (!is_same(&span->stream, &recorded->stream))
+        return streams_differ(replay, recorded->tick, recorded->unit, recorded->motor, &recorded->stream, &span->stream);
+    replay->spans_at++;
+    return true;
+}
+
+bool replay_compare_rest(struct replay *replay)
+{
+    if (!replay_nothing_more(replay, RKM04_NEVER, 0))
+        return false;
+    for (unsigned unit = 0; unit < TALLY_UNITS; unit++)
+        for (unsigned motor = 0; motor < TALLY_MOTORS; motor++)
+            if (replay->tally.stream[unit][motor].changed)
+                return streams_differ(replay, sim_now(replay->sim), unit, motor, NULL, &replay->tally.stream[unit][motor]);
+    return true;
+}

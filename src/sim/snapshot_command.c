@@ -1,0 +1,256 @@
+/* The commands snapshot and restore. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "record.h"
+#include "record_line.h"
+#include "replay_inside.h"
+#include "snapshot_store.h"
+
+#define STEPS_MAX 100000u /* of a tenth of a second: what may happen in a file that a command reads */
+
+static const char out_of_memory[] = "out of memory";
+
+static struct sim_snapshots *store_of(struct sim *sim)
+{
+    if (!sim->snapshots) {
+        sim->snapshots = calloc(1, sizeof *sim->snapshots);
+        if (sim->snapshots)
+            sim->snapshots->sim = sim;
+    }
+    return sim->snapshots;
+}
+
+static void forget(struct named_snapshot *named)
+{
+    free(named->name);
+    snapshot_free(named->snapshot);
+    journal_page_free(named->page);
+    *named = (struct named_snapshot){0};
+}
+
+void snapshots_free(struct sim_snapshots *snapshots)
+{
+    if (!snapshots)
+        return;
+    for (size_t i = 0; i < snapshots->count; i++)
+        forget(&snapshots->named[i]);
+    journal_free(snapshots->journal);
+    free(snapshots->text);
+    free(snapshots);
+}
+
+bool snapshots_keep_journal(struct sim *sim)
+{
+    struct sim_snapshots *store = store_of(sim);
+    if (!store)
+        return false;
+    if (!store->journal)
+        store->journal = journal_begin(sim);
+    return store->journal != NULL;
+}
+
+/* ---- Parameters ----------------------------------------------------------------------------------------------------- */
+
+/* Either `name` or `file`. Returns false: refused. */
+static bool read_params(const json_t *params, const char **name, const char **file, struct refusal *refusal)
+{
+    static const char *const known[] = {"name", "file", NULL};
+    const json_t *given_name = json_object_get(params, "name"), *given_file = json_object_get(params, "file");
+    *name = *file = NULL;
+    if (!params_known(params, known, refusal))
+        return false;
+    if (!given_name == !given_file) {
+        refuse(refusal, REFUSED_PARAMS, "expected either `name', for a snapshot in memory, or `file'");
+        return false;
+    }
+    if (given_file)
+        return (*file = param_string(params, "file", refusal)) != NULL && (**file || refuse(refusal, REFUSED_PARAMS,
+                                                                                            "file: expected a path"));
+    *name = param_string(params, "name", refusal);
+    if (*name && (**name == '\0' || strlen(*name) > SNAPSHOT_NAME_MAX)) {
+        refuse(refusal, REFUSED_PARAMS, "name: expected 1 to %u characters", SNAPSHOT_NAME_MAX);
+        return false;
+    }
+    return *name != NULL;
+}
+
+static struct named_snapshot *find(struct sim_snapshots *store, const char *name)
+{
+    for (size_t i = 0; i < store->count; i++)
+        if (strcmp(store->named[i].name, name) == 0)
+            return &store->named[i];
+    return NULL;
+}
+
+/* ---- snapshot ------------------------------------------------------------------------------------------------------- */
+
+static json_t *take_named(struct sim_snapshots *store, const char *name, struct refusal *refusal)
+{
+    struct named_snapshot *named = find(store, name), made = {0};
+    if (!named && store->count == SNAPSHOTS_MAX)
+        return refuse(refusal, REFUSED_STATE, "there are %u snapshots already: use one of their names again", SNAPSHOTS_MAX);
+    made.name = strdup(name);
+    made.snapshot = snapshot_take(store->sim);
+    if (!made.name || !made.snapshot) {
+        forget(&made);
+        return refuse(refusal, REFUSED_MEMORY, "out of memory, or the flash image of a unit cannot be read");
+    }
+    if (store->journal)
+        made.page = journal_mark(store->journal);
+    if (named)
+        forget(named);
+    else
+        named = &store->named[store->count++];
+    *named = made;
+    return json_pack("{s:s, s:I}", "name", name, "t_us", (json_int_t)sim_now(store->sim));
+}
+
+/* Under another name first: a file that is there is replaced by a whole one or not at all. */
+static json_t *write_file(struct sim_snapshots *store, const char *path, struct refusal *refusal)
+{
+    const char *gap = store->journal ? journal_gap(store->journal) : "what has come in was not kept: use `name'";
+    char *fresh = NULL;
+    if (gap)
+        return refuse(refusal, REFUSED_STATE, "file: cannot write a snapshot: %s", gap);
+    if (asprintf(&fresh, "%s.new", path) < 0)
+        return refuse(refusal, REFUSED_MEMORY, out_of_memory);
+    FILE *out = fopen(fresh, "we");
+    bool well = out && journal_write(store->journal, out);
+    int error = well ? 0 : errno;
+    if (out && fclose(out) != 0 && well) {
+        well = false;
+        error = errno;
+    }
+    if (well && rename(fresh, path) != 0) {
+        well = false;
+        error = errno;
+    }
+    if (!well && out)
+        remove(fresh);
+    free(fresh);
+    if (!well)
+        return refuse(refusal, REFUSED_STATE, "file: cannot write %.160s: %s", path, strerror(error));
+    return json_pack("{s:s, s:I, s:I}", "file", path, "t_us", (json_int_t)sim_now(store->sim), "bytes",
+                     (json_int_t)journal_length(store->journal));
+}
+
+json_t *command_snapshot(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    const char *name, *file;
+    struct sim_snapshots *store = store_of(sim);
+    if (!store)
+        return refuse(refusal, REFUSED_MEMORY, out_of_memory);
+    if (!read_params(params, &name, &file, refusal))
+        return NULL;
+    return file ? write_file(store, file, refusal) : take_named(store, name, refusal);
+}
+
+/* ---- restore -------------------------------------------------------------------------------------------------------- */
+
+/* Put a snapshot, and turn the journal with it. */
+static json_t *put(struct sim_snapshots *store, const struct snapshot *snapshot, struct journal_page *page,
+                   struct refusal *refusal)
+{
+    const char *misfit = snapshot_misfit(store->sim, snapshot);
+    if (misfit)
+        return refuse(refusal, REFUSED_STATE, "the snapshot is of another line: %s is different", misfit);
+    if (!snapshot_put(store->sim, snapshot))
+        return refuse(refusal, REFUSED_MEMORY, "out of memory, or the flash image of a unit cannot be written");
+    uint64_t now = sim_now(store->sim), taken = snapshot_tick(snapshot);
+    if (store->journal)
+        journal_turn(store->journal, page, page ? NULL : store->text, store->length, now - taken);
+    return json_pack("{s:I, s:I}", "t_us", (json_int_t)now, "taken_us", (json_int_t)taken);
+}
+
+static json_t *restore_named(struct sim_snapshots *store, const char *name, struct refusal *refusal)
+{
+    struct named_snapshot *named = find(store, name);
+    char names[200] = "";
+    if (named)
+        return put(store, named->snapshot, named->page, refusal);
+    for (size_t i = 0; i < store->count; i++)
+        snprintf(names + strlen(names), sizeof names - strlen(names), i > 0 ? ", %s" : "%s", store->named[i].name);
+    return refuse(refusal, REFUSED_STATE, "name: there is no snapshot `%.64s': expected one of %s", name,
+                  store->count > 0 ? names : "those taken with `snapshot': none yet");
+}
+
+/* Read a whole file. Returns false: refused. */
+static bool read_file(struct sim_snapshots *store, const char *path, struct refusal *refusal)
+{
+    struct stat status;
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
+        refuse(refusal, REFUSED_STATE, "file: %.160s is no regular file: expected one written by `snapshot', or a record", path);
+        return false;
+    }
+    FILE *in = fopen(path, "re");
+    char *text = in ? malloc(RECORD_EMBEDDED_MAX + 1u) : NULL;
+    size_t length = text ? fread(text, 1, RECORD_EMBEDDED_MAX + 1u, in) : 0;
+    int error = errno;
+    bool well = text && !ferror(in) && length <= RECORD_EMBEDDED_MAX;
+    if (in)
+        fclose(in);
+    if (well) {
+        store->length = length;
+        store->text = realloc(text, length + 1u);
+        return true;
+    }
+    free(text);
+    if (length > RECORD_EMBEDDED_MAX)
+        refuse(refusal, REFUSED_STATE, "file: %.160s is longer than %u MiB", path, RECORD_EMBEDDED_MAX >> 20);
+    else
+        refuse(refusal, REFUSED_STATE, "file: cannot read %.160s: %s", path, strerror(error));
+    return false;
+}
+
+/* Whoever waits for the command must not wait for ever. */
+static bool is_too_much(void *context)
+{
+    unsigned *steps = context;
+    return ++*steps > STEPS_MAX;
+}
+
+json_t *restore_text(struct sim *sim, const char *name, const char *text, size_t length, unsigned depth, struct refusal *refusal)
+{
+    struct sim_snapshots *store = store_of(sim);
+    struct snapshot *snapshot = NULL;
+    json_t *result = NULL;
+    unsigned steps = 0;
+    FILE *in = length > 0 ? fmemopen((void *)text, length, "r") : NULL;
+    struct replay *replay = in ? replay_open_within(name, in, depth) : NULL;
+    if (length == 0)
+        return refuse(refusal, REFUSED_STATE, "%.160s is empty: expected a record", name);
+    if (!store || !replay) {
+        refuse(refusal, REFUSED_MEMORY, out_of_memory);
+    } else if (replay_run(replay, is_too_much, &steps) != REPLAY_SAME) {
+        refuse(refusal, REFUSED_STATE, "file: %s", replay_text(replay));
+    } else if (!(snapshot = snapshot_take(replay_sim(replay)))) {
+        refuse(refusal, REFUSED_MEMORY, out_of_memory);
+    } else {
+        result = put(store, snapshot, NULL, refusal);
+    }
+    snapshot_free(snapshot);
+    if (replay)
+        replay_free(replay);
+    if (in)
+        fclose(in);
+    return result;
+}
+
+json_t *command_restore(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    const char *name, *file;
+    struct sim_snapshots *store = store_of(sim);
+    if (!store)
+        return refuse(refusal, REFUSED_MEMORY, out_of_memory);
+    free(store->text);
+    store->text = NULL;
+    store->waiting = record_waiting(sim);
+    if (!read_params(params, &name, &file, refusal))
+        return NULL;
+    if (name)
+        return restore_named(store, name, refusal);
+    return read_file(store, file, refusal) ? restore_text(sim, file, store->text, store->length, 0, refusal) : NULL;
+}
