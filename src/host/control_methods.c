@@ -114,10 +114,14 @@ static control_method *find(const char *name)
 static json_t *command(struct control_context *context, struct refusal *refusal)
 {
     const struct rpc_request *request = context->request;
-    json_t *result = sim_command(bus_sim(context->bus), request->method, request->params, refusal);
+    struct sim *sim = bus_sim(context->bus);
+    uint64_t tick = sim_now(sim);
+    json_t *result = sim_command(sim, request->method, request->params, refusal);
     if (!result)
         return NULL;
     bus_changed(context->bus);
+    if (!json_object_get(result, "t_us"))
+        json_object_set_new(result, "t_us", json_integer((json_int_t)tick));
     if (strcmp(request->method, "state") == 0)
         json_object_set_new(result, "clock", json_string(context->bus->clock_text));
     return result;
