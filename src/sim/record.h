@@ -37,8 +37,9 @@ enum replay_end {
 
 /* The first difference. */
 struct replay_difference {
-    unsigned unit, motor; /* 0: the bytes that reach the master, or pass on the wires; the unit */
-    const char *what;     /* "answer", "motor", "unit", "wires", "command" */
+    unsigned unit, motor; /* 0: see `what`; the unit */
+    char name[NODE_NAME_SIZE]; /* of the unit */
+    const char *what;     /* "the master": bytes that reach it, "the wires", "the control", "unit", "motor" */
     uint64_t from, until; /* ticks: where it may lie, both included */
     char recorded[200], came[200];
 };

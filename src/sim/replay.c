@@ -356,7 +356,8 @@ struct replay *replay_open_within(const char *name, FILE *in, unsigned depth)
     replay->in = in;
     replay->depth = depth;
     replay->until = RKM04_NEVER;
-    if (!replay_begin(replay) && !replay->ended)
+    replay->begun = replay_begin(replay);
+    if (!replay->begun && !replay->ended)
         replay_no_memory(replay);
     return replay;
 }
@@ -368,7 +369,7 @@ struct replay *replay_open(const char *name, FILE *in)
 
 struct sim *replay_sim(struct replay *replay)
 {
-    return replay->ended && replay->end != REPLAY_SAME ? NULL : replay->sim;
+    return replay->begun ? replay->sim : NULL;
 }
 
 void replay_until(struct replay *replay, uint64_t tick)

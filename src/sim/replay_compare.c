@@ -75,20 +75,17 @@ void replay_listen_no_more(struct replay *replay)
 
 /* ---- Differences ---------------------------------------------------------------------------------------------------- */
 
-static const char *unit_name(const struct replay *replay, unsigned unit)
-{
-    return unit >= 1 && unit <= sim_units(replay->sim) ? replay->sim->unit[unit - 1u].name : "?";
-}
-
 bool replay_differs(struct replay *replay, const struct replay_difference *difference)
 {
     struct replay_difference *first = &replay->difference;
     char where[60], when[80];
     *first = *difference;
+    if (first->unit >= 1 && first->unit <= sim_units(replay->sim))
+        memcpy(first->name, replay->sim->unit[first->unit - 1u].name, sizeof first->name);
     if (first->motor > 0)
-        snprintf(where, sizeof where, "unit %s, motor %u", unit_name(replay, first->unit), first->motor);
+        snprintf(where, sizeof where, "unit %s, motor %u", first->name, first->motor);
     else if (first->unit > 0)
-        snprintf(where, sizeof where, "unit %s", unit_name(replay, first->unit));
+        snprintf(where, sizeof where, "unit %s", first->name);
     else
         snprintf(where, sizeof where, "%s", first->what);
     if (first->from == first->until)

@@ -18,7 +18,8 @@ struct replay {
     const char *name;
     FILE *in;
     unsigned depth;             /* records around this one */
-    struct sim *sim;            /* NULL: the file is wrong */
+    struct sim *sim;
+    bool begun;                 /* the head is right: sim is powered up */
     uint8_t *flash;             /* of all units, inverted */
     char *version_text, *program;
     uint64_t until;
