@@ -14,7 +14,7 @@
 #include "stimulus.h"
 #include "subcommands.h"
 #include "time_value.h"
-#include "trace.h"
+#include "trace_file.h"
 
 struct options {
     struct argument {
@@ -31,7 +31,7 @@ struct options {
 static const struct argp_option option_table[] = {
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"stimulus", 's', "FILE", 0, "What comes from outside while the programs run", 0},
-    {"trace", 't', "FILE", 0, "Write all that happens as CSV; - is standard output", 0},
+    {"trace", 't', "FILE", 0, "Write all that happens: .vcd, .jsonl, any other name CSV; - is standard output, CSV", 0},
     {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
     {0},
 };
@@ -47,10 +47,11 @@ static const char doc[] =
     "  TIME message HEX      a message of the protocol; the answer is shown\n"
     "  # comment\n"
     "\n"
-    "A trace has the columns t_us,source,event,value:\n"
+    "A trace as CSV has the columns t_us,source,event,value:\n"
     "  m1,step,POSITION   m1,dir,1|-1        m1,motion,begin|end\n"
     "  m1,led,off|on|blink                   m1,command,INDEX (0: idle)\n"
     "  unit,di|do|var,MASK\n"
+    "FILE.vcd is for GTKWave and PulseView, FILE.jsonl has every event as JSON; see docs/TRACES.md.\n"
     "\n"
     "Examples:\n"
     "  rkm04 exec drill.rks\n"
@@ -238,10 +239,11 @@ static bool is_running(const struct rkm04_unit *unit)
     return running;
 }
 
-static int exit_status(const struct exec_run *run, const struct options *options, enum exec_end end, bool written)
+static int exit_status(struct exec_run *run, const struct options *options, enum exec_end end, bool written)
 {
-    bool fault = report_faults(&run->unit);
-    if (end == EXEC_UNTIL && is_running(&run->unit)) {
+    const struct rkm04_unit *unit = exec_run_unit(run);
+    bool fault = report_faults(unit);
+    if (end == EXEC_UNTIL && is_running(unit)) {
         fprintf(stderr, "rkm04 exec: --until %s reached with a motor still running\n", options->until_text);
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
@@ -250,49 +252,68 @@ static int exit_status(const struct exec_run *run, const struct options *options
     return end == EXEC_INTERRUPTED || fault || !written ? STATUS_FAILURE : STATUS_WELL;
 }
 
-/* Run with the trace open on `trace_file`, or without. Returns the exit status. */
-static int run_programs(const struct options *options, const struct inputs *inputs, FILE *trace_file)
+/* What goes wrong with the trace. Returns whether nothing did. */
+static bool tell_trace(const struct options *options, int wrong)
 {
-    static struct exec_run run;
-    static struct trace trace;
-    struct report report;
-
-    report_begin(&report, options->json);
-    run.stimuli = &inputs->stimuli;
-    run.stimulus_name = inputs->stimulus_file.name;
-    run.trace = trace_file != NULL ? &trace : NULL;
-    run.until = options->until;
-    run.progress = isatty(STDERR_FILENO) != 0;
-    run.answered = report_answer;
-    run.context = &report;
-    if (trace_file != NULL)
-        trace_begin(&trace, trace_file);
-    catch_signals();
-    exec_run_begin(&run);
-    store_programs(&run, inputs);
-    enum exec_end end = exec_run(&run);
-
-    int wrong = trace_file != NULL ? trace_finish(&trace) : 0;
     if (wrong != 0)
         fprintf(stderr, "rkm04 exec: cannot write the trace %s: %s\n", options->trace, strerror(wrong));
-    bool written = report_end(&report, &run, end, trace_file == stdout ? stderr : stdout);
-    return exit_status(&run, options, end, written && wrong == 0);
+    return wrong == 0;
 }
 
-static int run_traced(const struct options *options, const struct inputs *inputs)
+/* A trace on `out`, or none. Returns false if memory is short. */
+static bool begin_trace(struct exec_run *run, const struct options *options, FILE *out, struct trace_file **trace)
 {
-    if (options->trace == NULL)
-        return run_programs(options, inputs, NULL);
-    if (strcmp(options->trace, "-") == 0)
-        return run_programs(options, inputs, stdout);
-    FILE *file = fopen(options->trace, "w");
-    if (file == NULL) {
-        fprintf(stderr, "rkm04 exec: cannot write the trace %s: %s\n", options->trace, strerror(errno));
+    *trace = NULL;
+    if (out == NULL)
+        return true;
+    enum trace_format format = trace_file_format(options->trace);
+    *trace = trace_file_begin_on(&run->sim, out, format == TRACE_FORMATS ? TRACE_CSV : format);
+    run->trace = *trace;
+    return *trace != NULL;
+}
+
+/* Run with the trace open on `out`, or without. Returns the exit status. */
+static int run_programs(struct exec_run *run, const struct options *options, const struct inputs *inputs, FILE *out)
+{
+    struct report report;
+    struct trace_file *trace;
+
+    run->stimuli = &inputs->stimuli;
+    run->stimulus_name = inputs->stimulus_file.name;
+    run->until = options->until;
+    run->progress = isatty(STDERR_FILENO) != 0;
+    run->answered = report_answer;
+    run->context = &report;
+    catch_signals();
+    if (!exec_run_begin(run) || !begin_trace(run, options, out, &trace)) {
+        fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
         return STATUS_FAILURE;
     }
-    int status = run_programs(options, inputs, file);
+    report_begin(&report, options->json);
+    store_programs(run, inputs);
+    enum exec_end end = exec_run(run);
+
+    bool written = trace == NULL || tell_trace(options, trace_file_end(trace));
+    if (!report_end(&report, run, end, out == stdout ? stderr : stdout))
+        written = false;
+    return exit_status(run, options, end, written);
+}
+
+static int run_traced(struct exec_run *run, const struct options *options, const struct inputs *inputs)
+{
+    if (options->trace == NULL)
+        return run_programs(run, options, inputs, NULL);
+    if (strcmp(options->trace, "-") == 0)
+        return run_programs(run, options, inputs, stdout);
+    FILE *file = fopen(options->trace, "we");
+    if (file == NULL) {
+        tell_trace(options, errno);
+        return STATUS_FAILURE;
+    }
+    setvbuf(file, NULL, _IONBF, 0); /* gathered in a buffer already */
+    int status = run_programs(run, options, inputs, file);
     if (fclose(file) != 0 && status == STATUS_WELL) {
-        fprintf(stderr, "rkm04 exec: cannot write the trace %s: %s\n", options->trace, strerror(errno));
+        tell_trace(options, errno);
         status = STATUS_FAILURE;
     }
     return status;
@@ -300,6 +321,7 @@ static int run_traced(const struct options *options, const struct inputs *inputs
 
 int exec_main(int argc, char **argv)
 {
+    static struct exec_run run;
     struct options options = {.until = RKM04_NEVER};
     struct inputs inputs = {0};
     int status = STATUS_FAILURE;
@@ -314,8 +336,9 @@ int exec_main(int argc, char **argv)
         if (options.stimulus != NULL && !read_stimuli(&inputs, options.stimulus))
             well = false;
         if (well)
-            status = run_traced(&options, &inputs);
+            status = run_traced(&run, &options, &inputs);
     }
+    exec_run_end(&run);
     free_inputs(&inputs);
     free(options.argument);
     return status;

@@ -67,7 +67,7 @@ static void print_bits(FILE *out, const char *name, unsigned mask, unsigned firs
     }
 }
 
-static void print_table(FILE *out, const struct exec_run *run, enum exec_end end)
+static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
 {
     static const char *const ends[] = {
         [EXEC_DONE] = "nothing more to do",
@@ -75,19 +75,20 @@ static void print_table(FILE *out, const struct exec_run *run, enum exec_end end
         [EXEC_INTERRUPTED] = "interrupted",
         [EXEC_NO_TRACE] = "stopped",
     };
+    const struct rkm04_unit *unit = exec_run_unit(run);
     fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / RKM04_TICKS_PER_SECOND,
             run->reached % RKM04_TICKS_PER_SECOND, ends[end]);
     fprintf(out, "motor     position  state   command  led    fault\n");
     for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
         struct rkm04_motor_state state;
-        rkm04_motor_state(&run->unit, motor, &state);
+        rkm04_motor_state(unit, motor, &state);
         fprintf(out, "%-5u  %11" PRId32 "  %-6s  %7u  %-5s  %s\n", motor, state.position, rkm04_state_name(state.state),
                 (unsigned)state.index, rkm04_led_name(state.led),
                 state.fault == RKM04_FAULT_NONE ? "-" : rkm04_fault_name(state.fault));
     }
-    print_bits(out, "at 1: inputs", rkm04_inputs(&run->unit), 1);
-    print_bits(out, "; outputs", rkm04_outputs(&run->unit), 1);
-    print_bits(out, "; variables", rkm04_variables(&run->unit), RKM04_FIRST_VARIABLE);
+    print_bits(out, "at 1: inputs", rkm04_inputs(unit), 1);
+    print_bits(out, "; outputs", rkm04_outputs(unit), 1);
+    print_bits(out, "; variables", rkm04_variables(unit), RKM04_FIRST_VARIABLE);
     fputc('\n', out);
 }
 
@@ -118,9 +119,9 @@ bool report_faults(const struct rkm04_unit *unit)
 
 /* ---- The end ------------------------------------------------------------------------------------------------------ */
 
-static bool print_json(FILE *out, json_t *answers, const struct exec_run *run, enum exec_end end)
+static bool print_json(FILE *out, json_t *answers, struct exec_run *run, enum exec_end end)
 {
-    json_t *state = state_json(&run->unit, run->reached);
+    json_t *state = state_json(exec_run_unit(run), run->reached);
     bool well = state != NULL && json_object_set_new(state, "end", json_string(end_name(end))) == 0 &&
                 json_object_set(state, "answers", answers) == 0 && json_dumpf(state, out, JSON_COMPACT) == 0;
     json_decref(state);
@@ -128,7 +129,7 @@ static bool print_json(FILE *out, json_t *answers, const struct exec_run *run, e
     return well;
 }
 
-bool report_end(struct report *report, const struct exec_run *run, enum exec_end end, FILE *out)
+bool report_end(struct report *report, struct exec_run *run, enum exec_end end, FILE *out)
 {
     bool well = true;
     errno = 0;

@@ -21,7 +21,7 @@ void report_answer(void *context, uint64_t tick, const struct stimulus *stimulus
 /* Print the final state on `out`: the object of state_json.h with `end` ("done", "until", "interrupted", "no_trace") and
  * `answers`, a list of {t_us, message, answer}; or a table. Frees the report.
  * Returns false if it could not be written; that has been reported. */
-bool report_end(struct report *report, const struct exec_run *run, enum exec_end end, FILE *out);
+bool report_end(struct report *report, struct exec_run *run, enum exec_end end, FILE *out);
 
 /* Tell on stderr about each motor that ended in a fault. Returns true if there is one. */
 bool report_faults(const struct rkm04_unit *unit);

@@ -2,7 +2,6 @@
 
 #include <signal.h>
 #include <stdio.h>
-#include <string.h>
 #include <time.h>
 
 #define ANSWER_MAX 16384     /* the longest answer, a full memory, has 9101 bytes */
@@ -25,92 +24,27 @@ void exec_run_interrupt(int signal_number)
     interrupted = 1;
 }
 
-/* ---- What the unit does ------------------------------------------------------------------------------------------ */
+/* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
-static void add_row(struct exec_run *run, uint64_t tick, unsigned motor, enum trace_event event, int32_t value)
+bool exec_run_begin(struct exec_run *run)
 {
-    if (run->trace != NULL)
-        trace_add(run->trace, tick, run->delivering ? TRACE_DELIVERED : TRACE_TURNS, motor, event, value);
+    static const struct sim_config config = {.nodes = {.count = 1, .node = {1}}};
+    return sim_begin(&run->sim, &config);
 }
 
-static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
+void exec_run_end(struct exec_run *run)
 {
-    struct exec_run *run = context;
-    trace_add(run->trace, tick, TRACE_PULSES, motor, TRACE_STEP, position);
+    sim_end(&run->sim);
 }
 
-static void on_direction(void *context, uint64_t tick, unsigned motor, bool forward)
+struct rkm04_unit *exec_run_unit(struct exec_run *run)
 {
-    add_row(context, tick, motor, TRACE_DIRECTION, forward ? 1 : -1);
-}
-
-static void on_outputs(void *context, uint64_t tick, uint8_t mask)
-{
-    add_row(context, tick, 0, TRACE_OUTPUTS, mask);
-}
-
-static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_event what, uint32_t value)
-{
-    static const enum trace_event events[] = {
-        [RKM04_EVENT_MOTION] = TRACE_MOTION,
-        [RKM04_EVENT_COMMAND] = TRACE_COMMAND,
-        [RKM04_EVENT_LED] = TRACE_LED,
-        [RKM04_EVENT_VARIABLE] = TRACE_VARIABLES,
-    };
-    if (what != RKM04_EVENT_FAULT) /* a fault is seen in the final state */
-        add_row(context, tick, motor, events[what], (int32_t)value);
-}
-
-static int on_flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
-{
-    struct exec_run *run = context;
-    memcpy(data, &run->flash[block][offset], length);
-    return 0;
-}
-
-static int on_flash_erase(void *context, unsigned block)
-{
-    struct exec_run *run = context;
-    memset(run->flash[block], 0xFF, sizeof run->flash[block]);
-    return 0;
-}
-
-static int on_flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
-{
-    struct exec_run *run = context;
-    memcpy(&run->flash[block][offset], data, length);
-    return 0;
-}
-
-static const struct rkm04_port traced_port = {
-    .step = on_step,
-    .direction = on_direction,
-    .outputs = on_outputs,
-    .event = on_event,
-    .flash_read = on_flash_read,
-    .flash_erase = on_flash_erase,
-    .flash_program = on_flash_program,
-};
-
-static const struct rkm04_port quiet_port = {
-    .flash_read = on_flash_read,
-    .flash_erase = on_flash_erase,
-    .flash_program = on_flash_program,
-};
-
-void exec_run_begin(struct exec_run *run)
-{
-    static const struct rkm04_config config = {.node = 1};
-    run->reached = 0;
-    run->next = 0;
-    run->delivering = true;
-    memset(run->flash, 0xFF, sizeof run->flash);
-    rkm04_init(&run->unit, &config, run->trace != NULL ? &traced_port : &quiet_port, run);
+    return sim_core(&run->sim, 1);
 }
 
 int exec_run_set(struct exec_run *run, char motor, const void *text, size_t length)
 {
-    return rkm04_set_command(&run->unit, motor, text, length, NULL);
+    return rkm04_set_command(exec_run_unit(run), motor, text, length, NULL);
 }
 
 /* ---- Progress for a person who waits ------------------------------------------------------------------------------ */
@@ -137,7 +71,7 @@ static void progress_look(struct progress *progress, const struct exec_run *run)
         return;
     progress->next = real + PROGRESS_EVERY;
     progress->shown = true;
-    double virtual = (double)rkm04_now(&run->unit) / RKM04_TICKS_PER_SECOND;
+    double virtual = (double)sim_now(&run->sim) / RKM04_TICKS_PER_SECOND;
     fprintf(stderr, "\r%.1f s of the unit's time, %.0f times real time; Ctrl-C ends the run\033[K", virtual, virtual / real);
 }
 
@@ -151,13 +85,9 @@ static void progress_end(const struct progress *progress)
 
 static void deliver_input(struct exec_run *run, const struct stimulus *s)
 {
-    uint8_t old = rkm04_inputs(&run->unit);
+    uint8_t mask = rkm04_inputs(exec_run_unit(run));
     uint8_t bit = (uint8_t)(1u << (s->input - 1));
-    uint8_t mask = s->level ? (uint8_t)(old | bit) : (uint8_t)(old & ~bit);
-    if (mask == old)
-        return;
-    add_row(run, s->tick, 0, TRACE_INPUTS, mask);
-    rkm04_set_inputs(&run->unit, mask);
+    sim_set_di(&run->sim, 1, s->level ? (uint8_t)(mask | bit) : (uint8_t)(mask & ~bit));
 }
 
 static void deliver(struct exec_run *run, const struct stimulus *s)
@@ -165,7 +95,6 @@ static void deliver(struct exec_run *run, const struct stimulus *s)
     uint8_t answer[ANSWER_MAX];
     size_t length;
 
-    run->delivering = true;
     switch (s->kind) {
     case STIMULUS_INPUT:
         deliver_input(run, s);
@@ -176,19 +105,18 @@ static void deliver(struct exec_run *run, const struct stimulus *s)
                     s->line, s->column, RKM04_PROGRAM_MAX);
         break;
     case STIMULUS_MESSAGE:
-        length = rkm04_exchange(&run->unit, s->data, s->length, answer, sizeof answer);
+        length = rkm04_exchange(exec_run_unit(run), s->data, s->length, answer, sizeof answer);
         run->answered(run->context, s->tick, s, answer, length < sizeof answer ? length : sizeof answer);
         break;
     }
-    run->delivering = false;
     run->reached = s->tick;
 }
 
-/* First tick not to be done in the next leap: it ends with the slot in which something is due, so that the trace need
- * not put more than a slot in order, and sooner where something comes from outside. RKM04_NEVER: nothing is to be done. */
+/* First tick not to be done in the next leap: it ends with the slot in which something is due, or where something comes from
+ * outside. RKM04_NEVER: nothing is to be done. */
 static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
 {
-    uint64_t end = rkm04_next_event(&run->unit);
+    uint64_t end = sim_next_event(&run->sim);
     if (end != RKM04_NEVER)
         end = (end + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS * RKM04_SLOT_TICKS + 1;
     if (stimulus < end)
@@ -201,7 +129,7 @@ static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
 static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
 {
     while (!interrupted) {
-        uint64_t now = rkm04_now(&run->unit);
+        uint64_t now = sim_now(&run->sim);
         bool left = run->next < run->stimuli->count;
         uint64_t stimulus = left ? run->stimuli->list[run->next].tick : RKM04_NEVER;
         if (run->until != RKM04_NEVER && now > run->until)
@@ -213,13 +141,10 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
         uint64_t end = leap_end(run, stimulus);
         if (end == RKM04_NEVER)
             return EXEC_DONE;
-        rkm04_advance(&run->unit, end - now);
+        sim_advance(&run->sim, end);
         run->reached = end - 1;
-        if (run->trace != NULL) {
-            trace_write_before(run->trace, end);
-            if (run->trace->failed)
-                return EXEC_NO_TRACE;
-        }
+        if (run->trace != NULL && trace_file_failed(run->trace) != 0)
+            return EXEC_NO_TRACE;
         progress_look(progress, run);
     }
     return EXEC_INTERRUPTED;
@@ -228,7 +153,6 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
 enum exec_end exec_run(struct exec_run *run)
 {
     struct progress progress;
-    run->delivering = false;
     progress_begin(&progress);
     enum exec_end end = run_loop(run, &progress);
     progress_end(&progress);

@@ -1,14 +1,13 @@
-/* exec_run.h: a unit in virtual time, from power-up to the end of the run. */
+/* exec_run.h: a line with one unit in virtual time (sim.h), from power-up to the end of the run. */
 #ifndef RKM04_HOST_EXEC_RUN_H
 #define RKM04_HOST_EXEC_RUN_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <rkm04/unit.h>
-
+#include "sim.h"
 #include "stimulus.h"
-#include "trace.h"
+#include "trace_file.h"
 
 enum exec_end {
     EXEC_DONE,        /* nothing is due any more: every motor idle, stopped, or waiting for what can never come */
@@ -18,24 +17,27 @@ enum exec_end {
 };
 
 struct exec_run {
-    struct rkm04_unit unit;
+    struct sim sim;
     const struct stimuli *stimuli;
-    const char *stimulus_name; /* for messages */
-    struct trace *trace;       /* NULL: none */
-    uint64_t until;            /* last tick to be done; RKM04_NEVER: no limit */
-    bool progress;             /* show a line on stderr while it takes long */
+    const char *stimulus_name;      /* for messages */
+    const struct trace_file *trace; /* the run ends when it fails; NULL: none */
+    uint64_t until;                 /* last tick to be done; RKM04_NEVER: no limit */
+    bool progress;                  /* show a line on stderr while it takes long */
     /* Called with what the unit answered to a message of the stimulus; length 0: nothing. */
     void (*answered)(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);
     void *context;
 
     uint64_t reached; /* out: the last tick in which something was done */
-    bool delivering;  /* inside: rows of the trace belong to what comes from outside */
     size_t next;      /* inside: stimuli delivered */
-    uint8_t flash[RKM04_FLASH_BLOCKS][RKM04_FLASH_BLOCK_SIZE]; /* lives as long as the run */
 };
 
-/* Power up at tick 0 with empty flash. All members of the first part must be set. */
-void exec_run_begin(struct exec_run *run);
+/* Power up at tick 0 with empty flash. *run must be zero; the members of the first part must be set by exec_run(). Returns false
+ * if memory is short; exec_run_end() is due in either case. */
+bool exec_run_begin(struct exec_run *run);
+void exec_run_end(struct exec_run *run);
+
+/* The unit. */
+struct rkm04_unit *exec_run_unit(struct exec_run *run);
 
 /* Store a text for motor '0'..'4' at the present tick. Returns the flag of P1. */
 int exec_run_set(struct exec_run *run, char motor, const void *text, size_t length);
