@@ -161,7 +161,8 @@ static void put_command(struct panel *panel, int row, const int column[FIELDS], 
     }
     if (waits_for != NULL) {
         size_t length = strlen(text);
-        snprintf(text + length, sizeof text - length, "  %s", waits_for);
+        const char *progress = strstr(waits_for, ": "); /* "the end of R: 10 of 5000 steps done" */
+        snprintf(text + length, sizeof text - length, "  %s", progress != NULL ? progress + 2 : waits_for);
     }
     append_guards(motor, text, sizeof text);
     put_field(panel, row, column, FIELD_COMMAND, PANEL_PLAIN, text);

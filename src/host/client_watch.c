@@ -9,10 +9,12 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "client_panel.h"
 #include "client_port.h"
+#include "client_terminal.h"
 
 #define PERIOD_US 100000 /* from frame to frame */
 #define TEXT_COLUMNS 100 /* of --once */
@@ -31,11 +33,14 @@ struct watching {
     bool coloured;
 };
 
-static volatile sig_atomic_t told_to_end;
+static volatile sig_atomic_t told_to_end, resized;
 
 static void on_signal(int number)
 {
-    told_to_end = number;
+    if (number == SIGWINCH)
+        resized = 1;
+    else
+        told_to_end = number;
 }
 
 /* ---- The units -------------------------------------------------------------------------------------------------------- */
@@ -108,11 +113,9 @@ static const struct {
 static bool open_screen(struct watching *w)
 {
     const char *no_color = getenv("NO_COLOR");
-    w->screen = newterm(NULL, stdout, stdin);
-    if (w->screen == NULL) {
-        warnx("watch: the terminal %s is not known here: set TERM, or use --once", getenv("TERM") != NULL ? getenv("TERM") : "");
+    w->screen = client_terminal_fits() ? newterm(NULL, stdout, stdin) : NULL;
+    if (w->screen == NULL)
         return false;
-    }
     cbreak();
     noecho();
     nonl();
@@ -156,6 +159,17 @@ static void show(const struct watching *w)
     refresh();
 }
 
+/* The terminal has another size. Everything is painted anew: what it showed may be gone, even if the size is what it was. */
+static void fit(const struct watching *w)
+{
+    struct winsize size;
+    resized = 0;
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 && size.ws_col > 0)
+        resizeterm(size.ws_row, size.ws_col);
+    clearok(curscr, TRUE);
+    show(w);
+}
+
 /* ---- The loop --------------------------------------------------------------------------------------------------------- */
 
 static void choose(struct watching *w, size_t step)
@@ -189,11 +203,7 @@ static bool take_keys(struct watching *w)
             choose(w, json_array_size(w->units) - 1);
             break;
         case '\f':
-            clearok(curscr, TRUE);
-            show(w);
-            break;
-        case KEY_RESIZE:
-            show(w);
+            fit(w);
             break;
         default:
             break;
@@ -238,7 +248,7 @@ static bool pause_until_something(const struct watching *w)
 
 static enum exit_status show_live(struct watching *w)
 {
-    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH};
     struct sigaction action = {.sa_handler = on_signal};
     enum client_rpc_outcome outcome = CLIENT_RPC_NOTHING;
     json_t *json = NULL;
@@ -248,8 +258,10 @@ static enum exit_status show_live(struct watching *w)
         sigaction(signals[i], &action, NULL);
     if (!open_screen(w))
         return STATUS_FAILURE;
-    while (told_to_end == 0 && (outcome = follow(w, &json)) == CLIENT_RPC_NOTHING && pause_until_something(w) && take_keys(w))
-        continue;
+    while (told_to_end == 0 && (outcome = follow(w, &json)) == CLIENT_RPC_NOTHING && pause_until_something(w) && take_keys(w)) {
+        if (resized)
+            fit(w);
+    }
     close_screen(w);
     enum exit_status status = outcome == CLIENT_RPC_NOTHING ? STATUS_WELL : client_job_outcome(w->job, outcome, json);
     json_decref(json);

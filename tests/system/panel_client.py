@@ -1,0 +1,111 @@
+"""The front panel in a terminal of its own, as ctl_panel.sh runs it:
+
+    panel_client.py ROWS COLUMNS PROGRAM ARGUMENT... -- STEP...
+
+Steps: see:TEXT, gone:TEXT until the screen shows it, or no more; keys:TEXT; size:ROWSxCOLUMNS; show; count:TEXT:N so often on the
+screen; signal:NAME; status:N the program ends so (negative: by that signal) and leaves the terminal as it was. An exception is a
+failed test."""
+import fcntl
+import os
+import pty
+import re
+import select
+import signal
+import struct
+import sys
+import termios
+import time
+
+import pyte
+
+LIMIT = 30  # seconds until something counts as never coming
+
+
+class Terminal:
+    def __init__(self, rows, columns, command):
+        self.screen = pyte.Screen(columns, rows)
+        self.stream = pyte.ByteStream(self.screen)
+        self.said = b""
+        self.master, self.slave = pty.openpty()  # the slave is held, so that what is said last is not lost
+        self.resize(rows, columns)
+        self.before = termios.tcgetattr(self.slave)
+        self.program = os.fork()
+        if self.program == 0:
+            os.setsid()
+            fcntl.ioctl(self.slave, termios.TIOCSCTTY, 0)
+            for descriptor in 0, 1:
+                os.dup2(self.slave, descriptor)
+            os.execvp(command[0], command)
+
+    def resize(self, rows, columns):
+        self.screen.resize(rows, columns)
+        fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+    def read(self, seconds):
+        if select.select([self.master], [], [], seconds)[0]:
+            data = os.read(self.master, 65536)
+            self.said += data
+            self.stream.feed(re.sub(rb"\x1b\[\?1(;[0-9]+)*[hl]|\x1b\(B", b"", data))
+            return True
+        return False
+
+    def text(self):
+        return "\n".join(self.screen.display)
+
+    def until(self, what, condition):
+        end = time.monotonic() + LIMIT
+        while not condition():
+            assert time.monotonic() < end, f"not within {LIMIT} s: {what}; the screen:\n{self.text()}"
+            self.read(0.1)
+
+    def ended(self, status):
+        end = time.monotonic() + LIMIT
+        while True:
+            process, found = os.waitpid(self.program, os.WNOHANG)
+            if process:
+                break
+            assert time.monotonic() < end, f"it does not end; the screen:\n{self.text()}"
+            self.read(0.02)
+        while self.read(0):
+            pass
+        found = os.waitstatus_to_exitcode(found)
+        assert found == status, f"exit status {found}, expected {status}"
+        assert termios.tcgetattr(self.slave) == self.before, "the settings of the terminal are not what they were"
+        if b"\x1b[?1049h" in self.said:
+            assert self.said.rstrip().endswith(b"\x1b[?1l\x1b>") or b"\x1b[?1049l" in self.said, "the screen is not given back"
+        if b"\x1b[?25l" in self.said:
+            assert self.said.rindex(b"\x1b[?25l") < max(self.said.rfind(b"\x1b[?25h"), self.said.rfind(b"\x1b[34h\x1b[?25h")), \
+                "the cursor stays hidden"
+
+
+def main():
+    rows, columns, *words = sys.argv[1:]
+    at = words.index("--")
+    terminal = Terminal(int(rows), int(columns), words[:at])
+    for step in words[at + 1:]:
+        what, _, value = step.partition(":")
+        if what == "see":
+            terminal.until(step, lambda: value in terminal.text())
+        elif what == "gone":
+            terminal.until(step, lambda: value not in terminal.text())
+        elif what == "count":
+            part, _, number = value.rpartition(":")
+            terminal.until(step, lambda: terminal.text().count(part) == int(number))
+        elif what == "keys":
+            os.write(terminal.master, value.encode().decode("unicode_escape").encode())
+        elif what == "size":
+            terminal.resize(*map(int, value.split("x")))
+        elif what == "show":
+            print(terminal.text())
+        elif what == "signal":
+            os.kill(terminal.program, getattr(signal, value))
+        elif what == "colours":
+            used = {cell.fg for row in terminal.screen.buffer.values() for cell in row.values()} - {"default"}
+            assert sorted(used) == sorted(filter(None, value.split(","))), f"colours {used}, expected {value}"
+        elif what == "status":
+            terminal.ended(int(value))
+        else:
+            sys.exit(f"unknown step {step}")
+
+
+main()
