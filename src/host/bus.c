@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "log.h"
+#include "snapshot.h"
 
 /* ---- The log -------------------------------------------------------------------------------------------------------- */
 
@@ -181,6 +182,17 @@ static bool configure_plant(struct bus *bus)
     return well;
 }
 
+/* For snapshots to files, which only clients of a control socket can ask for. */
+static bool keep_journal(struct bus *bus)
+{
+    const struct serve_options *options = bus->options;
+    bool wanted = !options->no_control && (options->control || options->pty);
+    if (!wanted || snapshots_keep_journal(&bus->sim))
+        return true;
+    log_error("out of memory");
+    return false;
+}
+
 static void unplug(void *context, bool plugged)
 {
     bus_ports_plug(context, plugged);
@@ -222,7 +234,7 @@ bool bus_begin(struct bus *bus, unsigned number, const struct serve_options *opt
     if (!bus_ports_open(bus, loop, watch) || !open_flash(bus) || !begin_sim(bus))
         return false;
     watch_for_log(bus);
-    return bus_files_begin(bus) && configure_plant(bus) && bus_time_begin(bus, loop);
+    return configure_plant(bus) && keep_journal(bus) && bus_files_begin(bus) && bus_time_begin(bus, loop);
 }
 
 bool bus_start(struct bus *bus)

@@ -255,8 +255,14 @@ struct sim *bus_sim(struct bus *bus)
     return &bus->sim;
 }
 
+/* What a command does may take time along: a snapshot that is restored may be of a later tick. */
 void bus_changed(struct bus *bus)
 {
+    uint64_t reached = sim_now(&bus->sim);
+    if (bus_stepped(bus) && bus->goal < reached)
+        bus->goal = reached;
+    if (!bus_stepped(bus) && bus_present(bus) < reached)
+        virtual_clock_leap(&bus->clock, uv_hrtime(), reached);
     if (!bus->busy)
         bus_catch_up(bus);
 }
