@@ -126,8 +126,8 @@ static int read_all(struct test_case *tests, const struct options *options)
     return status;
 }
 
-/* Returns false if something could not be written. */
-static bool run_all(struct test_case *tests, const struct options *options)
+/* Returns false if a record could not be written. *wrong: 0, or the errno with which a line could not. */
+static bool run_all(struct test_case *tests, const struct options *options, int *wrong)
 {
     struct test_progress progress = {.wanted = isatty(STDERR_FILENO) != 0, .count = options->paths};
     const char *folder = options->no_records ? NULL : options->records != NULL ? options->records : ".";
@@ -140,34 +140,38 @@ static bool run_all(struct test_case *tests, const struct options *options)
         well = test_case_run(&tests[i], folder, number, &progress) && well;
         if (!options->json)
             test_report_line(stdout, &tests[i]);
-        fflush(stdout);
+        if (fflush(stdout) != 0 && *wrong == 0)
+            *wrong = errno;
     }
     return well;
 }
 
-static bool finish(FILE *file, const char *what)
+/* `wrong`: an errno of before, or 0. */
+static bool finish(FILE *file, const char *what, int wrong)
 {
-    errno = 0;
-    bool well = !ferror(file) && fflush(file) == 0;
-    if (file != stdout)
-        well = fclose(file) == 0 && well;
-    if (!well)
-        fprintf(stderr, "rkm04 test: cannot write %s: %s\n", what, strerror(errno != 0 ? errno : EIO));
-    return well;
+    if (fflush(file) != 0 && wrong == 0)
+        wrong = errno;
+    if (ferror(file) && wrong == 0)
+        wrong = EIO;
+    if (file != stdout && fclose(file) != 0 && wrong == 0)
+        wrong = errno;
+    if (wrong != 0)
+        fprintf(stderr, "rkm04 test: cannot write %s: %s\n", what, strerror(wrong));
+    return wrong == 0;
 }
 
-static bool report_all(const struct test_case *tests, const struct options *options, FILE *junit)
+static bool report_all(const struct test_case *tests, const struct options *options, FILE *junit, int wrong)
 {
     bool well = true;
     if (junit != NULL) {
         test_report_junit(junit, tests, options->paths);
-        well = finish(junit, options->junit);
+        well = finish(junit, options->junit, 0);
     }
     if (options->json)
         test_report_json(stdout, tests, options->paths);
     else if (options->paths > 1)
         test_report_sum(stdout, tests, options->paths);
-    return finish(stdout, "the results") && well;
+    return finish(stdout, "the results", wrong) && well;
 }
 
 static int run(struct test_case *tests, const struct options *options)
@@ -184,8 +188,9 @@ static int run(struct test_case *tests, const struct options *options)
         }
     }
     catch_signals();
-    bool well = run_all(tests, options);
-    well = report_all(tests, options, junit) && well;
+    int wrong = 0;
+    bool well = run_all(tests, options, &wrong);
+    well = report_all(tests, options, junit, wrong) && well;
     if (test_case_interrupted())
         fputs("rkm04 test: interrupted\n", stderr);
     if (test_report_count(tests, options->paths, TEST_FAILED) > 0)
