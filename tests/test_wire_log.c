@@ -96,7 +96,7 @@ START_TEST(a_log_has_times_direction_message_reason_and_bytes)
         "       26522        30168  master          dropped: wrong FCS | 7E 03 00 01 12 34 7E\n"
         "       30168        30168  -- unit 3: power off\n"
         "       30167        33814  master > 3      1 Version; ignored: no power at unit 3 | 7E 03 00 01 21 38 7E\n"
-        "       33813        34856  master          dropped: unfinished | 7E 03\n");
+        "       33813        34856  master          unfinished | 7E 03\n");
 }
 END_TEST
 

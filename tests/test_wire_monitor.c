@@ -204,7 +204,7 @@ START_TEST(what_is_incomplete_at_the_end_is_told)
     wire_rig_pass(1);
     wire_rig_says("master > 3: 1 Version");
     wire_rig_says("3 > master: 1 Version -> \"01.02,06.03.2009\"");
-    wire_rig_says("master: dropped: unfinished");
+    wire_rig_says("master: unfinished");
     ck_assert_ptr_null(wire_monitor_rest(sim, false));
 }
 END_TEST
