@@ -162,6 +162,30 @@ assert bad["failure"] == {"line": 4, "column": 5, "label": "one more", "expected
     "seen": "motor 1 position 5", "record": "bad.record"}, bad' <<<"$said" || fail "the JSON is not as expected: $said"
 }
 
+test_the_examples_of_the_document_are_scenarios() {
+    cd "$folder" || exit 1
+    local file blocks=0
+    python3 - "$examples/../docs/SCENARIOS.md" <<'PYTHON'
+import re, sys
+
+text = open(sys.argv[1], encoding="utf-8").read()
+for number, block in enumerate(re.findall(r"^```yaml\n(.*?)^```$", text, re.M | re.S), 1):
+    if not re.search("^steps:", block, re.M): # a part of one
+        block = block + "steps: [advance: 1s]\n" if block.startswith("stimuli:") else "steps:\n" + block
+    open(f"block-{number}.yaml", "w", encoding="utf-8").write("units: 3\n" * ("unit: 3" in block) + block)
+PYTHON
+    for file in block-*.yaml; do
+        "$RKM04" test --no-records "$file" >"$folder/run.out" 2>"$folder/run.err"
+        case $? in
+            0) ;;
+            3) [[ $file != block-1.yaml ]] || fail "the first one fails: $(<"$folder/run.out")" ;;
+            *) fail "$file is refused" ;;
+        esac
+        blocks=$((blocks + 1))
+    done
+    ((blocks >= 3)) || fail "only $blocks blocks"
+}
+
 endless() {
     printf 'name: For ever\nsteps:\n  - set: "@1 F1000 R B1000 R J1"\n  - advance: 100000000s\n' >endless.yaml
 }
