@@ -133,18 +133,14 @@ static uint64_t earlier(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-static const char *what_begins(const struct fault *fault)
+static void tell_begin(struct sim *sim, const struct fault *fault)
 {
-    switch (fault->kind) {
-    case FAULT_BREAK:
-        return "the line is held at 0";
-    case FAULT_UNPLUGGED:
-        return "the adapter is unplugged";
-    case FAULT_CABLE:
-        return fault->unit > 0 ? "the cable of the unit is cut" : "the cable is cut";
-    default:
-        return fault->level ? "the input is stuck at 1" : "the input is stuck at 0";
-    }
+    if (fault->kind == FAULT_INPUT)
+        fault_tell(sim, fault, fault->unit, "input %u is stuck at %d", (unsigned)fault->number, fault->level);
+    else if (fault->kind == FAULT_CABLE)
+        fault_tell(sim, fault, fault->unit, fault->unit > 0 ? "the cable of the unit is cut" : "the cable is cut");
+    else
+        fault_tell(sim, fault, 0, fault->kind == FAULT_BREAK ? "the line is held at 0" : "the adapter is unplugged");
 }
 
 /* Begin and end the spells of a fault that are due by now. */
@@ -167,7 +163,7 @@ static void follow(struct sim *sim, struct fault *fault)
         fault->ends = earlier(later(at, fault->ticks), fault->until);
         fault->active = fault->ends > now;
         if (fault->active)
-            fault_tell(sim, fault, fault->unit, "%s", what_begins(fault));
+            tell_begin(sim, fault);
     }
 }
 
