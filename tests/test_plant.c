@@ -220,13 +220,13 @@ END_TEST
 /* At 2000 steps/s there are two pulses a slot: the switch is seen in the slot after it, however the unit's slots lie. */
 START_TEST(K2_a_switch_is_seen_in_the_next_slot_of_a_unit_that_was_powered_up_at_any_tick)
 {
-    begin("motors: {1: {offset: -1000}}\nswitches: [{input: 01, motor: 1, at_least: -900}]");
-    plant_rig_run(&rig, 12345);
+    begin("motors: {1: {offset: -1000}}\nswitches: [{input: 01, motor: 1, at_least: -899}]");
+    plant_rig_run(&rig, 12900);
     sim_power(&rig.sim, 1, true);
-    run("S2000 )01"); /* pulse k at 2000 + 500 k of its own time: the 100th at 52000, in a slot, is seen at 53000 */
+    run("S2000 )01"); /* pulse k at 2000 + 500 k of its own time: the 101st at 52500 is seen at 53000 */
     ck_assert_int_eq(counter(&rig, 1), 102);
     ck_assert_uint_eq(rig.inputs, 1);
-    ck_assert_uint_eq(rig.input[0].tick, 12345 + 52001);
+    ck_assert_uint_eq(rig.input[0].tick, 12900 + 52501);
 }
 END_TEST
 

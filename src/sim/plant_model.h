@@ -32,7 +32,8 @@ struct plant_stall {
     uint64_t last;   /* tick of the last pulse; RKM04_NEVER: none yet */
     bool forward;    /* its direction */
     bool out_of_step;
-    uint32_t run;    /* intervals since it stood or went no faster than `start` */
+    int64_t base;    /* steps/s: highest speed that it may have had when it last was calm: slow, or standing */
+    uint32_t run;    /* intervals since then */
     uint64_t begin;  /* tick at which the present span begins */
     uint32_t steps;  /* in it */
     uint64_t before; /* ticks of the span before; 0: none */

@@ -35,20 +35,36 @@ static void begin_span(struct plant_stall *stall, uint64_t tick)
     stall->steps = 0;
 }
 
-/* It stands, or goes so slowly that it follows anything. */
-static void calm(struct plant_stall *stall, uint64_t tick)
+/* It stands, or goes so slowly that it follows anything. The interval before it may have been up to a tick shorter. */
+static void calm(struct plant_stall *stall, uint64_t tick, uint64_t interval)
 {
+    stall->base = larger(stall->start, interval > 1 ? (int64_t)(MICRO / (interval - 1)) + 1 : (int64_t)MICRO);
     stall->out_of_step = false;
     stall->run = 0;
     stall->before = 0;
     begin_span(stall, tick);
 }
 
-/* In the first span since it stood: v² <= start² + 2·a·k after k steps. */
+/* The square of the speed that it may reach from `from` within so many steps: v² = from² + 2·a·k. */
+static int64_t square_after(const struct plant_stall *stall, int64_t from, int64_t speed, int64_t steps)
+{
+    return from * from + 2 * larger(limit_at(stall, from), limit_at(stall, speed)) * steps;
+}
+
+/* Look at the interval before a pulse: may it have stood in it, or gone so slowly that it follows anything? From `start` it may
+ * have come to this speed within a step: a motion ended, and the next one began. */
+static bool may_be_slow(const struct plant_stall *stall, uint64_t interval)
+{
+    if (interval >= MICRO || interval * stall->start >= MICRO)
+        return true;
+    int64_t speed = (int64_t)(MICRO / (interval + 1));
+    return !stall->out_of_step && speed * speed <= square_after(stall, stall->start, speed, 1);
+}
+
+/* In the first span since it was calm. */
 static bool starts_too_fast(const struct plant_stall *stall, int64_t speed)
 {
-    int64_t start = stall->start, limit = larger(limit_at(stall, start), limit_at(stall, speed));
-    return stall->before == 0 && speed * speed > start * start + 2 * limit * ((int64_t)stall->run + 1);
+    return stall->before == 0 && speed * speed > square_after(stall, stall->base, speed, (int64_t)stall->run + 1);
 }
 
 /* A span is over: did the speed change too fast since the one before? */
@@ -81,12 +97,13 @@ bool stall_follows(struct plant_stall *stall, uint64_t tick, bool forward)
     if (stall->points == 0)
         return true;
     uint64_t interval = stall->last == RKM04_NEVER ? MICRO : tick - stall->last;
-    bool slow = stall->last == RKM04_NEVER || forward != stall->forward || interval >= MICRO ||
-                interval * stall->start >= MICRO;
+    if (forward != stall->forward)
+        interval = MICRO; /* however short it was: it stood in between */
+    bool slow = may_be_slow(stall, interval);
     stall->last = tick;
     stall->forward = forward;
     if (slow) {
-        calm(stall, tick);
+        calm(stall, tick, interval);
         return true;
     }
     stall->run++;
