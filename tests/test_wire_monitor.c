@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../src/sim/wire_words.h"
 #include "rig.h"
 #include "wire_rig.h"
 
@@ -79,6 +80,33 @@ START_TEST(the_longest_message_is_told_whole)
     ck_assert_uint_eq(wire_rig.message[0].length, sizeof text);
     ck_assert_uint_eq(wire_rig.message[0].raw_length, wire_rig.message[0].raw_total);
     ck_assert_ptr_null(wire_rig.message[0].dropped);
+}
+END_TEST
+
+/* With plain there is no check sum: what noise has made of a message is told as far as it goes. */
+START_TEST(damaged_messages_are_told_in_characters_that_can_be_seen)
+{
+    uint32_t random = 54321;
+    for (unsigned round = 0; round < 20000; round++) {
+        uint8_t message[24];
+        char words[200];
+        size_t length = 1 + round % sizeof message;
+        for (size_t i = 0; i < length; i++) {
+            random = random * 1664525u + 1013904223u;
+            message[i] = (uint8_t)(random >> 24 & (random >> 16 & 1 ? 0xFFu : 0x0Fu));
+        }
+        message[0] = round % 9 == 8 ? 255 : (uint8_t)(round % 9);
+        if (length > 1 && (round & 16) != 0)
+            message[1] = (uint8_t)('0' + (round >> 5) % 5);
+        struct wire_text text = {.text = words, .room = round % 7 == 0 ? 10 : sizeof words};
+        wire_words_message(&text, message, length, round % 2 == 0);
+        wire_words_refusal(&text, message, length);
+        size_t seen = 0;
+        while (seen < text.length && words[seen] >= ' ' && words[seen] <= '~')
+            seen++;
+        if (seen == 0 || seen != text.length || text.length > text.room)
+            ck_abort_msg("round %u: character %zu of %zu", round, seen, text.length);
+    }
 }
 END_TEST
 
@@ -239,11 +267,13 @@ START_TEST(P10_a_request_during_an_answer_collides_with_it_and_both_are_told)
     wire_rig_settle();
     wire_rig_says("master > 3: 1 Version");
     unsigned damaged = wire_rig.lines - 1;
-    ck_assert_str_eq(wire_rig.line[damaged], "master+3: dropped: wrong FCS; lost to framing errors: 4 bytes; collision: master+3");
+    ck_assert_str_eq(wire_rig.line[damaged],
+                     "master+3: dropped: wrong FCS; lost to framing errors: 4 bytes; collision: master+3");
     for (unsigned at = 1; at < damaged; at++)
         ck_assert_ptr_nonnull(strstr(wire_rig.line[at], ": dropped: framing error"));
     wire_rig_ask(3, "\1", 1); /* its flag ends what the collision has left of the request */
-    ck_assert_str_eq(wire_rig.line[damaged + 1], "master+3: dropped: too short; lost to framing errors: 3 bytes; collision: master+3");
+    ck_assert_str_eq(wire_rig.line[damaged + 1],
+                     "master+3: dropped: too short; lost to framing errors: 3 bytes; collision: master+3");
     ck_assert_str_eq(wire_rig.line[damaged + 2], "master > 3: 1 Version");
 }
 END_TEST
@@ -399,6 +429,7 @@ static Suite *wire_monitor_suite(void)
     tcase_add_test(words, bytes_behind_a_request_are_told_too);
     tcase_add_test(words, U7_a_message_has_the_times_of_its_first_and_last_bit);
     tcase_add_test(words, the_longest_message_is_told_whole);
+    tcase_add_test(words, damaged_messages_are_told_in_characters_that_can_be_seen);
     suite_add_tcase(suite, words);
     TCase *dropped = tcase_create("dropped");
     tcase_add_test(dropped, L1_frames_that_are_none_are_dropped_with_the_reason);
