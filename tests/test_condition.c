@@ -207,7 +207,8 @@ START_TEST(the_text_names_what_is_wanted_and_what_there_is)
     expect_text("{\"do\": {\"3\": 1}}", "DO 03 == 1 (is 0)");
     expect_text("{\"motor\": 2, \"state\": \"moving\", \"led\": \"on\"}",
                 "motor 2 state == moving (is idle) and motor 2 led == on (is off)");
-    expect_text("{\"any\": [{\"t\": \"2.5s\"}, {\"idle\": false}]}", "t >= 2.500000 s (is 0.010000 s) or idle == false (is true)");
+    expect_text("{\"any\": [{\"t\": \"2.5s\"}, {\"idle\": false}]}", 
+                "t >= 2.500000 s (is 0.010000 s) or idle == false (is true)");
     expect_text("{\"message\": {\"number\": 2, \"from\": \"master\", \"motor\": 1}}",
                 "a message 2 for motor 1 from the master (none has passed)");
 }

@@ -328,7 +328,8 @@ START_TEST(C4_the_latency_of_a_change_of_speed_can_be_set)
 {
     expect_pass("baud: 0\nspeed_change_latency: 1500ms\nversion_text: mine\nsteps:\n"
                 "  - {message: '01', answer: '01 04 \"mine\"'}\n  - set: 'V100 F2000 R'\n  - {set: 'V1000', at: 1s}\n"
-                "  - {stays: {motor: 1, position: {\"<=\": 250}}, for: 1.5s}\n  - {wait: {motor: 1, position: 1000}, within: 2s}\n");
+                "  - {stays: {motor: 1, position: {\"<=\": 250}}, for: 1.5s}\n"
+                "  - {wait: {motor: 1, position: 1000}, within: 2s}\n");
 }
 END_TEST
 

@@ -59,7 +59,8 @@ void test_report_line(FILE *out, const struct test_case *test)
         print_failure(out, test);
         return;
     }
-    fprintf(out, "%s %s", test->outcome == TEST_PASSED ? "pass" : test->outcome == TEST_BROKEN ? "broken" : "not run", test->file);
+    const char *words = test->outcome == TEST_PASSED ? "pass" : test->outcome == TEST_BROKEN ? "broken" : "not run";
+    fprintf(out, "%s %s", words, test->file);
     print_name(out, test);
     if (test->outcome == TEST_PASSED)
         fprintf(out, " (" TIME_FORMAT ")", TIME_OF(test->result.tick));

@@ -131,7 +131,8 @@ static bool do_pulses(struct running *running, const struct scenario_step *step)
         within_bounds(&pulses->back, back))
         return true;
     return running_failed(running, step, sim_now(running->sim), bounds_text(pulses),
-                          running_text("%" PRId64 " pulses, %" PRId64 " forward, %" PRId64 " back", forward + back, forward, back));
+                          running_text("%" PRId64 " pulses, %" PRId64 " forward, %" PRId64 " back", forward + back, forward,
+                                       back));
 }
 
 /* ---- Commands ------------------------------------------------------------------------------------------------------- */

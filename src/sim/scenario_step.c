@@ -11,8 +11,8 @@
 
 typedef bool step_reader(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step);
 
-static step_reader read_set, read_program, read_message, read_bytes, read_condition, read_stays, read_advance, read_pulses, read_di,
-    read_power, read_reset, read_fault, read_clear, read_call;
+static step_reader read_set, read_program, read_message, read_bytes, read_condition, read_stays, read_advance, read_pulses,
+    read_di, read_power, read_reset, read_fault, read_clear, read_call;
 
 /* Each gets the node of the step, not of the value. */
 static const struct {

@@ -8,8 +8,14 @@ examples=$(cd "$(dirname "$0")/../../examples" && pwd)
 scenarios() {
     cd "$folder" || exit 1
     printf 'name: Five steps\nsteps:\n  - set: "F5 R"\n  - wait: {motor: 1, position: 5}\n' >good.yaml
-    printf 'name: A <sixth> & "last"\nsteps:\n  - set: "F5 R"\n  - label: one more\n    wait: {motor: 1, position: 6}\n    within: 1s\n' \
-        >bad.yaml
+    cat >bad.yaml <<'YAML'
+name: A <sixth> & "last"
+steps:
+  - set: "F5 R"
+  - label: one more
+    wait: {motor: 1, position: 6}
+    within: 1s
+YAML
     printf 'steps:\n  - wait: {motor: 1, position: 6}\n    withn: 1s\n' >wrong.yaml
 }
 
@@ -41,8 +47,9 @@ test_a_failure_is_one_line_with_what_was_expected_seen_and_when() {
     exits 3 "$RKM04" test good.yaml bad.yaml
     same 3 "$(wc -l <<<"$said")" "lines"
     same "pass good.yaml: Five steps (0.049423 s)" "$(sed -n 1p <<<"$said")" "the first line"
-    same 'FAIL bad.yaml:4:5: A <sixth> & "last": one more: expected motor 1 position == 6 within 1.000000 s; seen motor 1 position 5; at tick 1011980 (1.011980 s); record bad.record' \
-        "$(sed -n 2p <<<"$said")" "the second line"
+    local line='FAIL bad.yaml:4:5: A <sixth> & "last": one more: expected motor 1 position == 6 within 1.000000 s; '
+    line+='seen motor 1 position 5; at tick 1011980 (1.011980 s); record bad.record'
+    same "$line" "$(sed -n 2p <<<"$said")" "the second line"
     same "2 scenarios: 1 passed, 1 failed" "$(sed -n 3p <<<"$said")" "the third line"
 }
 
@@ -131,8 +138,9 @@ test_junit_is_well_formed_whatever_stands_in_the_names() {
     lines=$(read_junit report.xml) || fail "no well-formed XML: $lines"
     same "4 2 0 0" "$(sed -n 1p <<<"$lines")" "the counts"
     same "Five steps|good.yaml|-" "$(sed -n 2p <<<"$lines")" "the first case"
-    same 'A <sixth> & "last"|bad.yaml|expected motor 1 position == 6 within 1.000000 s; seen motor 1 position 5; at tick 1011980' \
-        "$(sed -n 3p <<<"$lines")" "the second case"
+    local case='A <sixth> & "last"|bad.yaml|expected motor 1 position == 6 within 1.000000 s; '
+    case+='seen motor 1 position 5; at tick 1011980'
+    same "$case" "$(sed -n 3p <<<"$lines")" "the second case"
     holds "$lines" ' ]]> é ' "the third case"
     holds "$lines" 'expected the answer 07 "<&>"; seen the answer 01' "the third case"
     holds "$lines" "na�me.yaml" "the fourth case"
