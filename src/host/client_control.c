@@ -86,6 +86,24 @@ enum exit_status client_job_done(const struct client_job *job, json_t *result)
     return STATUS_WELL;
 }
 
+void client_job_print_members(const json_t *object, const char *const *but)
+{
+    const char *name;
+    json_t *value;
+    json_object_foreach((json_t *)object, name, value) {
+        bool hidden = json_is_null(value);
+        for (size_t i = 0; but[i] != NULL; i++)
+            hidden = hidden || strcmp(name, but[i]) == 0;
+        if (hidden)
+            continue;
+        printf("  %s=", name);
+        if (json_is_string(value))
+            fputs(json_string_value(value), stdout);
+        else
+            json_dumpf(value, stdout, JSON_ENCODE_ANY | JSON_COMPACT);
+    }
+}
+
 /* A value as it is meant: 5, 0.25, true, false, or text. */
 static json_t *read_value(const char *text)
 {
@@ -256,7 +274,7 @@ static const struct command {
     {"power", 1, 1, "on or off", TAKES_UNIT, power},
     {"switch", 1, 2, "an address, and reset if it is to be read at once", TAKES_UNIT, set_switch},
     {"fault", 0, SIZE_MAX, "inject KIND NAME=VALUE..., clear [ID], or nothing to list them", TAKES_UNIT, client_control_fault},
-    {"plant", 0, 2, "set FILE, none, or nothing to show it", TAKES_UNIT, client_control_plant},
+    {"plant", 0, 4, "set FILE, none, motor=N..., or nothing to show it", TAKES_UNIT, client_control_plant},
     {"clock", 0, 1, "real, xN, max, stepped, or nothing to show it", 0, clock_of_line},
     {"trace", 1, 2, "start FILE or stop [NUMBER]", 0, client_control_trace},
     {"call", 1, SIZE_MAX, "a METHOD and its parameters, JSON or NAME=VALUE...", TAKES_UNIT, call_method},

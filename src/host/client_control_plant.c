@@ -9,16 +9,33 @@
 
 /* ---- Plant ------------------------------------------------------------------------------------------------------------ */
 
+/* Parts of the plant, a line each: "motor 1  position=…". `key`: the member that says which. */
+static void print_parts(const json_t *parts, const char *key)
+{
+    const char *const shown[] = {key, NULL};
+    size_t i;
+    json_t *part;
+    json_array_foreach((json_t *)parts, i, part) {
+        printf("%s %d", key, (int)json_integer_value(json_object_get(part, key)));
+        client_job_print_members(part, shown);
+        putchar('\n');
+    }
+}
+
 static enum exit_status show_plant(struct client_job *job)
 {
     json_t *result;
     enum exit_status status = client_job_call(job, "plant.get", NULL, true, &result);
-    if (status != STATUS_WELL || job->json)
-        return status == STATUS_WELL ? client_print_json(result) : status;
-    json_dumpf(result, stdout, JSON_INDENT(2) | JSON_ENCODE_ANY);
-    putchar('\n');
-    json_decref(result);
-    return STATUS_WELL;
+    if (status != STATUS_WELL)
+        return status;
+    const json_t *plant = json_object_get(result, "plant");
+    if (!job->json && !json_is_object(plant))
+        printf("no plant\n");
+    if (!job->json) {
+        print_parts(json_object_get(plant, "motors"), "motor");
+        print_parts(json_object_get(plant, "switches"), "input");
+    }
+    return client_job_done(job, result);
 }
 
 /* The file is read here: the emulator may run in another folder, or in a container. */
@@ -29,10 +46,20 @@ static json_t *read_plant(const char *path)
     json_t *params = NULL;
     if (wrong != NULL)
         warnx("cannot read %s: %s", path, wrong);
-    else if ((params = json_pack("{s:s, s:s%}", "name", path, "text", text.text, text.length)) == NULL)
+    else if ((params = json_pack("{s:s%}", "plant", text.text, text.length)) == NULL)
         warnx("%s: expected a text in UTF-8", path);
     program_text_free(&text);
     return params;
+}
+
+/* motor=N and what a hand does there: position=, jammed=, missing_lead=. */
+static json_t *read_hand(const struct client_job *job)
+{
+    json_t *params = json_object();
+    if (client_job_members(params, job->words, job->count))
+        return params;
+    json_decref(params);
+    return NULL;
 }
 
 enum exit_status client_control_plant(struct client_job *job)
@@ -40,14 +67,17 @@ enum exit_status client_control_plant(struct client_job *job)
     json_t *result, *params;
     if (job->count == 0)
         return show_plant(job);
-    bool none = strcmp(job->words[0], "none") == 0;
-    if (!none && strcmp(job->words[0], "set") != 0)
-        return client_usage("plant: expected set FILE, none, or nothing to show it, found '%s'", job->words[0]);
-    if (none ? job->count > 1 : job->count < 2)
-        return client_usage(none ? "plant none takes no argument" : "plant set: expected a FILE");
-    params = none ? json_pack("{s:n}", "text") : read_plant(job->words[1]);
+    bool set = strcmp(job->words[0], "set") == 0, none = strcmp(job->words[0], "none") == 0;
+    if (!set && !none && strchr(job->words[0], '=') == NULL)
+        return client_usage("plant: expected set FILE, none, motor=N and position=, jammed= or missing_lead=, or nothing to show "
+                            "it, found '%s'", job->words[0]);
+    if ((set && job->count != 2) || (none && job->count != 1))
+        return client_usage(set ? "plant set: expected one FILE" : "plant none takes no argument");
+    if ((set || none) && job->unit != NULL)
+        return client_usage("plant %s concerns all units: --unit has no meaning there", job->words[0]);
+    params = set ? read_plant(job->words[1]) : none ? json_pack("{s:n}", "plant") : read_hand(job);
     if (params == NULL)
-        return STATUS_FAILURE;
+        return set ? STATUS_FAILURE : STATUS_USAGE;
     enum exit_status status = client_job_call(job, "plant.set", params, true, &result);
     return status == STATUS_WELL ? client_job_done(job, result) : status;
 }
@@ -57,19 +87,10 @@ enum exit_status client_control_plant(struct client_job *job)
 /* One fault: its number and kind, then whatever else there is. */
 static void print_fault(const json_t *fault)
 {
-    const char *name;
-    json_t *value;
-    printf("%" JSON_INTEGER_FORMAT "  %s", json_integer_value(json_object_get(fault, "id")),
-           json_string_value(json_object_get(fault, "kind")));
-    json_object_foreach((json_t *)fault, name, value) {
-        if (strcmp(name, "id") == 0 || strcmp(name, "kind") == 0 || json_is_null(value))
-            continue;
-        printf("  %s=", name);
-        if (json_is_string(value))
-            fputs(json_string_value(value), stdout);
-        else
-            json_dumpf(value, stdout, JSON_ENCODE_ANY | JSON_COMPACT);
-    }
+    static const char *const shown[] = {"id", "kind", NULL};
+    const char *kind = json_string_value(json_object_get(fault, "kind"));
+    printf("%" JSON_INTEGER_FORMAT "  %s", json_integer_value(json_object_get(fault, "id")), kind != NULL ? kind : "-");
+    client_job_print_members(fault, shown);
     putchar('\n');
 }
 

@@ -111,29 +111,9 @@ struct listening {
     uint64_t left; /* events to show; 0: done */
 };
 
-/* Members that a line has not shown yet, as NAME=VALUE. */
-static void print_others(const json_t *event)
-{
-    static const char *const shown[] = {"t_us", "unit", "motor", "kind", "value", "subscription"};
-    const char *name;
-    json_t *value;
-    json_object_foreach((json_t *)event, name, value) {
-        bool known = json_is_null(value);
-        for (size_t i = 0; i < sizeof shown / sizeof *shown; i++)
-            known = known || strcmp(name, shown[i]) == 0;
-        if (known)
-            continue;
-        if (json_is_string(value)) {
-            printf("  %s=%s", name, json_string_value(value));
-        } else {
-            printf("  %s=", name);
-            json_dumpf(value, stdout, JSON_ENCODE_ANY | JSON_COMPACT);
-        }
-    }
-}
-
 static void print_event(const json_t *event)
 {
+    static const char *const shown[] = {"t_us", "unit", "motor", "kind", "value", "subscription", NULL};
     const char *unit = json_string_value(json_object_get(event, "unit")), *kind = json_string_value(json_object_get(event, "kind"));
     const json_t *motor = json_object_get(event, "motor"), *value = json_object_get(event, "value");
     print_time(json_integer_value(json_object_get(event, "t_us")));
@@ -146,7 +126,7 @@ static void print_event(const json_t *event)
         printf(" %s", json_string_value(value));
     else if (json_is_integer(value))
         printf(" %" JSON_INTEGER_FORMAT, json_integer_value(value));
-    print_others(event);
+    client_job_print_members(event, shown);
     putchar('\n');
 }
 
@@ -214,9 +194,11 @@ enum exit_status client_control_events(struct client_job *job)
     job->rpc.context = &listening;
     setvbuf(stdout, NULL, _IOLBF, 0);
     enum exit_status status = client_job_call(job, "subscribe", params, true, &result);
+    json_int_t t_us = json_integer_value(json_object_get(result, "t_us"));
     json_decref(result);
     if (status != STATUS_WELL)
         return status;
+    fprintf(stderr, "listening from %" PRId64 ".%06d s\n", (int64_t)(t_us / 1000000), (int)(t_us % 1000000)); /* for scripts */
     if (job->limit != NULL && !set_limit(job))
         return STATUS_FAILURE;
     enum client_rpc_outcome outcome = CLIENT_RPC_NOTHING;

@@ -45,6 +45,9 @@ enum exit_status client_job_done(const struct client_job *job, json_t *result);
  * Returns false if a word is not of that form (reported). */
 bool client_job_members(json_t *params, const char *const *words, size_t count);
 
+/* Print the members of an object that are there and not in the list `but`, which ends with NULL, as "  NAME=VALUE" each. */
+void client_job_print_members(const json_t *object, const char *const *but);
+
 /* Parameters with `file`, the place of a file as seen from here: the emulator may run in another folder. Returns a new reference,
  * or NULL (reported). */
 json_t *client_job_file(const char *path);

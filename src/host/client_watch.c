@@ -252,8 +252,6 @@ static enum exit_status show_live(struct watching *w)
     struct sigaction action = {.sa_handler = on_signal};
     enum client_rpc_outcome outcome = CLIENT_RPC_NOTHING;
     json_t *json = NULL;
-    if (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO))
-        return client_usage("watch: expected a terminal on standard input and output; --once prints one picture as text");
     for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
         sigaction(signals[i], &action, NULL);
     if (!open_screen(w))
@@ -277,10 +275,12 @@ enum exit_status client_watch(struct client_job *job)
     struct watching w = {.job = job};
     setlocale(LC_CTYPE, "");
     w.plain = strcmp(nl_langinfo(CODESET), "UTF-8") != 0;
-    enum exit_status status = job->count > 0 ? client_usage("watch takes no argument, found '%s'", job->words[0])
-                                             : find_units(&w);
+    bool live = !job->once && !job->json;
+    if (live && (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO)))
+        return client_usage("watch: expected a terminal on standard input and output; --once prints one picture as text");
+    enum exit_status status = find_units(&w);
     if (status == STATUS_WELL)
-        status = job->once || job->json ? show_once(&w) : show_live(&w);
+        status = live ? show_live(&w) : show_once(&w);
     json_decref(w.units);
     json_decref(w.state);
     return status;

@@ -59,7 +59,7 @@ static const char arguments[] =
     "version|store|position|command|table|progress\nset TEXT\nsend FILE\nraw HEX\n"
     "state|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
     "snapshot|restore NAME|file=PATH\npower on|off\nswitch NODE [reset]\nclock [CLOCK]\nfault [inject KIND|clear] [...]\n"
-    "plant [set FILE|none]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]";
+    "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]";
 
 static const char doc[] =
     "Send one request to an RKM04, real or virtual, and show the answer; or look into an emulator, `rkm04 serve', and drive what is "
@@ -89,7 +89,7 @@ static const char doc[] =
     "  power        the power switch\n"
     "  switch       the address switch S1\n"
     "  fault        list faults on demand; inject KIND NAME=VALUE...; clear [ID]\n"
-    "  plant        show what the motors move; set FILE; none\n"
+    "  plant        show what the motors move; set FILE; none; motor=N jammed=true ...\n"
     "  clock        show or set it: real, xN, max, stepped\n"
     "  trace        start FILE (.vcd, .csv, .jsonl, .log, .pcapng), stop [NUMBER]\n"
     "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"
