@@ -58,6 +58,29 @@ test_power_of_the_units_is_told() {
     soon "the power is in the log" grep -q -- '-- unit 3: power off$' "$folder/bus.log"
 }
 
+test_faults_that_have_acted_explain_what_is_seen() {
+    serve bus --node 3 --wire "$folder/bus.log"
+    exits 0 "$RKMCTL" --control "$folder/bus.control" fault inject wrong_fcs count=1
+    exits 3 ctl bus -n 3 --timeout 200 position
+    told >"$folder/told"
+    holds "$(<"$folder/told")" "
+-- fault 1: wrong_fcs: " "the log, before the answer"
+    same "3               dropped: wrong FCS" "$(tail -n 1 "$folder/told")" "the answer"
+}
+
+test_K1_a_replay_writes_the_same_files() {
+    serve bus --node 3,5 --record "$folder/bus.rec" --wire "$folder/bus.log" --wire "$folder/bus.pcapng"
+    exits 0 ctl bus -n 3 set 'F500 R'
+    exits 1 ctl bus -n 5 set 'F500 x'
+    exits 0 ctl bus -n 3 position
+    kill "$started"
+    status_of "$started"
+    exits 0 "$RKM04" replay "$folder/bus.rec" --wire "$folder/again.log" --wire "$folder/again.pcapng"
+    cmp "$folder/bus.log" "$folder/again.log" || fail "logs differ"
+    cmp "$folder/bus.pcapng" "$folder/again.pcapng" || fail "capture files differ"
+    same 6 "$(told | wc -l)" "frames"
+}
+
 test_the_framing_plain_is_told_too() {
     serve bus --framing plain --node 2 --wire "$folder/bus.log"
     exec 3<>"$folder/bus"
