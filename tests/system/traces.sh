@@ -1,5 +1,5 @@
 #!/bin/bash
-# rkm04 exec --trace FILE.vcd, .csv, .jsonl: one run in every format says the same, read by programs that others wrote: GTKWave's
+# --trace FILE.vcd, .csv, .jsonl of rkm04 exec and rkm04 serve: one run in every format says the same, read by programs that others wrote: GTKWave's
 # vcd2fst and fst2vcd, sigrok-cli (the library of PulseView), Python's JSON.
 
 . "$(dirname "$0")/lib.sh"
@@ -30,7 +30,8 @@ changes_of() {
         $1 == "$end" { begun = 1 }
         /^#/ { tick = substr($1, 2) }
         begun && /^[01]/ { print tick, name[substr($1, 2)], substr($1, 1, 1) }
-        begun && /^r/ { print tick, name[$2], substr($1, 2) }' <(sed '1,/^\$enddefinitions/ { /^\$var/!d }' "$1") | sort -k1n,1 -k2,2
+        begun && /^r/ { print tick, name[$2], substr($1, 2) }' \
+        <(sed '1,/^\$enddefinitions/ { /^\$var/!d }' "$1") | sort -k1n,1 -k2,2
 }
 
 # equal WANTED GOT WHAT: two files.
@@ -143,6 +144,38 @@ EOF
     equal run.csv got "the traces"
     holds "$(grep '"fault"' run.jsonl)" '"motor":2,"value":"motion"}' "the fault"
     same '{"t_us":2000001,"kind":"end"}' "$(tail -n 1 run.jsonl)" "the end"
+}
+
+# control ARGUMENTS...: something done to the emulator behind $folder/bus.
+control() {
+    exits 0 "$RKMCTL" --control "$folder/bus.control" "$@"
+}
+
+test_a_line_with_several_units_is_in_one_trace() {
+    serve bus --node 1,3 --clock stepped --trace "$folder/run.vcd" --trace "$folder/run.csv" --trace "$folder/run.jsonl"
+    ctl bus -n 1 set 'S1000 V1000 F30 R' >"$folder/ctl.out" || fail "unit 1 does not answer"
+    ctl bus -n 3 -m 2 set 'S1000 V1000 B20 R T01' >"$folder/ctl.out" || fail "unit 3 does not answer"
+    control advance 50ms
+    control trace start "$folder/later.csv"
+    control --unit 3 di 2=1
+    control --unit 3 power off
+    control advance 50ms
+    control trace stop
+    control shutdown
+    status_of "$started"
+    same 0 "$status" "exit status"
+    cd "$folder" || exit 1
+    same 20 "$(grep -c ',3.m2,step,' run.csv)" "pulses of unit 3"
+    same 24000,3.m2,step,-20 "$(grep ,3.m2,step, run.csv | tail -n 1)" "the last pulse of unit 3"
+    same $'50000,3.unit,di,2\n50000,3.unit,power,off' "$(tail -n 2 run.csv)" "the end"
+    printf '%s\n' t_us,source,event,value 50000,1.m1,position,30 50000,1.m1,dir,1 50000,3.unit,do,1 50000,3.m2,position,-20 \
+        50000,3.unit,di,2 50000,3.unit,power,off >wanted
+    equal wanted later.csv "a trace that begins later"
+    vcd2fst run.vcd run.fst >tool.out 2>&1 && fst2vcd run.fst | changes_of /dev/stdin >changes
+    same 30 "$(grep -c 'u1_m1_step 1' changes)" "pulses of unit 1"
+    same $'50000 u3_do01 0\n50000 u3_power 0' "$(grep -e u3_do01 -e u3_power changes | tail -n 2)" "the power of unit 3"
+    same 2 "$(grep -c '"kind":"message".*"value":2,"from":\["master"\]' run.jsonl)" "messages of the master"
+    holds "$(tail -n 1 run.jsonl)" '"kind":"end"' "the last line"
 }
 
 test_K1_two_runs_give_the_same_traces_to_the_byte() {
