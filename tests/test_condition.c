@@ -197,6 +197,22 @@ START_TEST(power_is_looked_at)
 }
 END_TEST
 
+START_TEST(a_message_can_be_waited_for_when_its_last_byte_has_passed)
+{
+    static const uint8_t request[] = {0x7E, 3, 0, 4, '1', 0x79, 0x9E, 0x7E}, wrong[] = {0x7E, 3, 0, 4, '1', 0, 0, 0x7E};
+    sim_take(sim, request, sizeof request, 0);
+    expect_at("{\"message\": {\"number\": 4, \"motor\": 1, \"from\": \"master\"}}", (8 * 3125 + 5) / 6);
+    wait_for("{\"message\": {\"number\": 5, \"from\": \"unit\"}}");
+    ck_assert(!condition_run(condition, SECOND));
+    sim_take(sim, request, sizeof request, SECOND);
+    expect_at("{\"message\": {\"from\": \"3\"}}", SECOND + (8 * 3125 + 521 * 6 + 19 * 3125 + 5) / 6);
+    wait_for("{\"message\": {\"from\": \"3\"}}");
+    ck_assert(!condition_run(condition, 2 * SECOND)); /* it is over */
+    sim_take(sim, wrong, sizeof wrong, 2 * SECOND);
+    expect_at("{\"message\": {\"dropped\": true}}", 2 * SECOND + (8 * 3125 + 5) / 6);
+}
+END_TEST
+
 /* ---- What it says --------------------------------------------------------------------------------------------------- */
 
 START_TEST(the_text_names_what_is_wanted_and_what_there_is)
@@ -211,6 +227,17 @@ START_TEST(the_text_names_what_is_wanted_and_what_there_is)
                 "t >= 2.500000 s (is 0.010000 s) or idle == false (is true)");
     expect_text("{\"message\": {\"number\": 2, \"from\": \"master\", \"motor\": 1}}",
                 "a message 2 for motor 1 from the master (none has passed)");
+}
+END_TEST
+
+START_TEST(what_is_wanted_and_what_is_found_can_be_told_apart)
+{
+    wait_for("{\"motor\": 1, \"position\": {\">=\": 1, \"<\": 9}, \"any\": [{\"do\": {\"01\": 1}}, {\"di\": {\"01\": 1}}]}");
+    char *wanted = condition_wanted(condition), *found = condition_found(condition);
+    ck_assert_str_eq(wanted, "motor 1 position >= 1 and motor 1 position < 9 and (DO 01 == 1 or DI 01 == 1)");
+    ck_assert_str_eq(found, "motor 1 position 0, DO 01 0, DI 01 0");
+    free(wanted);
+    free(found);
 }
 END_TEST
 
@@ -287,6 +314,7 @@ static Suite *condition_suite(void)
     TCase *says = tcase_create("says");
     tcase_add_checked_fixture(says, setup, teardown);
     tcase_add_test(says, the_text_names_what_is_wanted_and_what_there_is);
+    tcase_add_test(says, what_is_wanted_and_what_is_found_can_be_told_apart);
     tcase_add_test(says, wrong_conditions_are_refused_with_what_was_expected);
     tcase_add_test(says, a_condition_within_conditions_has_an_end);
     suite_add_tcase(suite, says);
@@ -294,6 +322,7 @@ static Suite *condition_suite(void)
     TCase *units = tcase_create("units");
     tcase_add_checked_fixture(units, setup_two, teardown);
     tcase_add_test(units, power_is_looked_at);
+    tcase_add_test(units, a_message_can_be_waited_for_when_its_last_byte_has_passed);
     tcase_add_test(units, with_several_units_the_text_names_them);
     tcase_add_test(units, with_several_units_one_has_to_be_named);
     suite_add_tcase(suite, units);

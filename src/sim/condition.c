@@ -322,6 +322,13 @@ static void print_term(FILE *out, const struct term *term, struct sim *sim, enum
     fputc(')', out);
 }
 
+/* Do both ask for the same number, as in {">=": 1, "<": 9}? */
+static bool same_subject(const struct term *left, const struct term *right)
+{
+    return left->kind == right->kind && left->unit == right->unit && left->motor == right->motor &&
+           left->number == right->number && left->subs == 0 && right->subs == 0 && left->kind != TERM_MESSAGE;
+}
+
 /* What is found is a list; what is wanted has its structure. */
 static void print(FILE *out, const struct term *term, struct sim *sim, enum part part, bool inside)
 {
@@ -334,6 +341,8 @@ static void print(FILE *out, const struct term *term, struct sim *sim, enum part
     if (brackets)
         fputc('(', out);
     for (size_t i = 0; i < term->subs; i++) {
+        if (part == PART_FOUND && i > 0 && same_subject(&term->sub[i - 1], &term->sub[i]))
+            continue;
         if (i > 0)
             fputs(between, out);
         print(out, &term->sub[i], sim, part, inside || term->subs > 1);
