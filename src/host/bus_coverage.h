@@ -5,8 +5,8 @@
 #include "coverage.h"
 #include "wire_monitor.h"
 
-/* A message has passed (WATCH_MESSAGE). Requests count if a unit may obey them, answers if they are whole: what a collision leaves
- * of one is dropped, where the framing can tell. */
+/* A message has passed (WATCH_MESSAGE). Requests count if a unit may obey them, answers if they are whole: what a collision
+ * leaves of one is dropped, where the framing can tell. */
 void bus_coverage_message(struct coverage *coverage, const struct wire_message *message);
 
 #endif

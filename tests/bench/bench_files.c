@@ -1,12 +1,12 @@
-/* bench_files: what the files cost that `rkm04 serve` and `rkm04 exec` write, --trace and --wire.
+/* bench_files: what the files cost that `rkm04 serve` writes, --trace and --wire.
  *
  *     bench_files [SECONDS [FORMAT…]]
  *
- * The work: SECONDS (60) of virtual time of one unit whose four motors run at 16 000 steps/s while the master asks it for the four
- * positions without a pause, as fast as 19200 baud allow. FORMAT: none, log, pcapng, vcd, csv, jsonl; all of them if none is given.
- * Each is one JSON object a line: cpu_s, processor time of it all; times_real_time, how much faster than real time that is;
- * overhead, processor time of the file alone in parts of real time; mb, size of the file; messages and pulses in it all. The files
- * are in the folder TMPDIR (or /tmp) and are removed. */
+ * The work: SECONDS (60) of virtual time of one unit whose four motors run at 16 000 steps/s while the master asks it for the
+ * four positions without a pause, as fast as 19200 baud allow. FORMAT: none, log, pcapng, vcd, csv, jsonl; all of them if none
+ * is given. Each is one JSON object a line: cpu_s, processor time of it all; times_real_time, how much faster than real time
+ * that is; overhead, processor time of the file alone in parts of real time; mb, size of the file; messages and pulses in it
+ * all. The files are in the folder TMPDIR (or /tmp) and are removed. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
