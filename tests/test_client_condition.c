@@ -160,7 +160,8 @@ END_TEST
 
 START_TEST(json_is_taken_as_it_is)
 {
-    assert_means(" {\"motor\": 1, \"position\": {\">=\": 1, \"<\": 5}}", "3", "{\"motor\": 1, \"position\": {\">=\": 1, \"<\": 5}}");
+    static const char between[] = "{\"motor\": 1, \"position\": {\">=\": 1, \"<\": 5}}";
+    assert_means(between, "3", between);
     assert_refused("{\"motor\": 1", "JSON");
 }
 END_TEST

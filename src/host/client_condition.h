@@ -18,7 +18,8 @@
 
 #define CLIENT_CONDITION_WRONG_SIZE 256
 
-/* Read a condition. `unit`: the one that terms without a unit are about; NULL: not named. Returns a new reference, or NULL: then `wrong` says what was expected and what was found. */
+/* Read a condition. `unit`: the one that terms without a unit are about; NULL: not named. Returns a new reference, or NULL: then
+ * `wrong` says what was expected and what was found. */
 json_t *client_condition(const char *text, const char *unit, char wrong[CLIENT_CONDITION_WRONG_SIZE]);
 
 #endif

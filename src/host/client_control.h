@@ -5,7 +5,8 @@
 #include "client_job.h"
 
 #define CLIENT_CONTROL_NAMES \
-    "state, di, wait, advance, watch, events, snapshot, restore, reset, power, switch, fault, plant, clock, trace, call or shutdown"
+    "state, di, wait, advance, watch, events, snapshot, restore, reset, power, switch, fault, plant, clock, trace, call or " \
+    "shutdown"
 
 /* Is `name` one of them? */
 bool client_control_knows(const char *name);

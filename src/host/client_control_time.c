@@ -114,7 +114,8 @@ struct listening {
 static void print_event(const json_t *event)
 {
     static const char *const shown[] = {"t_us", "unit", "motor", "kind", "value", "subscription", NULL};
-    const char *unit = json_string_value(json_object_get(event, "unit")), *kind = json_string_value(json_object_get(event, "kind"));
+    const char *unit = json_string_value(json_object_get(event, "unit"));
+    const char *kind = json_string_value(json_object_get(event, "kind"));
     const json_t *motor = json_object_get(event, "motor"), *value = json_object_get(event, "value");
     print_time(json_integer_value(json_object_get(event, "t_us")));
     if (unit != NULL)

@@ -149,12 +149,13 @@ static enum exit_status ask(const struct asking *a, struct client *client, char 
 static enum exit_status run(const struct asking *a, struct client *client)
 {
     char motor = (char)('0' + a->request->motor);
-    struct client_send sender = {.client = client, .motor = motor, .message_max = a->request->message_max, .json = a->request->json};
+    const struct client_request *request = a->request;
+    struct client_send sender = {.client = client, .motor = motor, .message_max = request->message_max, .json = request->json};
     switch (a->command->operand) {
     case TEXT_OPERAND:
-        return client_send_text(&sender, a->request->words[0]);
+        return client_send_text(&sender, request->words[0]);
     case FILE_OPERAND:
-        return client_send_file(&sender, a->request->words[0]);
+        return client_send_file(&sender, request->words[0]);
     default:
         return ask(a, client, motor);
     }

@@ -255,7 +255,8 @@ enum client_rpc_outcome client_rpc_listen(struct client_rpc *rpc, int timeout_ms
     return take(rpc, timeout_ms, json, true);
 }
 
-enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms, json_t **json)
+enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms,
+                                        json_t **json)
 {
     *json = NULL;
     return client_rpc_send(rpc, method, params) ? client_rpc_receive(rpc, timeout_ms, json) : CLIENT_RPC_LOST;

@@ -44,7 +44,8 @@ bool client_rpc_send(struct client_rpc *rpc, const char *method, json_t *params)
 enum client_rpc_outcome client_rpc_receive(struct client_rpc *rpc, int timeout_ms, json_t **json);
 
 /* Both. */
-enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms, json_t **json);
+enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms,
+                                        json_t **json);
 
 /* Wait up to `timeout_ms` for at least one event, or the answer to the last request. With CLIENT_RPC_RESULT *json is NULL if only
  * events came. */

@@ -45,12 +45,13 @@ static const struct argp_option option_table[] = {
      "Its control socket (default: RKM04_CONTROL of the environment, else that of an `rkm04 serve' without --link)", 0},
     {"unit", 'u', "UNIT", 0, "The unit, as in 3 or, the second one with that address, 3-2; not needed where there is one", 0},
     {"line", KEY_LINE, "N", 0, "The line of an emulator with several, 0 to 255 (default 0)", 0},
-    {"limit", KEY_LIMIT, "TIME", 0, "How long to wait, advance or listen, in virtual time, as in 10s, 250ms or a number of us", 0},
+    {"limit", KEY_LIMIT, "TIME", 0,
+     "How long to wait, advance or listen, in virtual time, as in 10s, 250ms or a number of us", 0},
     {"once", KEY_ONCE, NULL, 0, "watch: print one picture as text", 0},
     {NULL, 0, NULL, 0, "Both:", 3},
     {"timeout", KEY_TIMEOUT, "MS", 0,
-     "How long to wait for an answer, 1 to 3600000 ms (default 1000; emulator: 10000, and for wait, advance and call without end)",
-     0},
+     "How long to wait for an answer, 1 to 3600000 ms (default 1000; emulator: 10000, and for wait, advance and call without "
+     "end)", 0},
     {"json", 'j', NULL, 0, "Print the answer as JSON", 0},
     {0},
 };
@@ -62,8 +63,8 @@ static const char arguments[] =
     "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]";
 
 static const char doc[] =
-    "Send one request to an RKM04, real or virtual, and show the answer; or look into an emulator, `rkm04 serve', and drive what is "
-    "around its units."
+    "Send one request to an RKM04, real or virtual, and show the answer; or look into an emulator, `rkm04 serve', and drive what "
+    "is around its units."
     "\v"
     "Commands to a unit, with --port:\n"
     "  version      the unit's version text\n"
@@ -95,8 +96,8 @@ static const char doc[] =
     "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"
     "  shutdown     end the emulator\n"
     "\n"
-    "Conditions: m1.position>=5000, m1.true<0, m1.steps>9, m1.state=idle, m1.idle, m1.led=blink, m1.fault!=none, idle, powered=1, "
-    "do3=1, di08=0, var80=1, message=4, master.message, unit.message, dropped, t>=2.5s; u3. in front: of unit 3. Several have to "
+    "Conditions: m1.position>=5000, m1.true<0, m1.steps>9, m1.state=idle, m1.idle, m1.led=blink, m1.fault!=none, idle, "
+    "powered=1, do3=1, di08=0, var80=1, message=4, master.message, unit.message, dropped, t>=2.5s; u3. in front: of unit 3. Several have to "
     "hold together, of those with `or' between them one is enough.\n"
     "\n"
     "Examples:\n"
@@ -109,8 +110,8 @@ static const char doc[] =
     "  rkmctl di 3=1 && rkmctl wait 'm1.position>=5000' --limit 10s\n"
     "  rkmctl -c bus.control -u 3 fault inject drop direction=to_master count=1\n"
     "\n"
-    "Exit status: 0 well; 1 failure (refused, flash not written, port or emulator cannot be reached); 2 wrong usage; 3 no answer, "
-    "or the condition did not hold, in time.";
+    "Exit status: 0 well; 1 failure (refused, flash not written, port or emulator cannot be reached); 2 wrong usage; 3 no "
+    "answer, or the condition did not hold, in time.";
 
 /* A decimal number low..high; anything else is a usage error. */
 static unsigned take_number(const char *what, const char *text, unsigned low, unsigned high)
