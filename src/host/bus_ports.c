@@ -230,10 +230,13 @@ static void on_readable(uv_poll_t *handle, int status, int events)
         bus->calls->presence(bus->context);
 }
 
+static void follow_adapter(struct bus *bus);
+
 void bus_ports_listen(struct bus *bus)
 {
     struct bus_ports *ports = &bus->ports;
     size_t most = bus_room(bus);
+    follow_adapter(bus);
     if (ports->reading && room(bus) == 0) {
         uv_poll_stop(&ports->readable);
         ports->reading = false;
@@ -314,17 +317,17 @@ static void net_settings(void *context, uint32_t baud, unsigned data_bits, char 
 static void net_break(void *context, bool on)
 {
     struct bus *bus = context;
-    bus_catch_up(bus);
-    sim_break(&bus->sim, on);
-    bus_catch_up(bus);
+    struct sim *sim = bus_sim(bus);
+    sim_break(sim, on);
+    bus_changed(bus);
 }
 
 static void net_purge(void *context)
 {
     struct bus *bus = context;
-    bus_catch_up(bus);
-    sim_purge(&bus->sim);
-    bus_catch_up(bus);
+    struct sim *sim = bus_sim(bus);
+    sim_purge(sim);
+    bus_changed(bus);
 }
 
 static const struct net_port_calls net_calls = {
@@ -398,6 +401,7 @@ bool bus_ports_open(struct bus *bus, uv_loop_t *loop, struct line_watch *watch)
     const struct serve_options *options = bus->options;
     struct bus_ports *ports = &bus->ports;
     ports->known = ports->net = line_settings_unit;
+    ports->watch = watch;
     if (!open_line(bus, loop, watch))
         return false;
     if (options->tcp && !(ports->tcp = open_net(bus, loop, options->tcp, NET_RAW)))
@@ -414,6 +418,7 @@ bool bus_ports_publish(struct bus *bus)
 
 void bus_ports_close(struct bus *bus)
 {
+    bus->ports.ended = true;
     link_path_release(&bus->ports.link);
     if (bus->ports.tcp)
         net_port_close(bus->ports.tcp);
@@ -421,8 +426,86 @@ void bus_ports_close(struct bus *bus)
         net_port_close(bus->ports.rfc2217);
 }
 
+/* ---- The adapter ---------------------------------------------------------------------------------------------------- */
+
+static void on_pty_closed(uv_handle_t *handle)
+{
+    struct bus *bus = handle->data;
+    bus->ports.closing = false;
+    follow_adapter(bus);
+}
+
+static void plug_network(struct bus_ports *ports, bool plugged)
+{
+    if (ports->tcp)
+        net_port_plug(ports->tcp, plugged);
+    if (ports->rfc2217)
+        net_port_plug(ports->rfc2217, plugged);
+}
+
+static void pull_out(struct bus *bus)
+{
+    struct bus_ports *ports = &bus->ports;
+    ports->out = true;
+    if (bus->options->pty) {
+        bus_log(bus, "the adapter is unplugged: %s and its link are gone", ports->line.path);
+        link_path_hide(&ports->link);
+        ports->closing = true;
+        ports->reading = false;
+        uv_close((uv_handle_t *)&ports->readable, on_pty_closed);
+        uint64_t dropped = ports->line.dropped;
+        line_close(&ports->line);
+        line_none(&ports->line);
+        ports->line.dropped = dropped;
+    } else {
+        bus_log(bus, "the adapter is unplugged%s", bus->options->port ? ": the device stays, and is silent" : "");
+    }
+    plug_network(ports, false);
+    bus->calls->presence(bus->context);
+}
+
+static bool make_pty(struct bus *bus)
+{
+    struct bus_ports *ports = &bus->ports;
+    uint64_t dropped = ports->line.dropped;
+    bool made = line_pty_open(&ports->line, ports->watch, on_news, bus);
+    ports->line.dropped = dropped;
+    if (made)
+        ports->reading = poll_fd(bus, ports->readable.loop, &ports->readable, ports->line.fd, on_readable);
+    return made && ports->reading && bus_ports_publish(bus);
+}
+
+static void put_in(struct bus *bus)
+{
+    struct bus_ports *ports = &bus->ports;
+    ports->out = false;
+    ports->known = ports->net = line_settings_unit;
+    plug_network(ports, true);
+    if (!bus->options->pty)
+        bus_log(bus, "the adapter is plugged in again");
+    else if (make_pty(bus))
+        bus_log(bus, "the adapter is plugged in again: %s, link %s", ports->line.path, ports->link.path);
+    else
+        bus->calls->failed(bus->context);
+}
+
+/* What the fault of the adapter has come to since the last look. It may have come and gone: then it is another pty. */
+static void follow_adapter(struct bus *bus)
+{
+    struct bus_ports *ports = &bus->ports;
+    if (ports->ended)
+        return;
+    if (ports->pulled) {
+        ports->pulled = false;
+        if (!ports->out)
+            pull_out(bus);
+    }
+    if (ports->out && !ports->unplugged && !ports->closing)
+        put_in(bus);
+}
+
 void bus_ports_plug(struct bus *bus, bool plugged)
 {
-    (void)bus;
-    (void)plugged;
+    bus->ports.pulled = bus->ports.pulled || !plugged;
+    bus->ports.unplugged = !plugged;
 }

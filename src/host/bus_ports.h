@@ -14,6 +14,7 @@ struct bus;
 
 struct bus_ports {
     struct line line;           /* the pty or device */
+    struct line_watch *watch;
     struct link_path link;      /* to the pty */
     uv_poll_t readable;
     bool reading;               /* it is being polled */
@@ -27,6 +28,11 @@ struct bus_ports {
     int lower_fd;               /* timer: when RTS may be off again */
     uv_poll_t lower;
     uint64_t sent_until;        /* ns at which the device will have sent all */
+
+    bool pulled, unplugged;     /* the adapter was pulled out since the last look; it is out now, if it is up to the fault */
+    bool out;                   /* what follows of that has been done */
+    bool closing;               /* `readable` is, of the pty that is gone */
+    bool ended;                 /* bus_ports_close() */
 };
 
 /* Open what the options ask for. Failures are reported. Returns false if it did not work. */
@@ -38,7 +44,7 @@ bool bus_ports_publish(struct bus *bus);
 void bus_ports_close(struct bus *bus);
 
 /* The adapter is pulled out: the pty goes away with its link, network clients are hung up; or put in again: a new pty under the
- * same link. A serial device stays. */
+ * same link. A serial device stays. Done in the next bus_ports_listen(). */
 void bus_ports_plug(struct bus *bus, bool plugged);
 
 /* How many clients are there; a device counts as none. */

@@ -165,6 +165,8 @@ static uint64_t next_wake(const struct bus *bus, uint64_t now)
         return now;
     if (wanted < byte)
         byte = wanted;
+    if (faults_next(&bus->sim) < byte)
+        byte = faults_next(&bus->sim); /* an adapter that is unplugged shows at once */
     if (byte != RKM04_NEVER) {
         when = virtual_clock_when(&bus->clock, byte);
         when = when > 0 ? when : now;

@@ -1,6 +1,7 @@
 #include "line.h"
 
 #include <errno.h>
+#include <sys/inotify.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -54,6 +55,8 @@ void line_close(struct line *line)
 {
     line_serial_restore(line);
     int *fds[] = {&line->slave, &line->fd};
+    if (line->watch && line->mark >= 0)
+        inotify_rm_watch(line->watch->fd, line->mark);
     for (struct line **at = line->watch ? &line->watch->lines : NULL; at && *at; at = &(*at)->next) {
         if (*at == line) {
             *at = line->next;

@@ -180,11 +180,17 @@ bool link_path_make(struct link_path *link, const char *target)
     return true;
 }
 
+void link_path_hide(struct link_path *link)
+{
+    if (link->target[0] && leads_to(link->path, link->target))
+        unlink(link->path);
+    link->target[0] = '\0';
+}
+
 void link_path_release(struct link_path *link)
 {
     if (link->lock < 0)
         return;
-    if (link->target[0] && leads_to(link->path, link->target))
-        unlink(link->path);
+    link_path_hide(link);
     unlock(link);
 }

@@ -21,6 +21,9 @@ bool link_path_claim(struct link_path *link, const char *path, unsigned number);
 /* Make the link to `target`, atomically. Failures are reported. Returns false if it did not work. */
 bool link_path_make(struct link_path *link, const char *target);
 
+/* Remove the link if it is still ours. The name stays claimed: link_path_make() makes it again. */
+void link_path_hide(struct link_path *link);
+
 /* Remove the link if it is still ours, and give the name free. */
 void link_path_release(struct link_path *link);
 

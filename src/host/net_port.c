@@ -453,6 +453,10 @@ static void accept_next(struct net_port *port)
         close_peer(peer);
         return;
     }
+    if (port->unplugged) {
+        close_peer(peer);
+        return;
+    }
     uv_tcp_nodelay(&peer->tcp, 1);
     uv_tcp_keepalive(&peer->tcp, 1, KEEPALIVE_S);
     name_peer(peer);
@@ -523,6 +527,16 @@ bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, 
         return true;
     net_port_close(port);
     return false;
+}
+
+void net_port_plug(struct net_port *port, bool plugged)
+{
+    port->unplugged = !plugged;
+    if (plugged)
+        return;
+    if (port->client)
+        detach(port);
+    port->to_line_count = 0;
 }
 
 void net_port_close(struct net_port *port)

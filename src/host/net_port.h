@@ -82,6 +82,7 @@ struct net_port {
     void *context;
     uv_tcp_t listener;
     bool open;
+    bool unplugged;          /* net_port_plug() */
     bool waiting;            /* a connection is to be accepted when another one has gone */
     bool moving;             /* in move() */
     bool reading;
@@ -115,6 +116,9 @@ void net_port_wake(struct net_port *port);
 /* Send to the client; one that has closed its own side only still gets what follows within a second. Bytes for nobody and bytes
  * that do not fit are dropped and counted: a line has no memory. Never blocks. Returns the number of dropped ones. */
 size_t net_port_send(struct net_port *port, const uint8_t *bytes, size_t length);
+
+/* The cable of the device server is pulled out: the client is hung up, and so is whoever comes; or put in again. */
+void net_port_plug(struct net_port *port, bool plugged);
 
 /* Stop listening and let go of the client, without news. The handles are closed when the loop has run out. A port that was
  * never opened, or is closed, is left alone. */
