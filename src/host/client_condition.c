@@ -243,7 +243,7 @@ static json_t *motor_term(const struct reader *reader, const struct term *term, 
 
 static json_t *bits_term(const struct reader *reader, const struct term *term, const char *key, int number)
 {
-    char digits[4];
+    char digits[12];
     int bit = read_bit(reader, term, false);
     if (bit < 0)
         return NULL;

@@ -225,7 +225,8 @@ enum row {
 /* Which of them go first when there is little room: the ones with the highest number. */
 static const int row_goes[ROWS] = {
     [ROW_GAP_1] = 12, [ROW_GAP_5] = 12, [ROW_GAP_3] = 11, [ROW_GAP_2] = 10, [ROW_GAP_4] = 9, [ROW_WIRES] = 8,
-    [ROW_VAR_NUMBERS] = 7, [ROW_NUMBERS] = 6, [ROW_KEYS] = 5, [ROW_COUNTERS] = 4, [ROW_HEAD] = 3, [ROW_VAR] = 2, [ROW_DI] = 1, [ROW_DO] = 1,
+    [ROW_VAR_NUMBERS] = 7, [ROW_NUMBERS] = 6, [ROW_KEYS] = 5, [ROW_COUNTERS] = 4, [ROW_HEAD] = 3, [ROW_VAR] = 2,
+    [ROW_DI] = 1, [ROW_DO] = 1,
 };
 
 #define ROW_GOES_FIRST 12
