@@ -92,13 +92,6 @@ static char *put_message(char *at, const struct sim *sim, const struct wire_mess
     return put_string(put_text(at, ",\"refused\":"), message->refused);
 }
 
-static const char *news_name(int32_t news)
-{
-    static const char *const names[] = {
-        [PLANT_STALL] = "stall", [PLANT_END_STOP] = "end_stop", [PLANT_JAM] = "jam", [PLANT_FREE] = "free"};
-    return news >= 0 && (size_t)news < sizeof names / sizeof names[0] ? names[news] : "?";
-}
-
 static char *put_value(char *at, const struct sim *sim, const struct watch_event *event)
 {
     switch ((enum watch_kind)event->kind) {
@@ -111,7 +104,7 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
     case WATCH_MESSAGE:
         return put_message(at, sim, event->message);
     case WATCH_PLANT:
-        return put_string(put_text(put_string(at, news_name(event->value)), ",\"text\":"), event->text);
+        return put_string(put_text(put_string(at, plant_news_name((enum plant_news)event->value)), ",\"text\":"), event->text);
     case WATCH_INJECTED:
         return put_string(put_text(put_signed(at, event->value), ",\"text\":"), event->text);
     default:

@@ -87,4 +87,23 @@ test_a_snapshot_has_the_plant_in_it() {
     same "0 0" "$(told)" "counter and true position at home again"
 }
 
+test_the_examples_of_the_document_are_plants() {
+    cd "$folder" || exit 1
+    local file blocks=0
+    python3 - "$examples/../docs/PLANT.md" <<'PYTHON'
+import re, sys
+
+text = open(sys.argv[1], encoding="utf-8").read()
+for number, block in enumerate(re.findall(r"^```yaml\n(.*?)^```$", text, re.M | re.S), 1):
+    open(f"block-{number}.yaml", "w", encoding="utf-8").write(block)
+    units = "units: 3,5\n" if "units:" in block else ""
+    open(f"run-{number}.yaml", "w", encoding="utf-8").write(f"{units}plant: block-{number}.yaml\nsteps: [advance: 1s]\n")
+PYTHON
+    for file in run-*.yaml; do
+        exits 0 "$RKM04" test "$file"
+        blocks=$((blocks + 1))
+    done
+    same 3 "$blocks" "plants in the document"
+}
+
 run_cases "$@"
