@@ -306,6 +306,9 @@ START_TEST(faults_on_demand_can_be_used)
     expect_pass("steps:\n  - fault: {kind: no_answer, count: 1}\n  - {message: '01', answer: none}\n  - message: '01'\n");
     expect_fail("steps:\n  - fault: {kind: wrong_fcs}\n  - {message: '01', within: 100ms}\n", 3, "an answer",
                 "no answer within 0.100000 s; dropped: 1 with a wrong check sum, 0 malformed, 0 too long");
+    expect_pass("seed: 3\nsteps:\n  - fault: {kind: drop, probability: 0.5}\n  - {message: '01', answer: none}\n"
+                "  - clear: all\n  - message: '01'\n");
+    expect_error("steps:\n  - fault: {kind: drop, probability: 1.5.0}\n", "2:12: error: probability: expected");
     expect_error("steps:\n  - fault: {kind: sunshine}\n", "2:12: error: kind: expected");
 }
 END_TEST

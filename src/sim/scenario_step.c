@@ -343,10 +343,24 @@ static bool read_reset(struct scenario_reader *reader, const struct config_node 
     return params != NULL && take_command(reader, node, step, "reset", params);
 }
 
+/* The one parameter that is no whole number: 0.25 is a text in a configuration file. */
+static void make_probability(json_t *params)
+{
+    const char *text = json_string_value(json_object_get(params, "probability"));
+    char *end;
+    if (text == NULL || text[0] == '\0' || strspn(text, "0123456789.") != strlen(text))
+        return;
+    double value = strtod(text, &end);
+    if (*end == '\0')
+        json_object_set_new(params, "probability", json_real(value));
+}
+
 static bool read_fault(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
 {
     const struct config_node *fault = config_get(node, "fault");
-    return take_command(reader, fault, step, "fault.inject", config_json(fault));
+    json_t *params = config_json(fault);
+    make_probability(params);
+    return take_command(reader, fault, step, "fault.inject", params);
 }
 
 static bool read_clear(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
