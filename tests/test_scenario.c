@@ -367,6 +367,7 @@ START_TEST(errors_name_the_place_and_what_was_expected)
     expect_error(QUIET "  - {message: '01', unit: all, answer: any}\n", "expected none: no unit answers");
     expect_error(QUIET "  - {pulses: {motor: 1, count: -1}}\n", "error: expected count");
     expect_error(QUIET "  - {pulses: {motor: 1, count: 1, since: noon}}\n", "error: expected start or last");
+    expect_error(QUIET "  - {expect: {message: {number: 1}}}\n", "3:14: error: expected something that lasts");
     expect_error(QUIET "  - {stays: {t: 1}}\n", "3:5: error: expected for");
     expect_error("stimuli: [{di: {\"01\": 1}}]\nsteps: [{advance: 1s}]\n", "1:11: error: expected either at or when");
     expect_error("stimuli: [{at: 1s, set: 'R'}]\nsteps: [{advance: 1s}]\n", "1:11: error: expected one of di, expect, power");

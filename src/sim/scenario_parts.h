@@ -97,8 +97,8 @@ bool scenario_step_read(struct scenario_reader *reader, const struct config_node
 bool scenario_stimulus_read(struct scenario_reader *reader, const struct config_node *node, struct scenario_stimulus *stimulus);
 void scenario_step_free(struct scenario_step *step);
 
-/* Check a condition; a JSON value of it, or NULL: reported. */
-json_t *scenario_condition(struct scenario_reader *reader, const struct config_node *node, unsigned unit);
+/* Check a condition; `waits`: it is waited for, so it may ask for messages, which pass. Returns it as JSON, or NULL: reported. */
+json_t *scenario_condition(struct scenario_reader *reader, const struct config_node *node, unsigned unit, bool waits);
 
 /* Read a file that the scenario names, beside it. *path, where it is, and the text are to be freed; NULL: reported at `node`. */
 char *scenario_file(struct scenario_reader *reader, const struct config_node *node, char **path, size_t *length);

@@ -156,7 +156,7 @@ static bool read_always(struct scenario_reader *reader, const struct config_node
     scenario->always_node = config_get(root, "always");
     scenario->always = json_array();
     for (int i = 0; i < count; i++) {
-        json_t *json = scenario_condition(reader, config_at(scenario->always_node, (size_t)i), 0);
+        json_t *json = scenario_condition(reader, config_at(scenario->always_node, (size_t)i), 0, false);
         if (json == NULL || json_array_append_new(scenario->always, json) != 0)
             well = false;
     }

@@ -85,20 +85,23 @@ static bool read_within(const struct scenario_reader *reader, const struct confi
     return read_time(step, "within", reader->scenario->timeout, &result->within);
 }
 
-json_t *scenario_condition(struct scenario_reader *reader, const struct config_node *node, unsigned unit)
+json_t *scenario_condition(struct scenario_reader *reader, const struct config_node *node, unsigned unit, bool waits)
 {
     struct refusal refusal;
     json_t *json = config_json(node);
     if (unit > 0 && json_is_object(json) && json_object_get(json, "unit") == NULL)
         json_object_set_new(json, "unit", json_string(reader->sim->unit[unit - 1].name));
     struct condition *condition = condition_read(reader->sim, json, &refusal);
-    if (condition == NULL) {
+    bool well = condition != NULL && (waits || !condition->messages);
+    if (condition == NULL)
         config_error(node, "%s", refusal.text);
-        json_decref(json);
-        return NULL;
-    }
+    else if (!well)
+        config_error(node, "expected something that lasts: a message can only be waited for, with wait or when");
     condition_free(condition);
-    return json;
+    if (well)
+        return json;
+    json_decref(json);
+    return NULL;
 }
 
 /* ---- What is sent --------------------------------------------------------------------------------------------------- */
@@ -212,7 +215,7 @@ static bool read_condition(struct scenario_reader *reader, const struct config_n
         return false;
     if (step->not_before > step->within)
         return config_error(config_get(node, "not_before"), "expected a time before within");
-    step->json = scenario_condition(reader, condition, step->unit);
+    step->json = scenario_condition(reader, condition, step->unit, step->action == ACTION_WAIT);
     return step->json != NULL;
 }
 
@@ -224,7 +227,7 @@ static bool read_stays(struct scenario_reader *reader, const struct config_node 
         return false;
     if (!read_time(node, "for", 0, &step->time))
         return false;
-    step->json = scenario_condition(reader, config_get(node, "stays"), step->unit);
+    step->json = scenario_condition(reader, config_get(node, "stays"), step->unit, false);
     return step->json != NULL;
 }
 
@@ -444,7 +447,7 @@ bool scenario_stimulus_read(struct scenario_reader *reader, const struct config_
         return config_error(node, "expected either at or when");
     if (!read_time(node, "after", 0, &stimulus->after))
         return false;
-    stimulus->when = when != NULL ? scenario_condition(reader, when, 0) : NULL;
+    stimulus->when = when != NULL ? scenario_condition(reader, when, 0, true) : NULL;
     return when == NULL || stimulus->when != NULL;
 }
 
