@@ -47,9 +47,11 @@ static void finish(struct replay *replay, enum replay_end end)
 
 static void say_wrong(struct replay *replay, size_t column, const char *format, va_list list)
 {
-    int length = snprintf(replay->text, sizeof replay->text, "%.200s:%" PRIu64 ":%zu: ", replay->name, replay->counts.lines, column);
+    uint64_t line = replay->counts.lines > 0 ? replay->counts.lines : 1u;
+    int length = snprintf(replay->text, sizeof replay->text, "%.200s:%" PRIu64 ":%zu: ", replay->name, line, column);
     if (length > 0 && (size_t)length < sizeof replay->text)
         vsnprintf(replay->text + length, sizeof replay->text - (size_t)length, format, list);
+    replay->note[0] = '\0';
     finish(replay, REPLAY_WRONG);
 }
 
@@ -138,33 +140,36 @@ bool replay_next_line(struct replay *replay)
     return true;
 }
 
+/* Append the present line to a text. Returns false if there is no room (replay->ended). */
+static bool append_line(struct replay *replay, char **text, size_t *length, size_t *room)
+{
+    size_t more = replay->length + 1u;
+    if (more > RECORD_EMBEDDED_MAX - *length)
+        return wrong_at(replay, 1, "expected the end of the embedded file: it may have %u bytes", RECORD_EMBEDDED_MAX);
+    if (more > *room - *length) {
+        char *grown = realloc(*text, 2 * *room + more);
+        if (!grown)
+            return replay_no_memory(replay);
+        *text = grown;
+        *room = 2 * *room + more;
+    }
+    memcpy(*text + *length, replay->line, replay->length);
+    *length += more;
+    (*text)[*length - 1u] = '\n';
+    return true;
+}
+
 bool replay_read_embedded(struct replay *replay, uint64_t lines)
 {
     size_t length = 0, room = 0;
     char *text = NULL;
     for (uint64_t i = 0; i < lines; i++) {
-        bool whole = read_line(replay);
-        if (!whole && !replay->ended) {
-            replay->note[0] = '\0';
-            wrong_at(replay, 1, "expected %" PRIu64 " more lines of the embedded file", lines - i);
-        } else if (whole && replay->length + 1u > RECORD_EMBEDDED_MAX - length) {
-            wrong_at(replay, 1, "expected the end of the embedded file: it may have %u bytes", RECORD_EMBEDDED_MAX);
-        }
-        if (!replay->ended && room - length < replay->length + 1u) {
-            room = 2 * room + replay->length + 1u;
-            char *more = realloc(text, room);
-            if (more)
-                text = more;
-            else
-                replay_no_memory(replay);
-        }
-        if (replay->ended) {
-            free(text);
-            return false;
-        }
-        memcpy(text + length, replay->line, replay->length);
-        length += replay->length;
-        text[length++] = '\n';
+        if (read_line(replay) && append_line(replay, &text, &length, &room))
+            continue;
+        if (!replay->ended)
+            snprintf(replay->note, sizeof replay->note, "the embedded file at its end is incomplete: all before it was replayed");
+        free(text);
+        return false;
     }
     free(replay->embedded);
     replay->embedded = text;
