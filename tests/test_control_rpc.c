@@ -109,6 +109,10 @@ START_TEST(the_id_of_a_wrong_request_is_known_if_it_can_be)
     ck_assert(json_is_null(request.id));
     ck_assert(!read_line("{\"jsonrpc\":\"2.0\",\"id\":7"));
     ck_assert(json_is_null(request.id));
+    ck_assert(!read_line("{}")); /* not even a notification: it is answered */
+    ck_assert(json_is_null(request.id));
+    ck_assert(!read_line("{\"jsonrpc\":\"2.0\",\"method\":\"state\",\"params\":1}"));
+    ck_assert_ptr_null(request.id);
 }
 END_TEST
 
@@ -187,6 +191,14 @@ START_TEST(answers_and_notifications_are_one_line)
 }
 END_TEST
 
+START_TEST(a_name_that_was_cut_in_the_middle_of_a_character_makes_a_whole_answer)
+{
+    refuse(&refusal, REFUSED_METHOD, "no method `%.2s", "t\xC3\xBC");
+    says(rpc_error(json_null(), &refusal),
+         "{\"jsonrpc\":\"2.0\",\"id\":null,\"error\":{\"code\":-32601,\"message\":\"no method `t\"}}\n");
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("control_rpc");
@@ -203,6 +215,7 @@ int main(void)
     tcase_add_test(refused, a_million_brackets_do_no_harm);
     tcase_add_loop_test(refused, any_byte_anywhere_is_refused_or_read, 0, 256);
     tcase_add_test(answers, answers_and_notifications_are_one_line);
+    tcase_add_test(answers, a_name_that_was_cut_in_the_middle_of_a_character_makes_a_whole_answer);
     suite_add_tcase(suite, requests);
     suite_add_tcase(suite, refused);
     suite_add_tcase(suite, answers);

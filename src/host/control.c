@@ -7,7 +7,7 @@
 #include "control_inside.h"
 #include "log.h"
 
-#define BACKLOG 16
+#define BACKLOG 128
 #define BUDGET 500000u   /* ns a turn of the loop for the lines of all clients; a unit waits no longer */
 #define LOOK_MS 200      /* how soon it is noticed that a client which had ended its sending has gone */
 #define ENDING_MS 1000   /* how long the answer to shutdown waits to be read */

@@ -49,7 +49,9 @@ static bool parse(struct rpc_request *request, const char *line, size_t length, 
 static bool read_id(struct rpc_request *request, struct refusal *refusal)
 {
     const json_t *id = json_object_get(request->json, "id");
-    if (!id || json_is_string(id) || json_is_number(id) || json_is_null(id)) {
+    if (!id)
+        return true;
+    if (json_is_string(id) || json_is_number(id) || json_is_null(id)) {
         request->id = id;
         return true;
     }
@@ -111,6 +113,7 @@ bool rpc_read(struct rpc_request *request, const char *line, size_t length, unsi
         refuse(refusal, RPC_NO_REQUEST, "method: expected a string");
         return false;
     }
+    request->id = json_object_get(request->json, "id");
     return read_params(request, lines, refusal);
 }
 
@@ -145,9 +148,10 @@ char *rpc_result(const json_t *id, json_t *result)
 char *rpc_error(const json_t *id, const struct refusal *refusal)
 {
     /* A name out of the request may have been cut in the middle of a character. */
-    json_t *text = json_string(refusal->text);
-    if (!text)
-        text = json_string("the request is wrong");
+    size_t length = strlen(refusal->text);
+    json_t *text = json_stringn(refusal->text, length);
+    while (!text && length > 0)
+        text = json_stringn(refusal->text, --length);
     return line_of(json_pack("{s:s, s:O, s:{s:i, s:o}}", "jsonrpc", "2.0", "id", id, "error", "code", refusal->code, "message",
                              text));
 }

@@ -20,8 +20,8 @@ class Client:
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         if receive_buffer:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-        self.socket.settimeout(LIMIT)
         self.socket.connect(path)
+        self.socket.settimeout(LIMIT)
         self.buffer = b""
         self.last = 0
         self.events = []  # notifications that came before answers
