@@ -247,19 +247,6 @@ bool bus_start(struct bus *bus)
     return true;
 }
 
-bool bus_power(struct bus *bus, const char *name, bool on)
-{
-    unsigned number = sim_unit_named(&bus->sim, name);
-    struct refusal refusal;
-    json_t *params = json_pack("{s:s, s:b}", "unit", name, "on", on);
-    json_t *result = number > 0 ? sim_command(bus_sim(bus), "power", params, &refusal) : NULL;
-    bool well = result != NULL;
-    json_decref(params);
-    json_decref(result);
-    bus_changed(bus);
-    return well;
-}
-
 bool bus_end(struct bus *bus)
 {
     bool well = true;

@@ -85,9 +85,6 @@ bool bus_start(struct bus *bus);
 bool bus_end(struct bus *bus);
 void bus_free(struct bus *bus);
 
-/* The power switch of a unit, by its name ("3", "3-2"), now. Returns false if there is no such unit. */
-bool bus_power(struct bus *bus, const char *name, bool on);
-
 /* ---- For those who drive it from outside (control.h) ------------------------------------------------------------------- */
 
 /* The line, brought up to the present as far as that does not take long. */

@@ -14,7 +14,6 @@
 #include "coverage.h"
 #include "log.h"
 #include "notify.h"
-#include "serve_commands.h"
 #include "serve_options.h"
 #include "serve_report.h"
 #include "subcommands.h"
@@ -30,7 +29,6 @@ struct serve {
     struct bus *bus[SERVE_LINES_MAX];
     struct line_watch watch;
     struct coverage coverage;
-    struct serve_commands commands;
     struct control *control; /* NULL: none */
     char *control_path;
     enum exit_status status;
@@ -195,7 +193,6 @@ static bool start(struct serve *serve)
     serve->idle.data = serve;
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
         !start_signals(serve) || !start_control(serve) ||
-        (options->commands && !serve_commands_start(&serve->commands, &serve->loop, options, serve->bus)) ||
         !serve_report_ready(options, serve->bus, control_path(serve->control)))
         return false;
     on_presence(serve);

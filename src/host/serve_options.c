@@ -37,7 +37,6 @@ enum key {
     KEY_STRICT_LINE,
     KEY_EXIT_WHEN_IDLE,
     KEY_READY_FD,
-    KEY_COMMANDS,
     KEY_COVERAGE,
     KEY_MIN_COVERAGE,
     KEY_LATE,
@@ -107,9 +106,6 @@ static const struct argp_option table[] = {
     {"exit-when-idle", KEY_EXIT_WHEN_IDLE, "SECONDS", OPTION_ARG_OPTIONAL,
      "End when nobody has had the line open for so many seconds of real time, 0 to 86400; default 10. With --port: when "
      "nothing has come in", 0},
-    {"commands", KEY_COMMANDS, NULL, 0,
-     "Read commands from stdin, a pipe or terminal, one a line: `power off 3' and `power on 3' are the power switch of unit 3; "
-     "`power off 2/3' is on line 2", 0},
     {"coverage", KEY_COVERAGE, "FILE", 0,
      "At the end write what clients have exercised out of all messages, commands, flags and faults, as text, and to FILE.json",
      0},
@@ -423,9 +419,6 @@ static error_t read_option(int key, char *text, struct argp_state *state)
     case KEY_EXIT_WHEN_IDLE:
         options->exit_when_idle = true;
         options->idle_seconds = text ? number("exit-when-idle", text, 0, IDLE_MAX, " of seconds", state) : IDLE_DEFAULT;
-        return 0;
-    case KEY_COMMANDS:
-        options->commands = true;
         return 0;
     case KEY_COVERAGE:
         options->coverage = read_path("coverage", text, state);

@@ -40,7 +40,6 @@ struct serve_options {
     const char *record;         /* pattern; NULL: none */
     const char *control;        /* socket; NULL: beside the link */
     bool no_control;
-    bool commands;              /* on stdin */
     int ready_fd;               /* -1: none */
 };
 

@@ -93,25 +93,19 @@ test_U5_each_unit_has_its_own_flash_image() {
 position_is_of_3() { [[ $(ctl alone -n 3 -m 1 position) == "motor 1: 30" ]]; }
 
 test_each_unit_has_its_own_power_switch() {
-    mkfifo "$folder/commands"
-    exec 4<>"$folder/commands"
-    "$RKM04" serve --link "$folder/bus" --node 1,2 --clock max --commands <"$folder/commands" >"$folder/bus.out" \
-        2>"$folder/bus.err" &
-    started=$!
-    processes+=("$started")
-    soon "the units are ready" ready bus
+    local control=(--control "$folder/bus.control")
+    serve bus --node 1,2 --clock max
     exits 0 ctl bus -n 1 set '\ C100 F10 R'
     exits 0 ctl bus -n 1 store
     exits 0 ctl bus -n 1 set '=5000'
-    echo "power off 1" >&4
+    exits 0 "$RKMCTL" "${control[@]}" --unit 1 power off
     soon "unit 1 is off" told "unit 1: power off"
     exits 3 ctl bus -n 1 --timeout 300 version
     exits 0 ctl bus -n 2 version
-    echo "power on 1" >&4
+    exits 0 "$RKMCTL" "${control[@]}" --unit 1 power on
     soon "unit 1 has run what its flash holds" stands 1 10
-    echo "power out 9" >&4
-    soon "what is no command is reported" told "power on UNIT"
-    exec 4>&-
+    exits 2 "$RKMCTL" "${control[@]}" --unit 9 power off
+    holds "$complained" "expected one of 1, 2" "the message"
     exits 0 ctl bus -n 2 version
 }
 

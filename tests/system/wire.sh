@@ -47,14 +47,8 @@ test_the_times_are_those_of_the_line() {
 }
 
 test_power_of_the_units_is_told() {
-    mkfifo "$folder/commands"
-    exec 4<>"$folder/commands"
-    "$RKM04" serve --link "$folder/bus" --node 3 --commands --wire "$folder/bus.log" <"$folder/commands" >"$folder/bus.out" \
-        2>"$folder/bus.err" &
-    started=$!
-    processes+=("$started")
-    soon "unit bus is ready" ready bus
-    echo "power off 3" >&4
+    serve bus --node 3 --wire "$folder/bus.log"
+    exits 0 "$RKMCTL" --control "$folder/bus.control" power off
     soon "the power is in the log" grep -q -- '-- unit 3: power off$' "$folder/bus.log"
 }
 
