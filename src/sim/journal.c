@@ -249,11 +249,6 @@ const char *journal_gap(const struct journal *journal)
     return journal->page ? NULL : "memory was short when the past was to be kept: restore a snapshot from a file, or begin anew";
 }
 
-size_t journal_length(const struct journal *journal)
-{
-    return journal->page ? journal->page->total + journal->page->length : 0;
-}
-
 static bool write_pages(const struct journal_page *last, FILE *out)
 {
     size_t count = 0;

@@ -31,7 +31,4 @@ const char *journal_gap(const struct journal *journal);
 /* Write it all, up to the present tick. Returns false if that failed (errno). */
 bool journal_write(struct journal *journal, FILE *out);
 
-/* Its length, in bytes. */
-size_t journal_length(const struct journal *journal);
-
 #endif

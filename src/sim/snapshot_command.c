@@ -133,8 +133,7 @@ static json_t *write_file(struct sim_snapshots *store, const char *path, struct 
     free(fresh);
     if (!well)
         return refuse(refusal, REFUSED_STATE, "file: cannot write %.160s: %s", path, strerror(error));
-    return json_pack("{s:s, s:I, s:I}", "file", path, "t_us", (json_int_t)sim_now(store->sim), "bytes",
-                     (json_int_t)journal_length(store->journal));
+    return json_pack("{s:s, s:I}", "file", path, "t_us", (json_int_t)sim_now(store->sim));
 }
 
 json_t *command_snapshot(struct sim *sim, const json_t *params, struct refusal *refusal)
