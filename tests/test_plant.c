@@ -92,7 +92,10 @@ START_TEST(motors_that_the_plant_does_not_name_have_no_true_position)
     int64_t position = 77;
     begin("motors: {2: }");
     const struct plant *plant = rig.sim.unit[0].plant;
-    ck_assert(!plant_position(plant, 1, &position) && !plant_position(plant, 0, &position) && !plant_position(plant, 5, &position));
+    for (unsigned motor = 0; motor <= 5; motor++)
+        ck_assert_int_eq(plant_position(plant, motor, &position), motor == 2);
+    position = 77;
+    ck_assert(!plant_position(plant, 1, &position));
     ck_assert_int_eq(position, 77);
     run("S100 F50 R");
     ck_assert_int_eq(true_position(&rig, 2), 0);

@@ -1,4 +1,5 @@
-/* test_plant_read.c: plant files: what is refused, and with which words. One test case alone: CK_RUN_CASE=files ./test_plant_read */
+/* test_plant_read.c: plant files: what is refused, and with which words.
+ * One test case alone: CK_RUN_CASE=files ./test_plant_read */
 #include <check.h>
 #include <stdlib.h>
 #include <string.h>

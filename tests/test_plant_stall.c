@@ -76,28 +76,31 @@ START_TEST(any_motions_at_their_very_limit_do_not_stall)
 }
 END_TEST
 
+static const char plain[] = STALL("{start: 500, limit: [{speed: 4000, acceleration: 20000}]}");
+
 START_TEST(one_that_is_faster_stalls)
 {
-    ck_assert_int_gt(lost(STALL("{start: 500, limit: [{speed: 4000, acceleration: 20000}]}"), "S100 V4200 A10000 F10000 R"), 1000);
+    ck_assert_int_gt(lost(plain, "S100 V4200 A10000 F10000 R"), 1000);
     ck_assert_uint_eq(rig.report[0].what, PLANT_STALL);
 }
 END_TEST
 
 START_TEST(one_that_is_a_little_faster_at_high_speed_stalls)
 {
-    ck_assert_int_gt(lost(STALL("{start: 500, limit: [{speed: 15900, acceleration: 60000}]}"), "S100 V16000 A10000 F50000 R"), 1000);
+    static const char plant[] = STALL("{start: 500, limit: [{speed: 15900, acceleration: 60000}]}");
+    ck_assert_int_gt(lost(plant, "S100 V16000 A10000 F50000 R"), 1000);
 }
 END_TEST
 
 START_TEST(one_that_is_steeper_stalls)
 {
-    ck_assert_int_gt(lost(STALL("{start: 500, limit: [{speed: 4000, acceleration: 20000}]}"), "S100 V3900 A24000 F10000 R"), 1000);
+    ck_assert_int_gt(lost(plain, "S100 V3900 A24000 F10000 R"), 1000);
 }
 END_TEST
 
 START_TEST(one_that_starts_too_fast_stalls_at_once)
 {
-    ck_assert_int_gt(lost(STALL("{start: 500, limit: [{speed: 4000, acceleration: 20000}]}"), "S1000 V1000 F1000 R"), 990);
+    ck_assert_int_gt(lost(plain, "S1000 V1000 F1000 R"), 990);
     ck_assert_int_ge(true_position(&rig, 1), 1);
     ck_assert_int_lt(true_position(&rig, 1), 10);
 }
@@ -105,7 +108,8 @@ END_TEST
 
 START_TEST(up_to_the_start_speed_any_change_is_followed)
 {
-    ck_assert_int_eq(lost(STALL("{start: 2000, limit: [{speed: 4000, acceleration: 1}]}"), "S2000 V2000 A60000 F1000 R B1000 R"), 0);
+    static const char plant[] = STALL("{start: 2000, limit: [{speed: 4000, acceleration: 1}]}");
+    ck_assert_int_eq(lost(plant, "S2000 V2000 A60000 F1000 R B1000 R"), 0);
 }
 END_TEST
 

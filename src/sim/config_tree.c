@@ -172,8 +172,8 @@ static bool read_key(struct reader *reader, const yaml_event_t *event)
     const char *key = (const char *)event->data.scalar.value;
     for (size_t i = 0; i < map->count; i++)
         if (strcmp(map->key[i], key) == 0)
-            return error_at(reader->tree, &event->start_mark, "expected each key once, found \"%s\" again (first in line %zu)", key,
-                            map->item[i]->key_line);
+            return error_at(reader->tree, &event->start_mark, "expected each key once, found \"%s\" again (first in line %zu)",
+                            key, map->item[i]->key_line);
     if (map->count >= KEYS_MAX)
         return error_at(reader->tree, &event->start_mark, "expected at most %u keys", KEYS_MAX);
     if (!grow(map))
@@ -188,7 +188,8 @@ static bool read_key(struct reader *reader, const yaml_event_t *event)
 static bool read_scalar(struct reader *reader, const yaml_event_t *event)
 {
     if (event->data.scalar.anchor || event->data.scalar.tag)
-        return error_at(reader->tree, &event->start_mark, "expected no anchors and no tags (quote a text that begins with & or !)");
+        return error_at(reader->tree, &event->start_mark,
+                        "expected no anchors and no tags (quote a text that begins with & or !)");
     if (expects_key(reader))
         return read_key(reader, event);
     struct config_node *node = new_node(reader->tree, CONFIG_TEXT, &event->start_mark);
@@ -466,7 +467,8 @@ json_t *config_json(const struct config_node *node)
     json_t *json = node->type == CONFIG_LIST ? json_array() : json_object();
     for (size_t i = 0; json && i < node->count; i++) {
         json_t *item = config_json(node->item[i]); /* no deeper than DEPTH_MAX */
-        int failed = node->type == CONFIG_LIST ? json_array_append_new(json, item) : json_object_set_new(json, node->key[i], item);
+        int failed = node->type == CONFIG_LIST ? json_array_append_new(json, item)
+                                               : json_object_set_new(json, node->key[i], item);
         if (failed) {
             json_decref(json);
             json = NULL;

@@ -1,6 +1,6 @@
-/* config_tree.h: configuration files, plants and scenarios: YAML, read by libyaml, which keeps line and column of everything. Scalars
- * are text; who reads them says what they are to be, so `01` is an input and `no` a word. Anchors, aliases and tags are refused, and so are
- * keys given twice. */
+/* config_tree.h: configuration files, plants and scenarios: YAML, read by libyaml, which keeps line and column of everything.
+ * Scalars are text; who reads them says what they are to be, so `01` is an input and `no` a word. Anchors, aliases and tags are
+ * refused, and so are keys given twice. */
 #ifndef RKM04_SIM_CONFIG_TREE_H
 #define RKM04_SIM_CONFIG_TREE_H
 
@@ -13,7 +13,8 @@
 struct config_tree;
 struct config_node;
 
-/* Read a whole text: one document. Errors go to `errors`, a line each: NAME:LINE:COLUMN: error: expected …. Returns NULL then. */
+/* Read a whole text: one document. Errors go to `errors`, a line each: NAME:LINE:COLUMN: error: expected …. Returns NULL then.
+ * `errors` must stay open until config_free(). */
 struct config_tree *config_read(const char *name, const char *text, size_t length, FILE *errors);
 void config_free(struct config_tree *tree);
 

@@ -126,7 +126,8 @@ static bool read_offset(const struct config_node *node, unsigned number, struct 
 {
     struct rkm04_motor_state state;
     int64_t offset = 0;
-    if (!read_position(node, "offset", "the offset", &offset) || !rkm04_motor_state(sim_core(unit->sim, unit->number), number, &state))
+    if (!read_position(node, "offset", "the offset", &offset) ||
+        !rkm04_motor_state(sim_core(unit->sim, unit->number), number, &state))
         return false;
     to->position = state.position + offset;
     if (to->position >= to->low && to->position <= to->high)
@@ -188,7 +189,8 @@ static bool read_zone(const struct config_node *node, const struct plant_motor *
     to->low = motor->turn > 0 ? 0 : INT64_MIN;
     to->high = motor->turn > 0 ? motor->turn - 1 : INT64_MAX;
     if (between ? !read_between(between, motor, to)
-                : !read_position(node, "at_least", "a position", &to->low) || !read_position(node, "at_most", "a position", &to->high))
+                : !read_position(node, "at_least", "a position", &to->low) ||
+                      !read_position(node, "at_most", "a position", &to->high))
         return false;
     bool angles = to->low >= 0 && to->low < motor->turn && to->high >= 0 && to->high < motor->turn;
     return motor->turn == 0 || angles ||
