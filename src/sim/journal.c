@@ -261,7 +261,8 @@ static bool write_pages(const struct journal_page *last, FILE *out)
     for (const struct journal_page *page = last; page; page = page->before)
         pages[--at] = page;
     for (at = 0; at < count; at++)
-        fwrite(pages[at]->text, 1, pages[at]->length, out);
+        if (pages[at]->length > 0)
+            fwrite(pages[at]->text, 1, pages[at]->length, out);
     free(pages);
     return ferror(out) == 0;
 }
