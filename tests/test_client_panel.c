@@ -54,7 +54,7 @@ START_TEST(what_a_motor_does_stands_in_its_row)
          24, 100);
     assert_shown("RKM04 unit 3  12.345678 s  clock x10");
     assert_shown(" 1   *   moving         -1234        -1200   -2500      7  R\n");
-    assert_shown(" 2   .   wait               0            -       0      2  O01  DI 01 = 1 M05\n");
+    assert_shown(" 2   .   wait               0            -       0      2  O01  DI 01 = 1  M05\n");
     assert_shown(" 3   .   idle               0            -       0      -  -\n");
     assert_shown("17 requests   16 answers   5 for others   1 dropped");
 }

@@ -136,7 +136,7 @@ static void put_field(struct panel *panel, int row, const int column[FIELDS], en
         put(panel, row, column[field], style, "%-*.*s", fields[field].width, fields[field].width, text);
 }
 
-/* Guards that are armed, as the commands that armed them: " X04 M01". */
+/* Guards that are armed, as the commands that armed them: "  X04  M01". */
 static void append_guards(const json_t *motor, char *text, size_t room)
 {
     static const char *const keys[] = {"x", "m", "n"};
@@ -144,7 +144,7 @@ static void append_guards(const json_t *motor, char *text, size_t room)
         const json_t *input = json_object_get(json_object_get(motor, "guards"), keys[i]);
         size_t length = strlen(text);
         if (json_is_integer(input))
-            snprintf(text + length, room - length, " %c%02d", keys[i][0] - 'a' + 'A', (int)json_integer_value(input));
+            snprintf(text + length, room - length, "  %c%02d", keys[i][0] - 'a' + 'A', (int)json_integer_value(input));
     }
 }
 
@@ -162,7 +162,9 @@ static void put_command(struct panel *panel, int row, const int column[FIELDS], 
     if (waits_for != NULL) {
         size_t length = strlen(text);
         const char *progress = strstr(waits_for, ": "); /* "the end of R: 10 of 5000 steps done" */
-        snprintf(text + length, sizeof text - length, "  %s", progress != NULL ? progress + 2 : waits_for);
+        const char *shown = progress != NULL ? progress + 2 : waits_for;
+        const char *done = progress != NULL ? strstr(shown, " done") : NULL;
+        snprintf(text + length, sizeof text - length, "  %.*s", (int)(done != NULL ? (size_t)(done - shown) : strlen(shown)), shown);
     }
     append_guards(motor, text, sizeof text);
     put_field(panel, row, column, FIELD_COMMAND, PANEL_PLAIN, text);
