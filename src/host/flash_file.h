@@ -1,4 +1,4 @@
-/* flash_file.h: the unit's flash: an image file that survives, or memory that lives as long as the process.
+/* flash_file.h: the unit's flash as an image file, which survives.
  *
  * The image is the blocks of the flash one after the other, RKM04_FLASH_BLOCKS x RKM04_FLASH_BLOCK_SIZE bytes, and nothing
  * else. Every operation reaches the file when it is asked for, so a killed emulator loses nothing of what it has done. For a
@@ -15,15 +15,14 @@
 #define FLASH_FILE_SIZE (RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE)
 
 struct flash_file {
-    const char *path; /* NULL: memory only */
-    int fd;           /* -1: memory only */
+    const char *path;
+    int fd;           /* -1: not open */
     bool unsynced;
     unsigned end;     /* where the operation before ended */
-    uint8_t memory[FLASH_FILE_SIZE]; /* without a file; inverted */
 };
 
-/* Open the image `path`, making an erased one if there is none, for this process alone; NULL: memory only. `path` must stay,
- * `memory` must be zero. Failures are reported. Returns false if it did not work. */
+/* Open the image `path`, making an erased one if there is none, for this process alone. `path` must stay.
+ * Failures are reported. Returns false if it did not work. */
 bool flash_file_open(struct flash_file *flash, const char *path);
 
 /* See that all is on the disk. Failures are reported. Returns false if it did not work. */
