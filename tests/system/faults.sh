@@ -3,6 +3,10 @@
 
 . "$(dirname "$0")/lib.sh"
 
+command -v python3 >/dev/null || { echo "python3 is not there"; exit 77; }
+here=$(cd "${0%/*}" && pwd)
+export RKM04 RKMCTL PYTHONDONTWRITEBYTECODE=1
+
 unknown="7e 01 00 08 58 10 7e"            # message 8 to unit 1
 answer="7e 00 01 ff 08 00 00 db ff 7e"    # and its answer
 broken="7e 00 01 ff 08 00 00 da ff 7e"    # with the wrong check value
@@ -217,6 +221,11 @@ test_an_input_is_stuck() {
     same 4 "$(state_of "['di']")" "the inputs, set by hand"
     clear
     same 0 "$(state_of "['di']")" "the inputs afterwards"
+}
+
+test_every_example_of_the_document_is_so() {
+    python3 "$here/control_examples.py" "$here/../../docs/FAULTS.md" >"$folder/examples" 2>&1 ||
+        fail "$(grep -v '^ok' "$folder/examples")"
 }
 
 run_cases "$@"
