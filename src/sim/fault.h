@@ -137,8 +137,8 @@ extern const struct segment_hooks faults_hooks;
 
 /* ---- Inside: between the parts of this module ------------------------------------------------------------------------- */
 
-/* An occasion: does a fault of this kind act? Counts it. `direction`, `operation`: for kinds that have one, else 0. Returns it (valid
- * until the next call), or NULL. */
+/* An occasion: does a fault of this kind act? Counts it. `direction`, `operation`: for kinds that have one, else 0. Returns it
+ * (valid until the next call), or NULL. */
 struct fault *fault_acts(struct sim *sim, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation);
 
 /* The next random number. */

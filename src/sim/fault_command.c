@@ -257,7 +257,8 @@ static bool read_whose(struct sim *sim, const json_t *params, unsigned takes, st
     if (fault->direction == 0)
         refuse(refusal, REFUSED_PARAMS, "direction: expected \"to_units\", \"to_master\" or \"both\"");
     else if (fault->unit > 0 && fault->direction != FAULT_TO_MASTER)
-        refuse(refusal, REFUSED_PARAMS, "direction: with unit expected \"to_master\": all units hear the same bytes of the master");
+        refuse(refusal, REFUSED_PARAMS,
+               "direction: with unit expected \"to_master\": all units hear the same bytes of the master");
     else
         return true;
     return false;

@@ -120,7 +120,7 @@ struct segment {
     struct wire wire;
     uint64_t quiet_bytes;    /* sent, without time */
     uint64_t overruns;
-    uint64_t again;          /* without time: tick at which units answer without being asked once more; RKM04_NEVER: they do not */
+    uint64_t again;          /* without time: tick at which units answer without being asked again; RKM04_NEVER: they do not */
     bool disturbed;          /* segment_disturb() */
     uint64_t more_start;     /* parts: start bit of the next of the master's more[0] */
     struct segment_more more[WIRE_STATIONS];
