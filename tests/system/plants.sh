@@ -67,6 +67,11 @@ test_a_record_with_a_plant_can_be_repeated() {
     exits 0 ctl bus set 'S300 )03 F5 R C100'
     exits 0 "$RKMCTL" advance 7s
     same "0 3200" "$(told)" "counter and true position at the index mark"
+    exits 0 "$RKMCTL" plant motor=1 position=70
+    exits 0 "$RKMCTL" plant motor=1 jammed=true
+    exits 0 ctl bus set 'F10 R'
+    exits 0 "$RKMCTL" advance 1s
+    same "10 70" "$(told)" "counter and true position after a hand was there"
     exits 0 "$RKMCTL" shutdown
     status_of "$started"
     exits 0 "$RKM04" replay "$folder/session.record"
@@ -85,6 +90,11 @@ test_a_snapshot_has_the_plant_in_it() {
     same "$then" "$(told)" "counter and true position when it is back"
     exits 0 "$RKMCTL" advance 15s
     same "0 0" "$(told)" "counter and true position at home again"
+    exits 0 "$RKMCTL" snapshot "file=$folder/home.snapshot"
+    exits 0 "$RKMCTL" plant none
+    same "0 None" "$(told)" "counter and true position without a plant"
+    exits 0 "$RKMCTL" restore "file=$folder/home.snapshot"
+    same "0 0" "$(told)" "counter and true position when it is back from the file"
 }
 
 test_the_examples_of_the_document_are_plants() {
