@@ -172,6 +172,23 @@ test_what_was_kept_can_be_gone_back_to() {
     holds "$complained" here "the message names those there are"
 }
 
+test_what_was_kept_in_a_file_outlives_the_emulator() {
+    emulator
+    cd "$folder" || fail "no folder"
+    program 'S100 V1000 A2000 F5000 R'
+    exits 0 control advance 'm1.position>=1000'
+    exits 0 control snapshot file=here.record
+    exits 0 control shutdown
+    status_of "$started"
+    serve bus --clock stepped
+    exits 0 control restore file=here.record
+    same 1000 "$(state_of '["motors"][0]["position"]')" "position after going back"
+    exits 0 control advance idle
+    same 5000 "$(state_of '["motors"][0]["position"]')" "position at the end"
+    exits 1 control restore file=there.record
+    holds "$complained" there.record "the message names the file"
+}
+
 test_power_reset_and_switch() {
     emulator
     program 'S100 F7 R T03'
