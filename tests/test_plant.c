@@ -171,6 +171,7 @@ START_TEST(a_jam_holds_the_motor_from_a_time_to_a_time)
     assert_news(1, PLANT_FREE, "motor 1 moves again, at 1, after 3 lost steps");
     ck_assert_uint_eq(rig.report[1].tick, 54000);
     ck_assert_uint_eq(rig.report[2].tick, 84000);
+    assert_news(3, PLANT_FREE, "motor 1 moves again, at 4, after 3 lost steps");
     ck_assert_uint_eq(rig.report[3].tick, 114000);
 }
 END_TEST
@@ -335,6 +336,10 @@ START_TEST(hysteresis_of_a_turntable_reaches_across_zero)
     ck_assert_uint_eq(inputs(&rig), 1);
     run("B1 R");
     ck_assert_uint_eq(inputs(&rig), 0);
+    run("F6 R");
+    ck_assert_uint_eq(inputs(&rig), 1);
+    run("F1 R");
+    ck_assert_uint_eq(inputs(&rig), 0);
 }
 END_TEST
 
@@ -426,13 +431,18 @@ START_TEST(a_copy_goes_on_as_the_original_would_have_only_later)
 {
     begin("motors: {1: {jam: {from: 64ms, to: 84ms}}}\nswitches: [{input: 01, motor: 1, at_least: 3, bounce: 50ms}]");
     plant_rig_program(&rig, 1, '1', "S100 V100 F20 R");
-    plant_rig_run(&rig, 40000); /* in the middle of bouncing */
+    plant_rig_run(&rig, 70000); /* in the middle of bouncing, and in a jam */
     struct plant *plant = plant_copy(rig.sim.unit[0].plant, 0), *later = plant_copy(plant, SECOND);
     struct plant_change change, expected;
     unsigned changes = 0;
     ck_assert(plant && later);
     ck_assert_uint_eq(plant_next(later), plant_next(plant) + SECOND);
-    for (uint64_t tick = 44000; tick <= 204000; tick += 10000) {
+    json_t *before = plant_json(plant), *after = plant_json(later);
+    ck_assert(json_equal(before, after));
+    ck_assert(json_is_true(json_object_get(json_array_get(json_object_get(after, "motors"), 0), "jammed")));
+    json_decref(before);
+    json_decref(after);
+    for (uint64_t tick = 74000; tick <= 204000; tick += 10000) {
         plant_step(plant, tick, 1, true);
         plant_step(later, tick + SECOND, 1, true);
     }

@@ -45,6 +45,15 @@ START_TEST(with_several_units_the_file_must_say_which)
 }
 END_TEST
 
+START_TEST(a_motor_that_only_follows_needs_no_more_than_its_number)
+{
+    ck_assert(plant_rig_begin(&rig, "1", "motors:\n  1:\n  2: ~\n  3: {}\n"));
+    ck_assert_int_eq(true_position(&rig, 1) + true_position(&rig, 2) + true_position(&rig, 3), 0);
+    ck_assert(plant_rig_configure(&rig, "{\"motors\": {\"4\": null}}"));
+    ck_assert_int_eq(true_position(&rig, 4), 0);
+}
+END_TEST
+
 /* ---- Files ---------------------------------------------------------------------------------------------------------- */
 
 START_TEST(a_plant_that_is_refused_leaves_the_one_before_in_place)
@@ -177,6 +186,7 @@ static Suite *plant_read_suite(void)
     tcase_add_checked_fixture(units, NULL, teardown);
     tcase_add_test(units, with_several_units_each_has_its_own_plant);
     tcase_add_test(units, with_several_units_the_file_must_say_which);
+    tcase_add_test(units, a_motor_that_only_follows_needs_no_more_than_its_number);
     suite_add_tcase(suite, units);
 
     TCase *files = tcase_create("files");

@@ -136,14 +136,21 @@ static bool read_offset(const struct config_node *node, unsigned number, struct 
                         (long long)to->position, (long long)state.position, (long long)offset);
 }
 
+/* `1:` and nothing behind it, or null. */
+static bool is_nothing(const struct config_node *node)
+{
+    const char *text = config_text(node);
+    return text && (*text == '\0' || strcmp(text, "~") == 0 || strcmp(text, "null") == 0);
+}
+
 static bool read_motor(const struct config_node *node, unsigned number, struct sim_unit *unit, struct plant *plant)
 {
     static const char *const names[] = {"offset", "stops", "turn", "stall", "jam", "missing_lead", NULL};
     struct plant_motor *to = &plant->motor[number - 1u];
     const struct config_node *turn = config_get(node, "turn");
     to->present = true;
-    if (config_type(node) == CONFIG_TEXT && *config_text(node) == '\0')
-        return read_offset(node, number, unit, to); /* `1:` and nothing behind it */
+    if (is_nothing(node))
+        return read_offset(node, number, unit, to);
     if (!is_map(node, "a motor, as in {offset: 0}") || !config_keys(node, names))
         return false;
     if (turn && !config_integer(turn, "the steps of a turn", 2, PLANT_POSITION_MAX, &to->turn))
