@@ -4,6 +4,7 @@
 
 #define SURE 1000000u        /* millionths */
 #define COUNT_MAX UINT32_MAX
+#define EVERY_MIN RKM04_SLOT_TICKS
 
 /* What a kind of fault can be given besides kind, count, skip, probability, after and for. */
 enum { UNIT = 1, DIRECTION = 2, DURATION = 4, EVERY = 8 };
@@ -231,8 +232,8 @@ static bool read_spell(const json_t *params, unsigned takes, struct fault *fault
         wrong = "duration: missing: how long the line is to be held at 0, as in \"20ms\"";
     else if (fault->every > 0 && (!given || fault->ticks >= fault->every))
         wrong = "every: expected a duration, and a longer time than that";
-    else if (json_object_get(params, "every") && fault->every == 0)
-        wrong = "every: expected a time of at least 1us";
+    else if (json_object_get(params, "every") && fault->every < EVERY_MIN)
+        wrong = "every: expected a time of at least 1ms";
     if (wrong)
         refuse(refusal, REFUSED_PARAMS, "%s", wrong);
     return !wrong;
