@@ -95,6 +95,9 @@ test_a_snapshot_has_the_plant_in_it() {
     same "0 None" "$(told)" "counter and true position without a plant"
     exits 0 "$RKMCTL" restore "file=$folder/home.snapshot"
     same "0 0" "$(told)" "counter and true position when it is back from the file"
+    exits 0 ctl bus set 'F5 R'
+    exits 0 "$RKMCTL" advance 1s
+    same "5 5" "$(told)" "counter and true position after five more steps"
 }
 
 test_the_examples_of_the_document_are_plants() {
