@@ -164,7 +164,8 @@ static void put_command(struct panel *panel, int row, const int column[FIELDS], 
         const char *progress = strstr(waits_for, ": "); /* "the end of R: 10 of 5000 steps done" */
         const char *shown = progress != NULL ? progress + 2 : waits_for;
         const char *done = progress != NULL ? strstr(shown, " done") : NULL;
-        snprintf(text + length, sizeof text - length, "  %.*s", (int)(done != NULL ? (size_t)(done - shown) : strlen(shown)), shown);
+        size_t part = done != NULL ? (size_t)(done - shown) : strlen(shown);
+        snprintf(text + length, sizeof text - length, "  %.*s", (int)part, shown);
     }
     append_guards(motor, text, sizeof text);
     put_field(panel, row, column, FIELD_COMMAND, PANEL_PLAIN, text);
