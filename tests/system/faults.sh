@@ -223,6 +223,25 @@ test_an_input_is_stuck() {
     same 0 "$(state_of "['di']")" "the inputs afterwards"
 }
 
+test_a_session_with_faults_is_the_same_when_it_is_replayed() {
+    local i
+    serve bus --node 1,2 --clock max --seed 11 --record "$folder/record"
+    fault drop probability=0.02
+    fault wrong_fcs probability=0.5
+    fault delay delay=7ms probability=0.5
+    fault unplugged after=100s duration=1s
+    for i in 1 2 1 2 1 2; do
+        ctl bus -n "$i" --timeout 300 version >"$folder/said" 2>"$folder/complained"
+    done
+    fault power unit=2 operation=3 duration=2s
+    ctl bus -n 2 -m 1 --timeout 300 set 'W5' >"$folder/said" 2>"$folder/complained"
+    ctl bus -n 2 -m 1 --timeout 300 store >"$folder/said" 2>"$folder/complained"
+    clear
+    kill "$started"
+    status_of "$started"
+    exits 0 "$RKM04" replay "$folder/record"
+}
+
 test_every_example_of_the_document_is_so() {
     python3 "$here/control_examples.py" "$here/../../docs/FAULTS.md" >"$folder/examples" 2>&1 ||
         fail "$(grep -v '^ok' "$folder/examples")"
