@@ -123,8 +123,9 @@ static char *deep(unsigned depth)
     char lists[RPC_DEPTH * 2] = "", ends[RPC_DEPTH * 2] = "";
     memset(lists, '[', depth - 2);
     memset(ends, ']', depth - 2);
-    ck_assert_int_gt(asprintf(&line, "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"state\",\"params\":{\"a]\\\"[\":%s%s}}", lists, ends),
-                     0);
+    int length = asprintf(&line, "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"state\",\"params\":{\"a]\\\"[\":%s%s}}", lists,
+                          ends);
+    ck_assert_int_gt(length, 0);
     return line;
 }
 

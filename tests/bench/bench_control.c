@@ -220,8 +220,8 @@ static void advance(size_t calls)
     double took = now() - begin;
     if (to - from != (int64_t)(calls * STEP_TICKS))
         errx(1, "%zu advances went %" PRId64 " ticks", calls, to - from);
-    printf("{\"figure\": \"advance\", \"calls\": %zu, \"seconds\": %.3f, \"us_a_call\": %.1f, \"times_real_time\": %.1f}\n", calls,
-           took, took * 1e6 / (double)calls, (double)calls * STEP_TICKS / 1e6 / took);
+    printf("{\"figure\": \"advance\", \"calls\": %zu, \"seconds\": %.3f, \"us_a_call\": %.1f, \"times_real_time\": %.1f}\n",
+           calls, took, took * 1e6 / (double)calls, (double)calls * STEP_TICKS / 1e6 / took);
 }
 
 /* Events of a subscription while a request is answered. */

@@ -7,12 +7,13 @@ here=$(cd "${0%/*}" && pwd)
 export RKM04 RKMCTL PYTHONDONTWRITEBYTECODE=1
 
 test_every_example_of_the_document_is_so() {
-    python3 "$here/control_examples.py" "$here/../../docs/CONTROL.md" >"$folder/examples" 2>&1 || fail "$(grep -v '^ok' "$folder/examples")"
+    python3 "$here/control_examples.py" "$here/../../docs/CONTROL.md" >"$folder/examples" 2>&1 ||
+        fail "$(grep -v '^ok' "$folder/examples")"
 }
 
 test_every_method_is_in_the_document_and_has_an_example() {
     local method
-    for method in $(sed -n 's/^    {"\([a-z.]*\)", .*/\1/p' "$here/../../src/host/control_methods.c" "$here/../../src/sim/command.c"); do
+    for method in $(sed -n 's/^    {"\([a-z.]*\)", .*/\1/p' "$here"/../../src/{host/control_methods,sim/command}.c); do
         grep -q "^#.*\`$method\`" "$here/../../docs/CONTROL.md" || fail "docs/CONTROL.md has no heading for $method"
         grep -q "^--> .*\"method\": \"$method\"" "$here/../../docs/CONTROL.md" || fail "docs/CONTROL.md has no example of $method"
     done

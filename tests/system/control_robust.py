@@ -23,6 +23,10 @@ class Emulator:
         self.folder = tempfile.TemporaryDirectory()
         self.link = os.path.join(self.folder.name, "bus")
         self.path = self.link + ".control"
+        if "--lines" in options:
+            self.link += "%l"
+            self.path = os.path.join(self.folder.name, "control")
+            options += ("--control", self.path)
         self.start(*options)
         self.clients = []
 
@@ -37,9 +41,10 @@ class Emulator:
         self.clients.append(Client(self.path, **options))
         return self.clients[-1]
 
-    def program(self, motor, text):
-        subprocess.run([os.environ["RKMCTL"], "-p", self.link, "-m", str(motor), "set", text], check=True, timeout=60,
-                       stdout=subprocess.DEVNULL)
+    def program(self, motor, text, accepted=True):
+        done = subprocess.run([os.environ["RKMCTL"], "-p", self.link, "-m", str(motor), "set", text], timeout=60, check=False,
+                              capture_output=True, text=True)
+        assert (done.returncode == 0) == accepted, done.stderr
 
     def memory(self):
         """Resident bytes."""
@@ -358,8 +363,49 @@ def test_the_socket_of_a_killed_emulator_is_replaced(emulator):
     assert os.stat(emulator.path).st_mode & 0o7777 == 0o600
 
 
+def test_messages_and_bytes_are_events(emulator):
+    client = emulator.client()
+    client.call("subscribe", kinds=["message", "byte"])
+    number = client.request("wait", until={"message": {"number": 2, "from": "unit"}})
+    emulator.program(2, "V70000", accepted=False)
+    assert client.answer(number) == {"t_us": 0, "holds": True}
+    messages = [event["params"] for event in client.events if event["params"]["kind"] == "message"]
+    data = b"".join(bytes([event["params"]["value"]]) for event in client.events if event["params"]["kind"] == "byte")
+    request, answer = [message for message in messages if message["value"] == 2][-2:]
+    assert (request["from"], request["dnode"], request["snode"], request["answer"]) == (["master"], 1, 0, False), request
+    assert bytes.fromhex(request["message"]) == b"\x022V70000" and bytes.fromhex(request["bytes"]) in data, request
+    assert (answer["from"], answer["dnode"], answer["snode"], answer["answer"]) == (["1"], 0, 1, True), answer
+    assert bytes.fromhex(answer["message"]) == b"\x022\x01V" and answer["refused"] and not answer["dropped"], answer
+
+
+def test_units_have_names_and_lines_have_numbers(emulator):
+    client = emulator.client()
+    assert client.call("units", line=1) == {"t_us": 0, "lines": 2, "units": ["3", "5", "3-2"]}
+    assert client.refused("units", line=2).message == "line: expected a whole number from 0 to 1"
+    assert client.refused("state").message == "unit: missing: expected one of 3, 5, 3-2"
+    client.call("subscribe", line=1, unit=["5", "3-2"], kinds=["inputs", "power"])
+    client.call("di.set", line=1, unit=3, mask=1)
+    client.call("di.set", line=1, unit="3-2", mask=2)
+    client.call("di.set", line=0, unit=5, mask=4)
+    client.call("power", line=1, unit=5, on=False)
+    states = [[client.call("state", line=line, unit=unit)["di"] for unit in ["3", "5", "3-2"]] for line in [0, 1]]
+    assert states == [[0, 4, 0], [1, 0, 2]], states
+    seen = [(event["params"]["unit"], event["params"]["kind"], event["params"]["value"]) for event in client.events]
+    client.call("advance", line=1, ticks=5)
+    assert seen == [("3-2", "inputs", 2), ("5", "power", 0)], seen
+    assert [client.call("units", line=line)["t_us"] for line in [0, 1]] == [0, 5]
+    client.call("clock", clock="x1000", line=0)
+    assert [client.call("clock", line=line)["clock"] for line in [0, 1]] == ["x1000", "stepped"]
+
+
+OPTIONS = {
+    "test_the_unit_answers_its_master_meanwhile": [],
+    "test_units_have_names_and_lines_have_numbers": ["--clock", "stepped", "--lines", "2", "--node", "3,5,3"],
+}
+
+
 def run(name):
-    options = {"test_the_unit_answers_its_master_meanwhile": []}.get(name, ["--clock", "stepped"])
+    options = OPTIONS.get(name, ["--clock", "stepped"])
     emulator = Emulator(*options)
     try:
         globals()[name](emulator)
