@@ -12,7 +12,7 @@ refused() {
 
 test_help_and_version_go_to_stdout() {
     local command
-    for command in "$RKM04 --help" "$RKM04 serve --help" "$RKM04 exec --help" "$RKMCTL --help"; do
+    for command in "$RKM04 --help" "$RKM04 serve --help" "$RKM04 exec --help" "$RKM04 test --help" "$RKM04 replay --help" "$RKMCTL --help"; do
         # shellcheck disable=SC2086
         exits 0 $command
         holds "${said,,}" usage "'$command'"
@@ -34,7 +34,8 @@ test_the_manual_pages_know_every_option_and_no_other() {
     local pages
     pages=$(dirname "$0")/../../docs/man
     in_page() { sed 's/\\//g' "$pages/$1" | grep -o -E -e '--[a-z][a-z-]+' | grep -v -x -e --help -e --version | sort -u; }
-    same "$({ long_options "$RKM04" serve; long_options "$RKM04" exec; } | sort -u)" "$(in_page rkm04.1)" "options in rkm04.1"
+    same "$(for sub in serve exec test replay; do long_options "$RKM04" "$sub"; done | sort -u)" "$(in_page rkm04.1)" \
+        "options in rkm04.1"
     same "$(long_options "$RKMCTL")" "$(in_page rkmctl.1)" "options in rkmctl.1"
 }
 
