@@ -49,6 +49,7 @@ struct bus {
     void *context;
     struct coverage *coverage; /* NULL: not wanted */
     struct watcher news;  /* for the log */
+    unsigned injected;    /* acts of faults on demand */
 
     struct sim sim;
     struct virtual_clock clock;

@@ -32,8 +32,8 @@ static const char help[] =
     "  rkm04 test --junit report.xml homing.yaml\n"
     "  rkm04 replay --trace pulses.vcd session.record\n"
     "\n"
-    "Exit status: 0 well, 1 failure at run time, 2 usage, 3 a scenario has failed, 4 less than --min-coverage of serve, 124 --until of exec reached "
-    "with a motor still running.\n";
+    "Exit status: 0 well, 1 failure at run time, 2 usage, 3 a scenario has failed, 4 less than --min-coverage "
+    "of serve, 124 --until of exec reached with a motor still running.\n";
 
 static const struct {
     const char *name, *full_name;

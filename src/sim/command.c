@@ -88,8 +88,7 @@ unsigned param_unit(struct sim *sim, const json_t *params, struct refusal *refus
     if (number > 0)
         return number;
     list_units(sim, units, sizeof units);
-    refuse(refusal, REFUSED_PARAMS, value ? "unit: there is no such unit: expected one of %s" : "unit: missing: expected one of %s",
-           units);
+    refuse(refusal, REFUSED_PARAMS, "unit: %s: expected one of %s", value ? "there is no such unit" : "missing", units);
     return 0;
 }
 
