@@ -198,17 +198,29 @@ START_TEST(no_link_is_followed_to_the_lock)
 }
 END_TEST
 
-START_TEST(a_path_that_is_too_long_is_refused)
+START_TEST(a_path_may_be_longer_than_the_address_of_a_socket)
 {
-    char longest[256] = "";
-    size_t length = strlen(folder);
-    strcpy(longest, folder);
-    memset(longest + length, 'a', 108 - length);
-    longest[length] = '/';
+    char deep[256];
+    struct stat found;
+    snprintf(deep, sizeof deep, "%s/%080d", folder, 0);
+    ck_assert_int_eq(mkdir(deep, 0700), 0);
+    strcat(deep, "/control");
+    ck_assert_uint_gt(strlen(deep), 107);
+    ck_assert(control_socket_open(&ours, deep));
+    ck_assert_int_eq(stat(deep, &found), 0);
+    ck_assert_int_eq(found.st_mode & 07777, 0600);
+    control_socket_release(&ours);
+    ck_assert(!exists(deep));
+}
+END_TEST
+
+START_TEST(a_name_that_is_too_long_is_refused)
+{
+    char longest[256];
+    snprintf(longest, sizeof longest, "%s/%0120d", folder, 0);
     ck_assert(!control_socket_open(&ours, longest));
+    ck_assert(!exists(longest));
     ck_assert(!control_socket_open(&ours, ""));
-    longest[107] = '\0';
-    ck_assert(control_socket_open(&ours, longest));
 }
 END_TEST
 
@@ -232,7 +244,8 @@ int main(void)
     tcase_add_loop_test(tests, what_took_the_place_of_ours_is_not_removed_at_the_end, 0, 4);
     tcase_add_test(tests, a_lock_file_of_somebody_else_is_left_alone);
     tcase_add_test(tests, no_link_is_followed_to_the_lock);
-    tcase_add_test(tests, a_path_that_is_too_long_is_refused);
+    tcase_add_test(tests, a_path_may_be_longer_than_the_address_of_a_socket);
+    tcase_add_test(tests, a_name_that_is_too_long_is_refused);
     tcase_add_test(tests, a_folder_that_is_not_there_is_refused);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);
