@@ -10,6 +10,8 @@
 #include "log.h"
 #include "snapshot.h"
 
+#define INJECTED_TOLD 100u /* acts of faults on demand in the log */
+
 /* ---- The log -------------------------------------------------------------------------------------------------------- */
 
 static void say(const struct bus *bus, uint64_t tick, const char *format, va_list list)
