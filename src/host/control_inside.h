@@ -91,6 +91,9 @@ control_method control_wait, control_advance;             /* control_time.c */
 control_method control_subscribe, control_unsubscribe;    /* control_subscribe.c */
 control_method control_trace_start, control_trace_stop;   /* control_trace.c */
 
+/* Is a client moving this clock, perhaps between two slices? */
+bool control_time_is_moved(const struct control *control, const struct bus *bus);
+
 /* The client has read: an `advance` that waited for that goes on. */
 void control_time_go_on(struct peer *peer);
 

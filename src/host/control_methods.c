@@ -52,13 +52,18 @@ static json_t *units(struct control_context *context, struct refusal *refusal)
                      list);
 }
 
-/* Of one line, or of all: then of none if one of them cannot. */
+/* Of one line, or of all: then of none if one of them is being advanced. */
 static bool set_clocks(const struct control_context *context, const char *text, struct refusal *refusal)
 {
     const struct control *control = context->peer->control;
-    if (context->request->line_given)
-        return bus_set_clock(context->bus, text, refusal);
-    for (unsigned line = 0; line < control->lines; line++)
+    unsigned first = context->request->line, end = context->request->line_given ? first + 1 : control->lines;
+    for (unsigned line = first; line < end; line++) {
+        if (control_time_is_moved(control, control->buses[line])) {
+            refuse(refusal, REFUSED_STATE, "the clock is being advanced: change it when that has ended");
+            return false;
+        }
+    }
+    for (unsigned line = first; line < end; line++)
         if (!bus_set_clock(control->buses[line], text, refusal))
             return false;
     return true;

@@ -199,15 +199,12 @@ static bool read_advance(struct control_context *context, struct condition **con
     return *condition != NULL;
 }
 
-/* Is another client moving this clock, perhaps between two slices? */
-static bool is_being_moved(const struct control_context *context)
+bool control_time_is_moved(const struct control *control, const struct bus *bus)
 {
-    if (context->bus->advancing)
-        return true;
-    for (const struct peer *peer = context->peer->control->peers; peer; peer = peer->next)
-        if (peer->advance && peer->advance->bus == context->bus)
+    for (const struct peer *peer = control->peers; peer; peer = peer->next)
+        if (peer->advance && peer->advance->bus == bus)
             return true;
-    return false;
+    return bus->advancing != NULL;
 }
 
 json_t *control_advance(struct control_context *context, struct refusal *refusal)
@@ -217,7 +214,7 @@ json_t *control_advance(struct control_context *context, struct refusal *refusal
     if (!bus_stepped(context->bus))
         return refuse(refusal, REFUSED_STATE, "the clock goes by itself (%s): set it to stepped with clock, or wait",
                       context->bus->clock_text);
-    context->again = is_being_moved(context);
+    context->again = control_time_is_moved(context->peer->control, context->bus);
     if (context->again || !read_advance(context, &condition, &ticks, refusal))
         return NULL;
     struct control_call *call = new_call(context, condition, ticks, true);

@@ -265,6 +265,17 @@ def test_advances_of_several_clients_follow_one_another(emulator):
     assert two.answer(second)["t_us"] == 6000000
 
 
+def test_a_clock_that_is_being_advanced_cannot_be_changed(emulator):
+    slow, other = emulator.client(receive_buffer=4096), emulator.client()
+    slow.call("subscribe", kinds=["step"])
+    emulator.program(1, "V16000 A60000 G+")
+    number = slow.request("advance", ticks="30s")
+    error = other.refused("clock", clock="real")
+    assert error.code == -32000 and error.message.startswith("the clock is being advanced"), error
+    slow.answer(number)
+    assert other.call("clock", clock="max")["clock"] == "max"
+
+
 def test_what_stands_behind_an_advance_waits_for_it(emulator):
     client = emulator.client()
     emulator.program(1, "S100 F1000 R")
