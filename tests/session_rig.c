@@ -4,12 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/wire_monitor.h"
+
 static const char axis[] =
     "motors:\n"
     "  1: {offset: 20, stops: {low: -5, high: 400}}\n"
     "  2:\n"
     "switches:\n"
-    "  - {input: 1, motor: 1, at_most: 0, hysteresis: 3, bounce: 2ms}\n"
+    "  - {input: 1, motor: 1, at_most: 0, hysteresis: 3, bounce: 30ms}\n"
     "  - {input: 2, motor: 2, at_least: 50}\n";
 
 const struct session_kind session_kinds[] = {
@@ -28,6 +30,12 @@ static void see(void *context, const struct watch_event *event)
     if (event->kind == WATCH_BYTE)
         fprintf(session->stream, " from %" PRIu64 " by %x%s", event->byte.start - session->zero, event->byte.senders,
                 event->byte.lost ? " lost" : "");
+    if (event->kind == WATCH_MESSAGE) {
+        fprintf(session->stream, " from %" PRIu64 " by %x: %s ", event->message->start - session->zero, event->message->senders,
+                event->message->dropped ? event->message->dropped : "whole");
+        for (size_t i = 0; i < event->message->raw_length; i++)
+            fprintf(session->stream, "%02x", event->message->raw[i]);
+    }
     if (event->kind == WATCH_PLANT || event->kind == WATCH_INJECTED)
         fprintf(session->stream, " %s", event->text);
     putc('\n', session->stream);
@@ -178,15 +186,18 @@ static void act_command(struct session *session, unsigned number)
 {
     char params[120];
     const char *name = session->sim.unit[number - 1u].name;
-    switch (session_draw(session, 8)) {
+    switch (session_draw(session, 10)) {
     case 0:
         snprintf(params, sizeof params, "{\"unit\":\"%s\",\"on\":%s}", name, session_draw(session, 3) > 0 ? "true" : "false");
         session_command(session, "power", params);
         break;
     case 1:
+    case 2:
+    case 3:
+    case 4:
         act_fault(session);
         break;
-    case 2:
+    case 5:
         session_refusal(session, "fault.clear", "{}");
         break;
     default:
@@ -226,17 +237,26 @@ void session_act(struct session *session)
     }
 }
 
+/* Acts come in pairs, one in the middle of the other, and some at one tick. */
+static uint64_t time_of_act(uint64_t begin, unsigned acts, uint64_t ticks, unsigned i)
+{
+    uint64_t even = begin + ticks * (i - i % 2) / acts;
+    return i % 2 == 0 ? even : i % 4 == 1 ? even + 3000 : even;
+}
+
 void session_live(struct session *session, unsigned acts, uint64_t ticks, uint64_t piece)
 {
     uint64_t begin = sim_now(&session->sim);
-    for (unsigned i = 1; i <= acts; i++) {
-        uint64_t end = begin + ticks * i / acts;
+    for (unsigned i = 0; i < acts; i++) {
+        uint64_t end = time_of_act(begin, acts, ticks, i);
         while (piece > 0 && sim_now(&session->sim) + piece < end)
             sim_advance(&session->sim, sim_now(&session->sim) + 1u + sim_now(&session->sim) % piece);
-        sim_advance(&session->sim, end);
+        if (sim_now(&session->sim) < end)
+            sim_advance(&session->sim, end);
         session_act(session);
     }
-    sim_advance(&session->sim, sim_now(&session->sim) + ticks / acts);
+    uint64_t last = begin + ticks > sim_now(&session->sim) ? begin + ticks : sim_now(&session->sim);
+    sim_advance(&session->sim, last);
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
@@ -256,7 +276,7 @@ void session_begin(struct session *session, const struct session_kind *kind)
     ck_assert(sim_begin(&session->sim, &config));
     ck_assert(!kind->plant || plant_configure(&session->sim, "plant", kind->plant, strlen(kind->plant), stderr));
     session_forget(session);
-    session->watcher = (struct watcher){.kinds = WATCH_ALL & ~WATCH_BIT(WATCH_MESSAGE), .see = see, .context = session};
+    session->watcher = (struct watcher){.kinds = WATCH_ALL, .see = see, .context = session};
     sim_watch(&session->sim, &session->watcher);
 }
 

@@ -41,7 +41,8 @@ static void compare_continuations(unsigned seed, const struct session_kind *kind
     here.dice += seed * 7919u;
     snprintf(what, sizeof what, "seed %u, units %s", seed, kind->nodes);
     session_live(&here, 10, 200000 + session_draw(&here, 50000), 0);
-    sim_advance(&here.sim, sim_now(&here.sim) + session_draw(&here, 2500)); /* in the middle of anything */
+    session_act(&here);
+    sim_advance(&here.sim, sim_now(&here.sim) + 1 + session_draw(&here, 12000)); /* in the middle of anything */
     struct snapshot *snapshot = snapshot_take(&here.sim);
     ck_assert_ptr_nonnull(snapshot);
     uint64_t dice = here.dice, taken = here.taken - sim_now(&here.sim);

@@ -45,6 +45,8 @@ json_t *sim_command(struct sim *sim, const char *name, const json_t *params, str
         return refuse(refusal, REFUSED_METHOD, "there is no method `%s'", name);
     if (params && !json_is_object(params))
         return refuse(refusal, REFUSED_PARAMS, "params: expected an object, as in {\"unit\": 1}");
+    if (method->changes)
+        sim_settle(sim);
     uint64_t now = sim_now(sim);
     json_t *result = method->function(sim, params, refusal);
     if (result && method->changes && sim->journal)

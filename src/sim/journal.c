@@ -91,7 +91,7 @@ static void on_purge(void *context, uint64_t now)
     struct journal *journal = context;
     FILE *out = stream_of(journal);
     if (out) {
-        record_line_purge(out, now, record_waiting(journal->sim));
+        record_line_purge(out, now);
         written(journal);
     }
     if (journal->next)
@@ -128,7 +128,7 @@ static void on_command(void *context, uint64_t now, const char *method, const js
     struct journal *journal = context;
     FILE *out = stream_of(journal);
     if (out && strcmp(method, "snapshot") != 0 && strcmp(method, "restore") != 0) {
-        if (!record_line_command(out, now, method, params, record_waiting(journal->sim)))
+        if (!record_line_command(out, now, method, params))
             journal->too_long = true;
         written(journal);
     }
@@ -271,7 +271,6 @@ bool journal_write(struct journal *journal, FILE *out)
 {
     if (!write_pages(journal->page, out))
         return false;
-    fprintf(out, "{\"t\":%" PRIu64 "%s,\"end\":true}\n", sim_now(journal->sim),
-            record_waiting(journal->sim) ? ",\"waiting\":true" : "");
+    fprintf(out, "{\"t\":%" PRIu64 ",\"end\":true}\n", sim_now(journal->sim));
     return fflush(out) == 0;
 }

@@ -107,7 +107,7 @@ static void on_purge(void *context, uint64_t now)
 {
     struct record *record = context;
     if (settle(record)) {
-        record_line_purge(record->out, now, record_waiting(record->sim));
+        record_line_purge(record->out, now);
         written(record);
     }
     if (record->next)
@@ -152,11 +152,10 @@ static void on_command(void *context, uint64_t now, const char *method, const js
 {
     struct record *record = context;
     const struct sim_snapshots *store = record->sim->snapshots;
-    bool restore = strcmp(method, "restore") == 0, waiting = restore ? store->waiting : record_waiting(record->sim);
     if (settle(record)) {
-        if (restore && store->text)
+        if (strcmp(method, "restore") == 0 && store->text)
             embed(record, now, store);
-        if (!record_line_command(record->out, now, method, params, waiting))
+        if (!record_line_command(record->out, now, method, params))
             record->error = ENOMEM;
         written(record);
     }
@@ -205,11 +204,11 @@ int record_failed(const struct record *record)
 
 int record_end(struct record *record)
 {
-    bool waiting = record_waiting(record->sim);
+    sim_settle(record->sim);
     tally_finish(&record->tally);
     write_digests(record, sim_now(record->sim), ",\"partial\":true");
     if (record->error == 0) {
-        fprintf(record->out, "{\"t\":%" PRIu64 "%s,\"end\":true}\n", sim_now(record->sim), waiting ? ",\"waiting\":true" : "");
+        fprintf(record->out, "{\"t\":%" PRIu64 ",\"end\":true}\n", sim_now(record->sim));
         written(record);
     }
     int error = record->tally.short_of_memory || record->sim->watch.short_of_memory ? ENOMEM : record->error;

@@ -12,11 +12,6 @@ void record_hex(FILE *out, const uint8_t *bytes, size_t length)
     }
 }
 
-bool record_waiting(const struct sim *sim)
-{
-    return sim_due(sim) <= sim_now(sim);
-}
-
 /* ---- Head ----------------------------------------------------------------------------------------------------------- */
 
 /* A text as "name", or as "name_hex" if it is not UTF-8. */
@@ -99,14 +94,14 @@ bool record_line_head(FILE *out, struct sim *sim, bool outputs)
 
 /* ---- What comes in -------------------------------------------------------------------------------------------------- */
 
-static void begin(FILE *out, uint64_t now, bool waiting)
+static void begin(FILE *out, uint64_t now)
 {
-    fprintf(out, "{\"t\":%" PRIu64 "%s", now, waiting ? ",\"waiting\":true" : "");
+    fprintf(out, "{\"t\":%" PRIu64, now);
 }
 
 void record_line_bytes(FILE *out, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length)
 {
-    begin(out, now, false);
+    begin(out, now);
     if (tick > now)
         fprintf(out, ",\"at\":%" PRIu64, tick);
     fputs(",\"in\":\"", out);
@@ -114,27 +109,27 @@ void record_line_bytes(FILE *out, uint64_t now, uint64_t tick, const uint8_t *by
     fputs("\"}\n", out);
 }
 
-void record_line_purge(FILE *out, uint64_t now, bool waiting)
+void record_line_purge(FILE *out, uint64_t now)
 {
-    begin(out, now, waiting);
+    begin(out, now);
     fputs(",\"purge\":true}\n", out);
 }
 
 void record_line_break(FILE *out, uint64_t now, bool on)
 {
-    begin(out, now, false);
+    begin(out, now);
     fprintf(out, ",\"break\":%s}\n", on ? "true" : "false");
 }
 
 void record_line_timed(FILE *out, uint64_t now, bool timed)
 {
-    begin(out, now, false);
+    begin(out, now);
     fprintf(out, ",\"timed\":%s}\n", timed ? "true" : "false");
 }
 
-bool record_line_command(FILE *out, uint64_t now, const char *method, const json_t *params, bool waiting)
+bool record_line_command(FILE *out, uint64_t now, const char *method, const json_t *params)
 {
-    begin(out, now, waiting);
+    begin(out, now);
     fprintf(out, ",\"command\":\"%s\",\"params\":", method);
     bool well = params ? json_dumpf(params, out, JSON_COMPACT) == 0 : fputs("{}", out) >= 0;
     fputs("}\n", out);

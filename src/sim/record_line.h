@@ -15,19 +15,15 @@
  * short or a flash image cannot be read. */
 bool record_line_head(FILE *out, struct sim *sim, bool outputs);
 
-/* Bytes of the master. `waiting`: bytes that were due before this have not been moved yet; likewise in all that follow. */
 void record_line_bytes(FILE *out, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length);
-void record_line_purge(FILE *out, uint64_t now, bool waiting);
+void record_line_purge(FILE *out, uint64_t now);
 void record_line_break(FILE *out, uint64_t now, bool on);
 void record_line_timed(FILE *out, uint64_t now, bool timed);
 
 /* A command that was obeyed. Returns false if memory is short. */
-bool record_line_command(FILE *out, uint64_t now, const char *method, const json_t *params, bool waiting);
+bool record_line_command(FILE *out, uint64_t now, const char *method, const json_t *params);
 
 /* "hex":"…" without the name. */
 void record_hex(FILE *out, const uint8_t *bytes, size_t length);
-
-/* Are there bytes that are due at the present tick and have not been moved? */
-bool record_waiting(const struct sim *sim);
 
 #endif

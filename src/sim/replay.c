@@ -58,12 +58,10 @@ static bool reach(struct replay *replay, uint64_t tick, size_t bytes)
 /* Come to a line about what came in: everything before has gone out, and was recorded. */
 static bool come_to_input(struct replay *replay, const char *const *keys, uint64_t *tick)
 {
-    bool waiting;
-    if (!replay_keys(replay, keys) || !replay_flag(replay, "waiting", false, &waiting) ||
-        !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, tick) || !reach(replay, *tick, 0))
+    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, tick) ||
+        !reach(replay, *tick, 0))
         return false;
-    if (!waiting)
-        sim_advance(replay->sim, *tick); /* moves what is due */
+    sim_settle(replay->sim);
     if (!replay->outputs)
         return true;
     tally_settle(&replay->tally);
@@ -91,7 +89,7 @@ static bool do_bytes(struct replay *replay)
 
 static bool do_purge(struct replay *replay)
 {
-    static const char *const keys[] = {"t", "waiting", "purge", NULL};
+    static const char *const keys[] = {"t", "purge", NULL};
     uint64_t tick;
     if (!come_to_input(replay, keys, &tick))
         return false;
@@ -160,7 +158,7 @@ static json_t *obey(struct replay *replay, const char *method, const json_t *par
 
 static bool do_command(struct replay *replay)
 {
-    static const char *const keys[] = {"t", "waiting", "command", "params", NULL};
+    static const char *const keys[] = {"t", "command", "params", NULL};
     const json_t *params = json_object_get(replay->json, "params");
     const char *method = replay_string(replay, "command");
     struct refusal refusal = {0};
@@ -232,7 +230,7 @@ static bool do_out(struct replay *replay)
     const uint8_t *bytes = replay_bytes(replay, "out", SEGMENT_ROOM, &length);
     if (!bytes || !reach(replay, until, length))
         return false;
-    sim_advance(replay->sim, until > sim_now(replay->sim) ? until : sim_now(replay->sim));
+    sim_settle(replay->sim);
     tally_settle(&replay->tally);
     return replay_nothing_more(replay, from, 0) && replay_compare_bytes(replay, from, until, bytes, length);
 }
@@ -274,7 +272,7 @@ static bool do_digest(struct replay *replay)
         !replay_flag(replay, "partial", false, &partial) || !reach(replay, span.tick, 0))
         return false;
     if (partial) {
-        sim_advance(replay->sim, sim_now(replay->sim));
+        sim_settle(replay->sim);
         tally_finish(&replay->tally);
     } else {
         tally_settle(&replay->tally);
@@ -284,14 +282,12 @@ static bool do_digest(struct replay *replay)
 
 static bool do_end(struct replay *replay)
 {
-    static const char *const keys[] = {"t", "waiting", "end", NULL};
+    static const char *const keys[] = {"t", "end", NULL};
     uint64_t tick;
-    bool waiting;
-    if (!replay_keys(replay, keys) || !replay_flag(replay, "waiting", false, &waiting) ||
-        !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, &tick) || !reach(replay, tick, 0))
+    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, &tick) ||
+        !reach(replay, tick, 0))
         return false;
-    if (!waiting)
-        sim_advance(replay->sim, tick);
+    sim_settle(replay->sim);
     replay->counts.whole = true;
     if (!replay->outputs)
         return true;

@@ -253,6 +253,7 @@ size_t sim_room(const struct sim *sim)
 
 void sim_take(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tick)
 {
+    sim_settle(sim);
     if (sim->journal)
         sim->journal->bytes(sim->journal->context, sim_now(sim), tick, bytes, length);
     segment_take(&sim->segment, bytes, length, tick);
@@ -260,6 +261,7 @@ void sim_take(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tic
 
 size_t sim_purge(struct sim *sim)
 {
+    sim_settle(sim);
     if (sim->journal)
         sim->journal->purge(sim->journal->context, sim_now(sim));
     return segment_purge(&sim->segment);
@@ -267,6 +269,7 @@ size_t sim_purge(struct sim *sim)
 
 void sim_break(struct sim *sim, bool on)
 {
+    sim_settle(sim);
     if (sim->journal)
         sim->journal->line_break(sim->journal->context, sim_now(sim), on);
     segment_break(&sim->segment, on);
@@ -343,6 +346,11 @@ void sim_advance(struct sim *sim, uint64_t tick)
         take_changes(sim);
         watch_hand_out(&sim->watch, sim_now(sim) + 1u); /* of the present tick there is only what was delivered */
     } while (sim_now(sim) < tick);
+}
+
+void sim_settle(struct sim *sim)
+{
+    sim_advance(sim, sim_now(sim));
 }
 
 /* ---- Units ---------------------------------------------------------------------------------------------------------- */

@@ -246,7 +246,6 @@ json_t *command_restore(struct sim *sim, const json_t *params, struct refusal *r
         return refuse(refusal, REFUSED_MEMORY, out_of_memory);
     free(store->text);
     store->text = NULL;
-    store->waiting = record_waiting(sim);
     if (!read_params(params, &name, &file, refusal))
         return NULL;
     if (name)

@@ -20,9 +20,7 @@ struct sim_snapshots {
     struct journal *journal; /* NULL: none is kept */
     size_t count;
     struct named_snapshot named[SNAPSHOTS_MAX];
-    /* Of the restore that is being obeyed, for records: */
-    bool waiting;            /* bytes were due before it */
-    char *text;              /* the file it has read; NULL: none */
+    char *text;              /* the file that the restore being obeyed has read, for records; NULL: none */
     size_t length;
 };
 
