@@ -1,6 +1,6 @@
 #!/bin/bash
-# --trace FILE.vcd, .csv, .jsonl of rkm04 exec and rkm04 serve: one run in every format says the same, read by programs that others wrote: GTKWave's
-# vcd2fst and fst2vcd, sigrok-cli (the library of PulseView), Python's JSON.
+# --trace FILE.vcd, .csv, .jsonl of rkm04 exec and rkm04 serve: one run in every format says the same, read by programs that
+# others wrote: GTKWave's vcd2fst and fst2vcd, sigrok-cli (the library of PulseView), Python's JSON.
 
 . "$(dirname "$0")/lib.sh"
 
