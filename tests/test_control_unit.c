@@ -303,6 +303,18 @@ START_TEST(U4_with_the_power_off_the_switch_waits_for_it)
 }
 END_TEST
 
+START_TEST(U4_a_snapshot_remembers_the_switch)
+{
+    command("snapshot", "{\"name\":\"before\"}");
+    command("switch", "{\"node\":4,\"reset\":true}");
+    command("restore", "{\"name\":\"before\"}");
+    ck_assert_str_eq(unit("node"), "1");
+    ck_assert_str_eq(unit("switch"), "1");
+    command("reset", NULL);
+    ck_assert_str_eq(unit("node"), "1");
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("control_unit");
@@ -325,6 +337,7 @@ int main(void)
     tcase_add_test(hands, power_that_is_on_already_changes_nothing);
     tcase_add_test(hands, U4_the_address_switch_is_read_at_power_up);
     tcase_add_test(hands, U4_with_the_power_off_the_switch_waits_for_it);
+    tcase_add_test(hands, U4_a_snapshot_remembers_the_switch);
     suite_add_tcase(suite, seen);
     suite_add_tcase(suite, hands);
     SRunner *runner = srunner_create(suite);

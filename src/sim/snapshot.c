@@ -7,6 +7,7 @@
 
 struct snapshot {
     struct segment segment; /* units that are not there have never been touched */
+    struct node_list switches; /* S1 of the units, as it stands */
     struct faults faults;
     struct wire_monitor monitor;
     struct sim_unit unit[SEGMENT_UNITS]; /* `plant` is a copy of its own */
@@ -97,6 +98,7 @@ struct snapshot *snapshot_take(struct sim *sim)
     if (!snapshot)
         return NULL;
     copy_segment(&snapshot->segment, &sim->segment);
+    snapshot->switches = sim->config.nodes;
     snapshot->faults = sim->faults;
     bool well = wire_monitor_begin(&snapshot->monitor, sim->monitor.framing);
     if (well)
@@ -288,6 +290,7 @@ static bool put_later(struct sim *sim, const struct snapshot *snapshot, uint64_t
     put_segment(sim, &snapshot->segment, later);
     for (unsigned at = 0; at < sim_units(sim); at++)
         put_unit(&sim->unit[at], &snapshot->unit[at], plant[at]);
+    sim->config.nodes = snapshot->switches;
     sim->faults = snapshot->faults;
     faults_shift(&sim->faults, later);
     wire_monitor_copy(&sim->monitor, &snapshot->monitor, later);
