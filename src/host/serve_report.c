@@ -60,8 +60,8 @@ void serve_report_start(const struct serve_options *options, struct bus *const *
 {
     for (unsigned i = 0; i < options->lines; i++)
         tell_ports(buses[i]);
-    if (options->baud == 0)
-        log_at(0, "framing %s, bytes not paced, clock %s", options->config.framing->name, options->clock_text);
+    if (options->baud == 0 || options->clock.stands)
+        log_at(0, "framing %s, bytes take no time, clock %s", options->config.framing->name, options->clock_text);
     else
         log_at(0, "framing %s, bytes paced at 19200 baud, turnaround %" PRIu32 " us, clock %s", options->config.framing->name,
                options->turnaround, options->clock_text);
