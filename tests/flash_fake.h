@@ -1,7 +1,8 @@
 /* flash_fake.h: a flash in memory that knows the rules of real ones and breaks on demand, for tests.
  *
  * RKM04_FLASH_BLOCKS blocks of RKM04_FLASH_BLOCK_SIZE bytes. An erased byte reads FF. Programming works on units of 8 bytes,
- * each once after an erase. Whoever breaks a rule gets an error and is counted in `misuse`: a test asserts that it is 0.
+ * each once after an erase, and makes only 0 of 1. Whoever breaks a rule gets an error and is counted in `misuse`: a test
+ * asserts that it is 0.
  *
  *     flash_fake_init(&flash);
  *     flash_fake_arm(&flash, 3, FLASH_CUT_BITS, seed);    // the third erase or program from now on
@@ -30,8 +31,21 @@ enum flash_fault {
     FLASH_CUT_SUFFIX,    /* only the last ones */
     FLASH_CUT_BITS,      /* some of the bits that had to change did, all over the range */
     FLASH_CUT_GARBAGE,   /* every byte of the range is anything */
+    FLASH_CUT_ZEROS,     /* the first bytes are 0, as where a flash programs a block before it erases it */
+    FLASH_CUT_FLIPS,     /* all of it happened, and one to eight bits anywhere in the block are wrong */
     FLASH_CUT_AFTER,     /* all of it happened */
     FLASH_FAULTS
+};
+
+/* What is wrong with a block for good. */
+enum flash_wear {
+    FLASH_SOUND,
+    FLASH_NO_ERASE,      /* an erase does nothing and reports an error */
+    FLASH_HALF_ERASE,    /* an erase does its work in part and reports an error */
+    FLASH_NO_PROGRAM,    /* a program does nothing and reports an error */
+    FLASH_HALF_PROGRAM,  /* a program does its work in part and reports an error */
+    FLASH_STUCK_CELLS,   /* a cell in every 61 bytes, from byte 13 on, stays 0; no error is reported */
+    FLASH_WEARS
 };
 
 struct flash_fake {
@@ -42,9 +56,13 @@ struct flash_fake {
     unsigned operations;                 /* erases and programs tried */
     unsigned reads;                      /* reads tried */
     unsigned misuse;                     /* rules broken by the caller */
-    unsigned fault_at;                   /* value of `operations` at which the fault strikes; 0 = never */
+    unsigned fault_at[2];                /* values of `operations` at which the faults strike; 0 = never */
+    enum flash_fault fault[2];
+    enum flash_wear wear[RKM04_FLASH_BLOCKS];
+    unsigned border;                     /* how many bytes come before the border of PREFIX, SUFFIX and ZEROS; 0: any */
     unsigned read_fault_at;              /* value of `reads` at which one read fails; 0 = never */
-    enum flash_fault fault;
+    bool read_cuts;                      /* and the power goes with it */
+    unsigned length;                     /* bytes of the last erase or program */
     uint32_t random;                     /* decides how far a torn operation went */
 };
 
@@ -54,14 +72,19 @@ void flash_fake_init(struct flash_fake *flash);
 /* Let the n-th (1..) erase or program from now on go wrong; counters begin anew. Same seed, same damage. */
 void flash_fake_arm(struct flash_fake *flash, unsigned n, enum flash_fault fault, uint32_t seed);
 
-/* Let the n-th (1..) read from now on fail. */
+/* A second fault, at the n-th (1..) operation since flash_fake_arm. */
+void flash_fake_arm_also(struct flash_fake *flash, unsigned n, enum flash_fault fault);
+
+/* Let the n-th (1..) read from now on fail, or let the power go then. */
 void flash_fake_arm_read(struct flash_fake *flash, unsigned n);
+void flash_fake_cut_at_read(struct flash_fake *flash, unsigned n);
 
 /* Power comes back; nothing is armed any more. The contents stay as they are. */
 void flash_fake_power_on(struct flash_fake *flash);
 
-/* Name of a fault for messages. */
+/* Names for messages. */
 const char *flash_fault_name(enum flash_fault fault);
+const char *flash_wear_name(enum flash_wear wear);
 
 /* The three port functions; `flash` is a struct flash_fake. 0 = well, 1 = failed. */
 int flash_fake_read(void *flash, unsigned block, unsigned offset, void *data, unsigned length);

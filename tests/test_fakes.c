@@ -132,6 +132,77 @@ START_TEST(a_block_left_half_erased_has_to_be_erased_again)
 }
 END_TEST
 
+START_TEST(a_cut_may_leave_zeros_or_wrong_bits_anywhere_in_the_block)
+{
+    ck_assert_uint_ge(changed(1, FLASH_CUT_FLIPS, 1), 56);
+    unsigned wrong = 0;
+    for (unsigned i = 0; i < RKM04_FLASH_BLOCK_SIZE; i++)
+        wrong += flash.data[2][i] != (i < 64 ? 0 : 0xff);
+    ck_assert(wrong >= 1 && wrong <= 8);
+    flash_fake_power_on(&flash);
+    ck_assert_int_eq(program_eight(3, 0), 0);
+    flash_fake_arm(&flash, 1, FLASH_CUT_ZEROS, 1);
+    flash.border = 5;
+    ck_assert_int_eq(flash_fake_erase(&flash, 3), 1);
+    ck_assert_uint_eq(flash.length, RKM04_FLASH_BLOCK_SIZE);
+    ck_assert_mem_eq(flash.data[3], "\0\0\0\0\0\6\7\10\377", 9);
+}
+END_TEST
+
+/* What an erase and a program return on a worn block, and what is left there: the flash had a block of zeros. */
+static void assert_wear(enum flash_wear wear, int erased, int programmed, bool whole)
+{
+    static const uint8_t zero[RKM04_FLASH_BLOCK_SIZE];
+    const char *name = flash_wear_name(wear);
+    flash_fake_init(&flash);
+    ck_assert_int_eq(flash_fake_program(&flash, 5, 0, zero, sizeof zero), 0);
+    flash.wear[5] = wear;
+    ck_assert_msg(flash_fake_erase(&flash, 5) == erased, "%s: erase", name);
+    unsigned left = 0;
+    for (unsigned i = 0; i < RKM04_FLASH_BLOCK_SIZE; i++)
+        left += flash.data[5][i] != 0xff;
+    ck_assert_msg((left == 0) == whole, "%s: %u bytes are not erased", name, left);
+    if (erased == 0)
+        ck_assert_msg(program_eight(5, 0) == programmed, "%s: program", name);
+    ck_assert_msg((memcmp(flash.data[5], eight, 8) == 0) == (erased == 0 && programmed == 0), "%s: programmed", name);
+}
+
+START_TEST(a_worn_block_fails_as_its_wear_says)
+{
+    assert_wear(FLASH_SOUND, 0, 0, true);
+    assert_wear(FLASH_NO_ERASE, 1, 0, false);
+    assert_wear(FLASH_HALF_ERASE, 1, 0, false);
+    assert_wear(FLASH_NO_PROGRAM, 0, 1, true);
+    assert_wear(FLASH_HALF_PROGRAM, 0, 1, true);
+    assert_wear(FLASH_STUCK_CELLS, 0, 0, false);
+    ck_assert_uint_eq(flash.data[5][13], 0xdf);
+}
+END_TEST
+
+START_TEST(two_faults_may_be_armed)
+{
+    flash_fake_arm(&flash, 3, FLASH_CUT_BEFORE, 1);
+    flash_fake_arm_also(&flash, 1, FLASH_FAIL_NOTHING);
+    ck_assert_int_eq(program_eight(0, 0), 1);
+    ck_assert_int_eq(program_eight(0, 8), 0);
+    ck_assert_int_eq(program_eight(0, 16), 1);
+    ck_assert(flash.off);
+}
+END_TEST
+
+START_TEST(the_power_may_go_at_a_read)
+{
+    uint8_t data[1];
+    flash_fake_cut_at_read(&flash, 2);
+    ck_assert_int_eq(flash_fake_read(&flash, 0, 0, data, 1), 0);
+    ck_assert_int_eq(flash_fake_read(&flash, 0, 0, data, 1), 1);
+    ck_assert_int_eq(flash_fake_read(&flash, 0, 0, data, 1), 1);
+    ck_assert_int_eq(flash_fake_erase(&flash, 0), 1);
+    flash_fake_power_on(&flash);
+    ck_assert_int_eq(flash_fake_read(&flash, 0, 0, data, 1), 0);
+}
+END_TEST
+
 START_TEST(one_read_fails_if_it_is_told_to)
 {
     uint8_t data[1];
@@ -194,6 +265,10 @@ static Suite *fakes_suite(void)
     tcase_add_test(fake, every_fault_does_as_much_as_its_name_says);
     tcase_add_test(fake, a_block_left_half_erased_has_to_be_erased_again);
     tcase_add_test(fake, one_read_fails_if_it_is_told_to);
+    tcase_add_test(fake, a_cut_may_leave_zeros_or_wrong_bits_anywhere_in_the_block);
+    tcase_add_test(fake, a_worn_block_fails_as_its_wear_says);
+    tcase_add_test(fake, two_faults_may_be_armed);
+    tcase_add_test(fake, the_power_may_go_at_a_read);
     suite_add_tcase(suite, fake);
     TCase *recorder = tcase_create("recorder");
     tcase_add_test(recorder, the_recorder_finds_steps_and_events_by_motor_and_number);
