@@ -4,66 +4,26 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "lock_file.h"
 #include "log.h"
 
 #define RECORD "rkm04 process %ld, control socket %ju:%ju" /* in the lock file: whose it is; device and number of the file */
-#define RECORD_MAX 128
 #define NAME_SURE 80u /* characters of a name that fit behind /proc/self/fd/N */
-
-/* ---- The lock ------------------------------------------------------------------------------------------------------- */
-
-/* Open and lock PATH.lock. Returns false with errno; EWOULDBLOCK: another holds it, its record is in `record`. */
-static bool lock(struct control_socket *control, char record[RECORD_MAX])
-{
-    struct stat ours, there;
-    for (;;) {
-        int fd = open(control->lock_path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0600);
-        if (fd < 0)
-            return false;
-        bool locked = flock(fd, LOCK_EX | LOCK_NB) == 0;
-        int why = errno;
-        ssize_t length = pread(fd, record, RECORD_MAX - 1, 0);
-        record[length > 0 ? length : 0] = '\0';
-        record[strcspn(record, "\n")] = '\0';
-        if (!locked) {
-            close(fd);
-            errno = why;
-            return false;
-        }
-        /* The one before us may have removed the file between our open and our lock. */
-        if (fstat(fd, &ours) == 0 && lstat(control->lock_path, &there) == 0 && ours.st_ino == there.st_ino &&
-            ours.st_dev == there.st_dev) {
-            control->lock = fd;
-            return true;
-        }
-        close(fd);
-    }
-}
-
-static void unlock(struct control_socket *control)
-{
-    unlink(control->lock_path);
-    close(control->lock);
-    control->lock = -1;
-}
 
 /* Say in the lock file which socket is ours. */
 static bool write_record(struct control_socket *control)
 {
-    char record[RECORD_MAX];
     struct stat made;
     if (lstat(control->path, &made) != 0)
         return false;
     control->device = made.st_dev;
     control->inode = made.st_ino;
-    int length = snprintf(record, sizeof record, RECORD "\n", (long)getpid(), (uintmax_t)made.st_dev, (uintmax_t)made.st_ino);
-    return ftruncate(control->lock, 0) == 0 && pwrite(control->lock, record, (size_t)length, 0) == length;
+    return lock_file_write(control->lock, RECORD, (long)getpid(), (uintmax_t)made.st_dev, (uintmax_t)made.st_ino);
 }
 
 /* ---- What is there -------------------------------------------------------------------------------------------------- */
@@ -104,8 +64,9 @@ static bool clear_stale(const struct control_socket *control, const struct socka
 
 static bool claim(struct control_socket *control, const struct sockaddr_un *address)
 {
-    char record[RECORD_MAX];
-    if (!lock(control, record)) {
+    char record[LOCK_RECORD_MAX];
+    control->lock = lock_file_take(control->lock_path, record);
+    if (control->lock < 0) {
         if (errno == EWOULDBLOCK)
             log_error("another emulator (%s) holds the control socket %s: end it, or choose another --control",
                       record[0] ? record : "about to start", control->path);
@@ -123,7 +84,7 @@ static bool claim(struct control_socket *control, const struct sockaddr_un *addr
         return false;
     }
     if (!clear_stale(control, address, record)) {
-        unlock(control);
+        lock_file_drop(control->lock_path, &control->lock);
         return false;
     }
     return true;
@@ -199,5 +160,5 @@ void control_socket_release(struct control_socket *control)
         return;
     if (control->inode != 0 && is_socket(control->path, control->device, control->inode))
         unlink(control->path);
-    unlock(control);
+    lock_file_drop(control->lock_path, &control->lock);
 }

@@ -1,18 +1,16 @@
 #include "link_path.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "lock_file.h"
 #include "log.h"
 
 #define RECORD "rkm04 process %ld, pty %63s" /* in the lock file: whose the link is, and where it leads */
-#define RECORD_MAX 128
 
 /* ---- The default ---------------------------------------------------------------------------------------------------- */
 
@@ -58,55 +56,12 @@ static bool default_path(char path[PATH_MAX], unsigned number)
 
 /* ---- The lock ------------------------------------------------------------------------------------------------------- */
 
-/* Open and lock LINK.lock. Returns false with errno; EWOULDBLOCK: another holds it, its record is in `record`. */
-static bool lock(struct link_path *link, char record[RECORD_MAX])
-{
-    struct stat ours, there;
-    for (;;) {
-        int fd = open(link->lock_path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0600);
-        if (fd < 0)
-            return false;
-        bool locked = flock(fd, LOCK_EX | LOCK_NB) == 0;
-        int why = errno;
-        ssize_t length = pread(fd, record, RECORD_MAX - 1, 0);
-        record[length > 0 ? length : 0] = '\0';
-        record[strcspn(record, "\n")] = '\0';
-        if (!locked) {
-            close(fd);
-            errno = why;
-            return false;
-        }
-        /* The one before us may have removed the file between our open and our lock. */
-        if (fstat(fd, &ours) == 0 && stat(link->lock_path, &there) == 0 && ours.st_ino == there.st_ino &&
-            ours.st_dev == there.st_dev) {
-            link->lock = fd;
-            return true;
-        }
-        close(fd);
-    }
-}
-
 /* Find the target of the link in a record. Returns false if it is none; an empty one (we made the file) has an empty target. */
 static bool read_record(const char *record, char target[64])
 {
     long pid;
     target[0] = '\0';
     return record[0] == '\0' || sscanf(record, RECORD, &pid, target) == 2;
-}
-
-static bool write_record(const struct link_path *link, const char *target)
-{
-    char record[RECORD_MAX];
-    int length = snprintf(record, sizeof record, "rkm04 process %ld, pty %s\n", (long)getpid(), target);
-    return ftruncate(link->lock, 0) == 0 && pwrite(link->lock, record, (size_t)length, 0) == length;
-}
-
-/* Remove the lock file and give the lock free. */
-static void unlock(struct link_path *link)
-{
-    unlink(link->lock_path);
-    close(link->lock);
-    link->lock = -1;
 }
 
 /* ---- The link ------------------------------------------------------------------------------------------------------- */
@@ -135,7 +90,7 @@ static bool clear_stale(const struct link_path *link, const char *target)
 
 bool link_path_claim(struct link_path *link, const char *path, unsigned number)
 {
-    char record[RECORD_MAX], target[64];
+    char record[LOCK_RECORD_MAX], target[64];
     *link = (struct link_path){.lock = -1};
     if (!path && !default_path(link->path, number))
         return false;
@@ -147,7 +102,8 @@ bool link_path_claim(struct link_path *link, const char *path, unsigned number)
         log_error("--link: the path is too long");
         return false;
     }
-    if (!lock(link, record)) {
+    link->lock = lock_file_take(link->lock_path, record);
+    if (link->lock < 0) {
         if (errno == EWOULDBLOCK)
             log_error("another emulator (%s) holds the link %s: end it, or choose another --link",
                       record[0] ? record : "about to start", link->path);
@@ -163,7 +119,7 @@ bool link_path_claim(struct link_path *link, const char *path, unsigned number)
         return false;
     }
     if (!clear_stale(link, target)) {
-        unlock(link);
+        lock_file_drop(link->lock_path, &link->lock);
         return false;
     }
     return true;
@@ -172,7 +128,8 @@ bool link_path_claim(struct link_path *link, const char *path, unsigned number)
 bool link_path_make(struct link_path *link, const char *target)
 {
     /* The record first: a link without it would not be known as ours. symlink() is atomic and replaces nothing. */
-    if (!write_record(link, target) || symlink(target, link->path) != 0) {
+    if (!lock_file_write(link->lock, "rkm04 process %ld, pty %s", (long)getpid(), target) ||
+        symlink(target, link->path) != 0) {
         log_error("cannot make the link %s: %s; choose another --link", link->path, strerror(errno));
         return false;
     }
@@ -192,5 +149,5 @@ void link_path_release(struct link_path *link)
     if (link->lock < 0)
         return;
     link_path_hide(link);
-    unlock(link);
+    lock_file_drop(link->lock_path, &link->lock);
 }

@@ -180,7 +180,9 @@ static bool start_control(struct serve *serve)
     }
     serve->control = control_open(&serve->loop, options->control ? options->control : serve->control_path, serve->bus,
                                   options->lines, &control_calls);
-    return serve->control != NULL;
+    if (!serve->control && !options->control)
+        log_error("going on without a control socket; --control PATH names another place for it");
+    return serve->control || !options->control;
 }
 
 static bool start(struct serve *serve)

@@ -1,0 +1,58 @@
+#include "lock_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Is the open file still the one of that name? Who held it before may have removed it between our open and our lock. */
+static bool is_there(int fd, const char *path)
+{
+    struct stat ours, there;
+    return fstat(fd, &ours) == 0 && lstat(path, &there) == 0 && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+}
+
+int lock_file_take(const char *path, char record[LOCK_RECORD_MAX])
+{
+    for (;;) {
+        int fd = open(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0600);
+        if (fd < 0)
+            return -1;
+        bool locked = flock(fd, LOCK_EX | LOCK_NB) == 0;
+        int why = errno;
+        ssize_t length = pread(fd, record, LOCK_RECORD_MAX - 1, 0);
+        record[length > 0 ? length : 0] = '\0';
+        record[strcspn(record, "\n")] = '\0';
+        if (locked && is_there(fd, path))
+            return fd;
+        close(fd);
+        if (!locked) {
+            errno = why;
+            return -1;
+        }
+    }
+}
+
+bool lock_file_write(int fd, const char *format, ...)
+{
+    char record[LOCK_RECORD_MAX];
+    va_list list;
+    va_start(list, format);
+    int length = vsnprintf(record, sizeof record - 1, format, list);
+    va_end(list);
+    if (length < 0 || length >= (int)sizeof record - 1)
+        return false;
+    record[length] = '\n';
+    return ftruncate(fd, 0) == 0 && pwrite(fd, record, (size_t)length + 1, 0) == length + 1;
+}
+
+void lock_file_drop(const char *path, int *fd)
+{
+    unlink(path);
+    close(*fd);
+    *fd = -1;
+}

@@ -1,0 +1,21 @@
+/* lock_file.h: a file beside something that one process holds, a link or a socket: the kernel frees its lock however the holder
+ * ends, and what stands in it tells who that was and what was his. */
+#ifndef RKM04_HOST_LOCK_FILE_H
+#define RKM04_HOST_LOCK_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define LOCK_RECORD_MAX 128 /* bytes of the text, its end included */
+
+/* Open, making it if it is not there, and lock `path`; its first line goes to `record`. Returns a descriptor; -1: errno says
+ * why, EWOULDBLOCK: somebody else holds it, `record` is his. */
+int lock_file_take(const char *path, char record[LOCK_RECORD_MAX]);
+
+/* Write the record: one line. Returns false if it did not work (errno). */
+bool lock_file_write(int fd, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Remove the file and give the lock free; *fd becomes -1. */
+void lock_file_drop(const char *path, int *fd);
+
+#endif
