@@ -164,20 +164,24 @@ static void act_program(struct session *session, uint8_t node)
 {
     static const char *const texts[] = {
         "\\S50 V900 A3000 F90 R B40 R", "V3000 F300 R", "L5 T03 W2 C03 W3 E", "G-", "G+", "K", "C75", "V700", "[F10 R", "] D R",
-        "M01 F200 R U", "(01 C100 F30 R", "T80 O81 F3 R", "T81 Z80 B3 R", "Y F20 Y B50 V400 Y R", "\\", "T41 F500 R", "@1 F2 R D J1",
+        "M01 F200 R U", "(01 C100 F30 R", "T80 O81 F3 R", "T81 Z80 B3 R", "Y F20 Y B50 V400 Y R", "\\", "T41 F500 R",
+        "@1 F2 R D J1",
         "I01H1 J2", "X02 G+", "F100 V100 R W5 H", ")02 =7 H",
     };
-    session_set(session, node, (char)('0' + session_draw(session, 5)), texts[session_draw(session, sizeof texts / sizeof *texts)]);
+    char motor = (char)('0' + session_draw(session, 5));
+    session_set(session, node, motor, texts[session_draw(session, sizeof texts / sizeof *texts)]);
 }
 
 static void act_fault(struct session *session)
 {
     static const char *const faults[] = {
-        "{\"kind\":\"drop\",\"probability\":0.02,\"for\":\"200ms\"}", "{\"kind\":\"flip\",\"mask\":4,\"probability\":0.05,\"count\":3}",
+        "{\"kind\":\"drop\",\"probability\":0.02,\"for\":\"200ms\"}",
+        "{\"kind\":\"flip\",\"mask\":4,\"probability\":0.05,\"count\":3}",
         "{\"kind\":\"duplicate\",\"count\":2}", "{\"kind\":\"delay\",\"delay\":\"7ms\",\"count\":1}",
         "{\"kind\":\"no_answer\",\"count\":1,\"after\":\"20ms\"}", "{\"kind\":\"cut\",\"bytes\":3,\"count\":1}",
         "{\"kind\":\"break\",\"duration\":\"3ms\",\"after\":\"5ms\"}", "{\"kind\":\"cable\",\"duration\":\"30ms\"}",
-        "{\"kind\":\"echo\",\"for\":\"100ms\"}", "{\"kind\":\"input\",\"input\":2,\"level\":1,\"duration\":\"40ms\",\"every\":\"90ms\",\"count\":4}",
+        "{\"kind\":\"echo\",\"for\":\"100ms\"}",
+        "{\"kind\":\"input\",\"input\":2,\"level\":1,\"duration\":\"40ms\",\"every\":\"90ms\",\"count\":4}",
     };
     session_refusal(session, "fault.inject", faults[session_draw(session, sizeof faults / sizeof *faults)]);
 }

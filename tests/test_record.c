@@ -56,8 +56,8 @@ static const char *replayed(const char *text, size_t length)
 static void expect(const char *text, size_t length, const char *expected)
 {
     const char *said = replayed(text, length);
-    ck_assert_msg(strncmp(said, expected, strlen(expected)) == 0, "the replay says\n%s\ninstead of\n%s\nof\n%.3000s", said, expected,
-                  text);
+    ck_assert_msg(strncmp(said, expected, strlen(expected)) == 0, "the replay says\n%s\ninstead of\n%s\nof\n%.3000s", said,
+                  expected, text);
 }
 
 /* ---- Stories -------------------------------------------------------------------------------------------------------- */
@@ -226,7 +226,8 @@ START_TEST(what_was_recorded_and_does_not_come_is_a_difference)
     expect_changed("{\"t\":1500000,\"command\"", "{\"t\":1400000,\"out\":\"7e\"}\n{\"t\":1500000,\"command\"",
                    "different: the master, tick 1400000: recorded as byte 1 of 7e; came nothing");
     expect_changed("{\"t\":1500000,\"command\"",
-                   "{\"t\":1400000,\"unit\":1,\"motor\":4,\"events\":1,\"digest\":\"0123456789abcdef\"}\n{\"t\":1500000,\"command\"",
+                   "{\"t\":1400000,\"unit\":1,\"motor\":4,\"events\":1,\"digest\":\"0123456789abcdef\"}\n"
+                   "{\"t\":1500000,\"command\"",
                    "different: unit 5, motor 4, ticks 1300000 to 1399999: recorded 1 events since the beginning; came nothing");
 }
 END_TEST

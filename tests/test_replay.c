@@ -30,8 +30,8 @@ static enum replay_end replayed(const char *text, size_t length, bool (*interrup
 static void expect_wrong(const char *text, const char *expected)
 {
     enum replay_end end = replayed(text, strlen(text), NULL, NULL);
-    ck_assert_msg(end == REPLAY_WRONG && strncmp(said, expected, strlen(expected)) == 0, "%s\nsays\n%s\ninstead of\n%s", text, said,
-                  expected);
+    ck_assert_msg(end == REPLAY_WRONG && strncmp(said, expected, strlen(expected)) == 0, "%s\nsays\n%s\ninstead of\n%s", text,
+                  said, expected);
 }
 
 START_TEST(a_file_that_is_no_record_is_named_with_line_column_and_what_was_expected)
@@ -47,10 +47,12 @@ START_TEST(a_file_that_is_no_record_is_named_with_line_column_and_what_was_expec
         {"{\"rkm04_record\":1}\n", "x:1:1: expected \"nodes\", a list of 1 to 16 addresses from 1 to 16"},
         {"{\"rkm04_record\":1,\"nodes\":[17]}\n", "x:1:27: expected \"nodes\""},
         {"{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"x\"}\n", "x:1:41: expected \"framing\", hdlc or plain"},
-        {"{\"rkm04_record\":1,\"nodes\":[1],\"farming\":\"x\"}\n", "x:1:41: \"farming\" has no place in this line: expected rkm04_record"},
+        {"{\"rkm04_record\":1,\"nodes\":[1],\"farming\":\"x\"}\n",
+         "x:1:41: \"farming\" has no place in this line: expected rkm04_record"},
         {"{\"rkm04_record\":1,\"nodes\":[1],\"nodes\":[1]}\n", "x:1:37: expected a JSON object: duplicate object key"},
         {"{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"seed\":\"-1\"}\n", "x:1:55: expected \"seed\""},
-        {"{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"seed\":\"1\",\"plant\":\"motors: 3\"}\n", "x:1:1: plant:1:9: error: "},
+        {"{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"seed\":\"1\",\"plant\":\"motors: 3\"}\n",
+         "x:1:1: plant:1:9: error: "},
         {HEAD "{\"flash\":2,\"block\":0,\"hex\":\"00\"}\n", "x:2:10: expected \"flash\": 1"},
         {HEAD "{\"flash\":1,\"block\":8,\"hex\":\"00\"}\n", "x:2:20: expected \"block\", a whole number from 0 to 7"},
         {HEAD "{\"flash\":1,\"block\":0,\"hex\":\"0\"}\n", "x:2:28: expected \"hex\", 1 to 4096 bytes of two hexadecimal digits"},
@@ -77,7 +79,8 @@ START_TEST(a_file_that_is_no_record_is_named_with_line_column_and_what_was_expec
          "x:2:15: expected \"unit\", a whole number from 0 to 1"},
         {HEAD_OUT "{\"t\":9,\"unit\":1,\"motor\":5,\"events\":1,\"digest\":\"0123456789abcdef\"}\n",
          "x:2:25: expected \"motor\", a whole number from 0 to 4"},
-        {HEAD_OUT "{\"t\":9,\"unit\":1,\"motor\":0,\"events\":1,\"digest\":\"xyz\"}\n", "x:2:47: expected \"digest\", 16 hexadecimal digits"},
+        {HEAD_OUT "{\"t\":9,\"unit\":1,\"motor\":0,\"events\":1,\"digest\":\"xyz\"}\n",
+         "x:2:47: expected \"digest\", 16 hexadecimal digits"},
         {HEAD "{\"t\":9,\"embedded\":0}\n", "x:2:19: expected \"embedded\", a whole number from 1 to"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
@@ -125,7 +128,8 @@ START_TEST(records_within_one_another_have_an_end)
         FILE *out = open_memstream(&around, &length);
         for (const char *at = text; (at = strchr(at, '\n')) != NULL; at++)
             lines++;
-        fprintf(out, HEAD "{\"t\":0,\"embedded\":%zu}\n%s{\"t\":0,\"command\":\"restore\",\"params\":{\"file\":\"f\"}}\n", lines, text);
+        fprintf(out, HEAD "{\"t\":0,\"embedded\":%zu}\n%s{\"t\":0,\"command\":\"restore\",\"params\":{\"file\":\"f\"}}\n", lines,
+                text);
         fclose(out);
         free(text);
         text = around;
@@ -194,7 +198,9 @@ START_TEST(damaged_records_harm_nobody)
                 size_t at = session_draw(&session, length);
                 if (session_draw(&session, 4) == 0)
                     at = session_draw(&session, length < 400 ? length : 400); /* the head */
-                damaged[at] = session_draw(&session, 3) == 0 ? (char)session_draw(&session, 256) : bits[session_draw(&session, sizeof bits - 1)];
+                damaged[at] = bits[session_draw(&session, sizeof bits - 1)];
+                if (session_draw(&session, 3) == 0)
+                    damaged[at] = (char)session_draw(&session, 256);
             }
             replayed(damaged, length, after_a_while, &steps);
             ck_assert_uint_gt(strlen(said), 0);
@@ -210,7 +216,8 @@ START_TEST(a_record_makes_nobody_touch_files)
 {
     char text[400], path[64];
     snprintf(path, sizeof path, "replay-%d.rkm", (int)getpid());
-    snprintf(text, sizeof text, HEAD "{\"t\":5,\"command\":\"snapshot\",\"params\":{\"file\":\"%s\"}}\n{\"t\":6,\"end\":true}\n", path);
+    snprintf(text, sizeof text, HEAD "{\"t\":5,\"command\":\"snapshot\",\"params\":{\"file\":\"%s\"}}\n{\"t\":6,\"end\":true}\n",
+             path);
     ck_assert_int_eq(replayed(text, strlen(text), NULL, NULL), REPLAY_SAME);
     ck_assert_int_ne(access(path, F_OK), 0);
 }

@@ -151,6 +151,35 @@ START_TEST(those_who_watch_are_told_what_has_changed)
 }
 END_TEST
 
+START_TEST(bytes_that_have_not_set_out_and_faults_come_along_into_another_line)
+{
+    struct session other;
+    session_begin(&other, &session_kinds[0]);
+    session_begin(&here, &session_kinds[0]);
+    session_command(&here, "fault.inject", "{\"kind\": \"duplicate\", \"probability\": 0.999}");
+    session_ask(&here, 1, "\1", 1);
+    sim_advance(&here.sim, 400); /* the first byte is under way, its double has yet to come */
+    struct snapshot *snapshot = snapshot_take(&here.sim);
+    session_forget(&here);
+    session_ask(&here, 1, "\2", 1);
+    sim_advance(&here.sim, SECOND);
+    char *first = strdup(session_seen(&here));
+    restore(snapshot);
+    session_forget(&here);
+    session_ask(&here, 1, "\2", 1);
+    sim_advance(&here.sim, 2 * SECOND);
+    session_same(first, session_seen(&here), "the same line");
+    ck_assert(snapshot_put(&other.sim, snapshot));
+    session_forget(&other);
+    session_ask(&other, 1, "\2", 1);
+    sim_advance(&other.sim, 2 * SECOND);
+    session_same(first, session_seen(&other), "another line");
+    session_end(&other);
+    snapshot_free(snapshot);
+    free(first);
+}
+END_TEST
+
 /* ---- Commands ------------------------------------------------------------------------------------------------------- */
 
 static int32_t counter(unsigned motor)
@@ -195,7 +224,8 @@ START_TEST(what_is_wrong_with_parameters_is_said)
     refused("snapshot", "{\"name\": 7}", "name: expected a string");
     refused("snapshot", "{\"name\": \"\"}", "name: expected 1 to 64 characters");
     refused("snapshot", "{\"nane\": \"a\"}", "`nane' is no parameter of this method: expected name, file");
-    refused("restore", "{\"name\": \"a\"}", "name: there is no snapshot `a': expected one of those taken with `snapshot': none yet");
+    refused("restore", "{\"name\": \"a\"}",
+            "name: there is no snapshot `a': expected one of those taken with `snapshot': none yet");
     session_command(&here, "snapshot", "{\"name\": \"one\"}");
     session_command(&here, "snapshot", "{\"name\": \"two\"}");
     refused("restore", "{\"name\": \"a\"}", "there is no snapshot `a': expected one of one, two");
@@ -369,6 +399,7 @@ static Suite *make_suite(void)
     tcase_add_checked_fixture(commands, NULL, teardown);
     tcase_add_test(commands, in_the_middle_of_an_answer_the_rest_of_it_follows);
     tcase_add_test(commands, in_the_middle_of_a_motion_its_pulses_follow);
+    tcase_add_test(commands, bytes_that_have_not_set_out_and_faults_come_along_into_another_line);
     tcase_add_test(commands, flash_comes_back_too);
     tcase_add_test(commands, those_who_watch_are_told_what_has_changed);
     tcase_add_test(commands, a_name_can_be_come_back_to_again_and_again_and_be_used_anew);

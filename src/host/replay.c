@@ -31,7 +31,8 @@ struct options {
 };
 
 static const struct argp_option option_table[] = {
-    {"trace", 't', "FILE", 0, "Write what happens: FILE.vcd for GTKWave and PulseView, FILE.csv or FILE.jsonl; may be repeated", 0},
+    {"trace", 't', "FILE", 0, "Write what happens: FILE.vcd for GTKWave and PulseView, FILE.csv or FILE.jsonl; may be repeated",
+     0},
     {"wire", 'w', "FILE", 0, "Write what passes on the wires: FILE.log, or FILE.pcapng for Wireshark; may be repeated", 0},
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"json", 'j', NULL, 0, "Print the result as JSON", 0},
@@ -39,11 +40,11 @@ static const struct argp_option option_table[] = {
 };
 
 static const char doc[] =
-    "Run a record, as written by `rkm04 serve --record', again in virtual time, as fast as the machine can, and compare what goes "
-    "out with what went out then. FILE - is standard input."
+    "Run a record, as written by `rkm04 serve --record', again in virtual time, as fast as the machine can, and compare what "
+    "goes out with what went out then. FILE - is standard input."
     "\v"
-    "The first difference is named with unit, motor and time. Nothing that a record says makes this command read or write another "
-    "file. docs/RECORD.md describes records.\n"
+    "The first difference is named with unit, motor and time. Nothing that a record says makes this command read or write "
+    "another file. docs/RECORD.md describes records.\n"
     "\n"
     "Examples:\n"
     "  rkm04 replay session.rkm\n"
@@ -51,8 +52,8 @@ static const char doc[] =
     "  rkm04 replay --until 2.5s --trace run.csv session.rkm\n"
     "  xz -dc session.rkm.xz | rkm04 replay --json -\n"
     "\n"
-    "Exit status: 0 everything went out as recorded; 1 something did not, a trace could not be written, or the run was interrupted; "
-    "2 wrong usage, or FILE is no record.";
+    "Exit status: 0 everything went out as recorded; 1 something did not, a trace could not be written, or the run was "
+    "interrupted; 2 wrong usage, or FILE is no record.";
 
 /* ---- Command line --------------------------------------------------------------------------------------------------- */
 
@@ -234,11 +235,13 @@ static bool report_json(struct replay *replay, const char *name, enum replay_end
     struct replay_counts counts = replay_counts(replay);
     struct sim *sim = replay_sim(replay);
     json_t *file = json_string(name); /* NULL: it is not UTF-8 */
-    json_t *report = json_pack("{s:o?, s:s, s:I, s:s, s:s?, s:o, s:{s:I, s:I, s:I, s:I, s:I, s:b}}", "file", file, "result", results[end], "t_us",
+    json_t *report = json_pack("{s:o?, s:s, s:I, s:s, s:s?, s:o, s:{s:I, s:I, s:I, s:I, s:I, s:b}}", "file", file, "result",
+                               results[end], "t_us",
                                sim ? (json_int_t)sim_now(sim) : 0, "text", replay_text(replay), "note", replay_note(replay),
-                               "difference", difference_json(replay_difference(replay)), "counts", "lines", (json_int_t)counts.lines,
-                               "inputs", (json_int_t)counts.inputs, "bytes_in", (json_int_t)counts.bytes_in, "bytes_out",
-                               (json_int_t)counts.bytes_out, "pulses", (json_int_t)counts.steps, "whole", (int)counts.whole);
+                               "difference", difference_json(replay_difference(replay)), "counts", "lines",
+                               (json_int_t)counts.lines, "inputs", (json_int_t)counts.inputs, "bytes_in",
+                               (json_int_t)counts.bytes_in, "bytes_out", (json_int_t)counts.bytes_out, "pulses",
+                               (json_int_t)counts.steps, "whole", (int)counts.whole);
     bool well = report && json_dumpf(report, stdout, JSON_COMPACT) == 0 && putchar('\n') != EOF;
     json_decref(report);
     return well;
@@ -255,10 +258,11 @@ static bool report_text(struct replay *replay, const char *name, enum replay_end
         return fprintf(stderr, "rkm04 replay: %s: %s\n", name, replay_text(replay)) > 0;
     if (end == REPLAY_DIFFERENT)
         return printf("%s: different: %s\n", name, replay_text(replay)) > 0;
+    uint64_t now = sim_now(replay_sim(replay));
     return printf("%s: the same: %" PRIu64 ".%06" PRIu64 " s, %" PRIu64 " inputs, %" PRIu64 " bytes in, %" PRIu64
                   " bytes out, %" PRIu64 " pulses\n",
-                  name, sim_now(replay_sim(replay)) / RKM04_TICKS_PER_SECOND, sim_now(replay_sim(replay)) % RKM04_TICKS_PER_SECOND,
-                  counts.inputs, counts.bytes_in, counts.bytes_out, counts.steps) > 0;
+                  name, now / RKM04_TICKS_PER_SECOND, now % RKM04_TICKS_PER_SECOND, counts.inputs,
+                  counts.bytes_in, counts.bytes_out, counts.steps) > 0;
 }
 
 /* ---- All of it ------------------------------------------------------------------------------------------------------ */

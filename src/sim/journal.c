@@ -244,8 +244,8 @@ bool journal_turn(struct journal *journal, struct journal_page *page, const char
 const char *journal_gap(const struct journal *journal)
 {
     if (journal->too_long)
-        return "more has come in since power-up than a snapshot file may hold (16 MiB): take a named snapshot instead, or restore "
-               "an earlier one first";
+        return "more has come in since power-up than a snapshot file may hold (16 MiB): take a named snapshot instead, or "
+               "restore an earlier one first";
     return journal->page ? NULL : "memory was short when the past was to be kept: restore a snapshot from a file, or begin anew";
 }
 

@@ -1,6 +1,6 @@
 /* record.h: a record of a session: the configuration, everything that came in from outside with its tick, and what went out:
- * answers as they are, pulses, outputs and bytes on the wires as running digests. `rkm04 replay` does it again and names the first
- * difference. docs/RECORD.md describes the file: JSON, one object a line. */
+ * answers as they are, pulses, outputs and bytes on the wires as running digests. `rkm04 replay` does it again and names the
+ * first difference. docs/RECORD.md describes the file: JSON, one object a line. */
 #ifndef RKM04_SIM_RECORD_H
 #define RKM04_SIM_RECORD_H
 
@@ -10,9 +10,9 @@
 
 struct record;
 
-/* Begin to take down what comes in and goes out, on `out`, which stays the caller's. To be called at tick 0, when the plant is there
- * and before anything has come in. Every line is flushed as it is written. Returns NULL if memory is short or a flash image cannot
- * be read. */
+/* Begin to take down what comes in and goes out, on `out`, which stays the caller's. To be called at tick 0, when the plant is
+ * there and before anything has come in. Every line is flushed as it is written. Returns NULL if memory is short or a flash image
+ * cannot be read. */
 struct record *record_begin(struct sim *sim, FILE *out);
 
 /* End: write the last digests, and flush. Returns 0 or the errno of the first failure. Frees the record. */

@@ -153,7 +153,8 @@ static json_t *obey(struct replay *replay, const char *method, const json_t *par
         return sim_command(replay->sim, method, params, refusal);
     if (strcmp(method, "restore") != 0)
         return json_object();
-    return restore_text(replay->sim, "the embedded record", replay->embedded, replay->embedded_length, replay->depth + 1u, refusal);
+    return restore_text(replay->sim, "the embedded record", replay->embedded, replay->embedded_length, replay->depth + 1u,
+                        refusal);
 }
 
 static bool do_command(struct replay *replay)
@@ -312,8 +313,8 @@ static bool obey_line(struct replay *replay)
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
         if (json_object_get(replay->json, kinds[i].key))
             return kinds[i].obey(replay);
-    return replay_wrong(replay, NULL, "expected a line with one of \"in\", \"out\", \"digest\", \"command\", \"purge\", \"break\", "
-                                      "\"timed\", \"moved\", \"embedded\", \"outputs\", \"end\"");
+    return replay_wrong(replay, NULL, "expected a line with one of \"in\", \"out\", \"digest\", \"command\", \"purge\", "
+                                      "\"break\", \"timed\", \"moved\", \"embedded\", \"outputs\", \"end\"");
 }
 
 enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *context), void *context)

@@ -96,8 +96,8 @@ bool replay_differs(struct replay *replay, const struct replay_difference *diffe
                           first->came);
     if (replay->program && strcmp(replay->program, "rkm04 " RKM04_VERSION) != 0 && length > 0 &&
         (size_t)length < sizeof replay->text)
-        snprintf(replay->text + length, sizeof replay->text - (size_t)length, " (recorded by %.60s, this is rkm04 " RKM04_VERSION ")",
-                 replay->program);
+        snprintf(replay->text + length, sizeof replay->text - (size_t)length,
+                 " (recorded by %.60s, this is rkm04 " RKM04_VERSION ")", replay->program);
     replay->ended = replay->differs = true;
     replay->end = REPLAY_DIFFERENT;
     return false;

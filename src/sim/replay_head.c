@@ -122,7 +122,8 @@ static bool read_settings(struct replay *replay, struct sim_config *config)
 static bool read_head(struct replay *replay, struct sim_config *config, char **plant)
 {
     static const char *const keys[] = {"rkm04_record", "program",  "nodes", "framing", "version_text", "version_text_hex",
-                                       "speed_change_latency", "timed", "turnaround", "seed", "plant", "plant_hex", "outputs", NULL};
+                                       "speed_change_latency", "timed", "turnaround", "seed", "plant", "plant_hex", "outputs",
+                                       NULL};
     uint64_t version;
     if (!replay_next_line(replay))
         return replay->ended || replay_wrong(replay, NULL, "expected a record, which begins with {\"rkm04_record\":1,");

@@ -1,8 +1,8 @@
 /* snapshot.h: the line as it stands, to come back to: units, bytes under way, inputs, flash, plant, faults.
  *
  * Coming back does not turn the line's time back: ticks go on, and everything that has a time is moved along, so that what
- * follows is what followed then, later by the difference. Only what was taken of another line at a later tick takes the time along:
- * the line's time leaps to that tick. */
+ * follows is what followed then, later by the difference. Only what was taken of another line at a later tick takes the time
+ * along: the line's time leaps to that tick. */
 #ifndef RKM04_SIM_SNAPSHOT_H
 #define RKM04_SIM_SNAPSHOT_H
 
@@ -33,8 +33,8 @@ void snapshot_free(struct snapshot *snapshot);
 /* The named ones of a sim, and its journal. */
 void snapshots_free(struct sim_snapshots *snapshots);
 
-/* Keep in memory all that comes in, so that commands can write snapshots to files. To be called at tick 0, when the plant is there
- * and before anything has come in. Returns false if memory is short. */
+/* Keep in memory all that comes in, so that commands can write snapshots to files. To be called at tick 0, when the plant is
+ * there and before anything has come in. Returns false if memory is short. */
 bool snapshots_keep_journal(struct sim *sim);
 
 #endif
