@@ -151,12 +151,13 @@ START_TEST(those_who_watch_are_told_what_has_changed)
 }
 END_TEST
 
-START_TEST(bytes_that_have_not_set_out_and_faults_come_along_into_another_line)
+static void come_along(const char *fault)
 {
     struct session other;
     session_begin(&other, &session_kinds[0]);
     session_begin(&here, &session_kinds[0]);
-    session_command(&here, "fault.inject", "{\"kind\": \"duplicate\", \"probability\": 0.999}");
+    if (fault)
+        session_command(&here, "fault.inject", fault);
     session_ask(&here, 1, "\1", 1);
     sim_advance(&here.sim, 400); /* the first byte is under way, its double has yet to come */
     struct snapshot *snapshot = snapshot_take(&here.sim);
@@ -177,6 +178,13 @@ START_TEST(bytes_that_have_not_set_out_and_faults_come_along_into_another_line)
     session_end(&other);
     snapshot_free(snapshot);
     free(first);
+}
+
+START_TEST(bytes_that_have_not_set_out_and_faults_come_along_into_another_line)
+{
+    come_along("{\"kind\": \"duplicate\", \"probability\": 0.999}");
+    session_end(&here);
+    come_along(NULL);
 }
 END_TEST
 
