@@ -1,0 +1,101 @@
+/* fuzz_control.c: any lines as requests of the control socket to a line of units: each is refused with a code and a reason, or
+ * obeyed with a result, and the answer is JSON on one line. A line "+N" lets N ms pass, "<HEX" are bytes of the master. Files
+ * are left alone. First byte: how many units. */
+#include <string.h>
+
+#include "control_rpc.h"
+#include "fuzz.h"
+#include "snapshot.h"
+
+#define REQUESTS_MAX 40
+#define TIME_MAX 2000000u /* ticks */
+
+static struct sim sim;
+static uint64_t left;
+
+static void hear(void *context, const uint8_t *bytes, size_t length)
+{
+    (void)context, (void)bytes, (void)length;
+}
+
+static void check_answer(char *text)
+{
+    json_error_t error;
+    FUZZ_CHECK(text != NULL, "no memory");
+    size_t length = strlen(text);
+    FUZZ_CHECK(length > 0 && strchr(text, '\n') == text + length - 1, "%s", text);
+    json_t *json = json_loadb(text, length, JSON_ALLOW_NUL, &error);
+    FUZZ_CHECK(json_is_object(json), "%s: %s", error.text, text);
+    json_decref(json);
+    free(text);
+}
+
+/* As the control socket does it, but for what needs files or a clock. */
+static void obey(const char *line, size_t length)
+{
+    struct rpc_request request = {0};
+    struct refusal refusal = {0};
+    json_t *result = NULL;
+    if (rpc_read(&request, line, length, 1, &refusal)) {
+        json_object_del(request.params, "file");
+        result = sim_command(&sim, request.method, request.params, &refusal);
+    }
+    FUZZ_CHECK(result || (refusal.code != 0 && refusal.text[0]), "refused without a reason");
+    if (request.id)
+        check_answer(result ? rpc_result(request.id, json_incref(result)) : rpc_error(request.id, &refusal));
+    json_decref(result);
+    rpc_end(&request);
+}
+
+static unsigned digit_of(uint8_t character)
+{
+    return (character & 15u) + (character > '9' ? 9u : 0);
+}
+
+static void take(const uint8_t *hex, size_t length)
+{
+    uint8_t bytes[256];
+    size_t n = 0;
+    for (; n < sizeof bytes && 2 * n + 1 < length; n++)
+        bytes[n] = (uint8_t)(digit_of(hex[2 * n]) << 4 | (digit_of(hex[2 * n + 1]) & 15u));
+    if (n <= sim_room(&sim))
+        sim_take(&sim, bytes, n, sim_now(&sim));
+}
+
+static void pass(const uint8_t *text, size_t length)
+{
+    uint64_t ticks = 0;
+    for (size_t i = 0; i < length && ticks < TIME_MAX; i++)
+        ticks = ticks * 10 + (text[i] & 15u) * 1000u;
+    if (ticks > left)
+        ticks = left;
+    left -= ticks;
+    sim_advance(&sim, sim_now(&sim) + ticks);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const char *const nodes[] = {"1", "3,3", "1,2,7", "16"};
+    struct sim_config config = {.unit = {.framing = &rkm04_hdlc}, .turnaround = SEGMENT_TURNAROUND, .seed = 1, .out = hear};
+    struct fuzz fuzz = {data, size};
+    uint8_t mode = fuzz_byte(&fuzz);
+    config.timed = mode & 4;
+    left = TIME_MAX;
+    memset(&sim, 0, sizeof sim);
+    FUZZ_CHECK(node_list_read(&config.nodes, nodes[mode & 3]) && sim_begin(&sim, &config), "no memory");
+    if (mode & 8)
+        FUZZ_CHECK(snapshots_keep_journal(&sim), "no memory");
+    for (unsigned i = 0; i < REQUESTS_MAX && fuzz.left > 0; i++) {
+        size_t length;
+        const uint8_t *line = fuzz_until(&fuzz, '\n', &length);
+        if (length > 0 && line[0] == '+')
+            pass(line + 1, length - 1);
+        else if (length > 0 && line[0] == '<')
+            take(line + 1, length - 1);
+        else
+            obey((const char *)line, length);
+    }
+    sim_advance(&sim, sim_now(&sim) + 50000);
+    sim_end(&sim);
+    return 0;
+}
