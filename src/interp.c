@@ -130,7 +130,9 @@ void interp_stored(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t 
         motor->hold_fresh = false;
     }
     if (motor->state == RKM04_IDLE) {
+        uint64_t oldest = program_oldest(&motor->program);
         motor->state = RKM04_READY;
+        motor->number = first > oldest ? first : oldest; /* the one shown until its slot (P9) */
         motor->due = motion_free_from(unit, motor);
     }
 }

@@ -71,12 +71,12 @@ static bool take_guards(const struct rkm04_unit *unit, struct rkm04_motor *motor
 void motion_look_at_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     struct rkm04_motion *motion = &motor->motion;
-    if (!motion->moving || motion->stopping)
-        return;
-    if (take_guards(unit, motor)) {
+    if (motion->moving && !motion->stopping && take_guards(unit, motor))
         motion_stop(unit, motor, RKM04_AFTER_GO_ON);
-    } else if (motion->kind == RKM04_MOTION_LIMIT && input_is_high(unit, motion->input)) {
-        motor->after = RKM04_AFTER_GO_ON;
+    /* Also on the way to the last step of a stop: no pulse after the slot that saw the input (R5), and no rest of the move. */
+    if (motion->moving && motion->kind == RKM04_MOTION_LIMIT && input_is_high(unit, motion->input)) {
+        if (motor->after == RKM04_AFTER_HOLD_REST)
+            motor->after = RKM04_AFTER_HOLD_NEXT;
         end_motion(unit, motor, unit->now);
     }
 }

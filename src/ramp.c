@@ -294,13 +294,18 @@ void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed 
     *w = then.w;
 }
 
-void ramp_go_on(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick)
+void ramp_go_on(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick)
 {
     ramp_look(ramp, tick, &ramp->y, &ramp->w);
     ramp->at = tick;
     ramp->slope = profile->point[profile->leg].slope;
     set_end(ramp, profile, (struct rkm04_instant){tick, 0, 0}, ramp->w);
     begin_pulses(ramp, profile);
+    while (ramp->left == 0 && ramp->next <= tick) { /* a speed that changes at once counts in this slot already */
+        struct rkm04_instant end = ramp->end;
+        profile->leg++;
+        begin_leg(ramp, profile, end);
+    }
 }
 
 uint64_t ramp_quiet_until(const struct rkm04_ramp *ramp)

@@ -28,7 +28,7 @@ static inline uint32_t ramp_step_of(struct rkm04_place place)
 void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick);
 
 /* Go on from the present position and speed at `tick` along a profile planned anew: point[leg] is the present place. */
-void ramp_go_on(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick);
+void ramp_go_on(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick);
 
 /* Put the ticks of the pulses due up to and including `limit` into `tick`, at most `room`. Moves profile->leg on.
  * Returns their number; fewer than `room` means there are no more up to `limit`. */

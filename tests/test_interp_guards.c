@@ -436,6 +436,30 @@ START_TEST(C6_a_limit_move_whose_input_is_there_already_takes_no_step)
 }
 END_TEST
 
+START_TEST(R5_the_input_of_a_limit_move_ends_it_on_the_way_to_the_last_step_of_a_stop)
+{
+    rig_accept(&rig, '1', "S1 )06 T01"); /* a step a second */
+    rig_accept_at(&rig, 100 * MS, "K");
+    rig_input_at(&rig, 500 * MS, 6, true);
+    rig_input_at(&rig, 550 * MS, 6, false);
+    expect_state(RKM04_HELD);
+    rig_accept_at(&rig, 600 * MS, "C75");
+    rig_to(&rig, 5 * SECOND);
+    expect_steps(0);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 600 * MS); /* nothing is left of the move */
+}
+END_TEST
+
+START_TEST(R5_a_guard_and_the_input_of_a_limit_move_in_one_slot_end_it_without_another_pulse)
+{
+    rig_accept(&rig, '1', "S1 M06 )06 T01");
+    rig_input_at(&rig, 500 * MS, 6, true);
+    rig_to(&rig, 5 * SECOND);
+    expect_steps(0);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 500 * MS);
+}
+END_TEST
+
 START_TEST(R5_X_stops_a_limit_move_at_the_next_whole_step)
 {
     rig_accept(&rig, '1', "X04 )06 T01");
@@ -496,6 +520,8 @@ static Suite *interp_guards_suite(void)
     tcase_add_test(limit_moves, C6_a_limit_move_stops_at_its_input_without_another_pulse);
     tcase_add_test(limit_moves, C6_a_limit_move_whose_input_is_there_already_takes_no_step);
     tcase_add_test(limit_moves, R5_X_stops_a_limit_move_at_the_next_whole_step);
+    tcase_add_test(limit_moves, R5_the_input_of_a_limit_move_ends_it_on_the_way_to_the_last_step_of_a_stop);
+    tcase_add_test(limit_moves, R5_a_guard_and_the_input_of_a_limit_move_in_one_slot_end_it_without_another_pulse);
     suite_add_tcase(suite, limit_moves);
 
     return suite;

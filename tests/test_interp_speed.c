@@ -222,6 +222,17 @@ START_TEST(C4_a_motion_resumed_keeps_the_speed_in_force)
 END_TEST
 
 
+START_TEST(R6_a_stop_in_the_slot_of_a_change_at_once_starts_from_the_new_speed)
+{
+    rig_accept(&rig, '1', "S1000 V640 F2000 R"); /* begins at 4 ms: 318.08 steps at 501 ms */
+    rig_accept_at(&rig, 500372, "V74");
+    rig_accept_at(&rig, 500400, "K");
+    rig_to(&rig, 2 * SECOND);
+    ck_assert_uint_eq(recorder_steps(&rig.record, 1), 319);
+    rig_expect_motion_near(&rig, 1, 1, 4 * MS, 501 * MS + 12433, 319, true); /* 0.92 step at 74/s */
+}
+END_TEST
+
 START_TEST(C4_the_delay_passes_before_the_change)
 {
     with_latency(2000);
@@ -292,6 +303,7 @@ static Suite *interp_speed_suite(void)
     tcase_add_test(motion, C4_it_works_in_G_H_and_endless_motions);
     tcase_add_test(motion, C4_on_the_rising_ramp_it_is_a_change_too);
     tcase_add_test(motion, C4_in_a_compound_motion_it_is_the_V_of_the_present_segment);
+    tcase_add_test(motion, R6_a_stop_in_the_slot_of_a_change_at_once_starts_from_the_new_speed);
     tcase_add_test(motion, C4_a_V_with_anything_beside_it_is_stored);
     tcase_add_test(motion, C4_a_bad_value_is_refused_and_changes_nothing);
     suite_add_tcase(suite, motion);

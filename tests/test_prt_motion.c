@@ -164,6 +164,16 @@ START_TEST(P9_the_index_is_the_place_of_the_command_being_executed)
 }
 END_TEST
 
+START_TEST(P9_between_arrival_and_its_slot_the_first_new_command_is_shown)
+{
+    rig_accept(&rig, '1', "T01 T02");
+    rig_to(&rig, 10 * MS + 500);
+    ck_assert_str_eq(rig_ask(&rig, 7, 1), " 0; 0");
+    rig_accept(&rig, '1', "T03");
+    ck_assert_str_eq(rig_ask(&rig, 7, 1), " 0; 3");
+}
+END_TEST
+
 START_TEST(P9_the_index_stays_at_the_fault)
 {
     rig_accept(&rig, '1', "U U J5 U");
@@ -240,6 +250,7 @@ static Suite *prt_motion_suite(void)
     TCase *progress = tcase_create("progress");
     tcase_add_checked_fixture(progress, setup, teardown);
     tcase_add_test(progress, P9_the_index_is_the_place_of_the_command_being_executed);
+    tcase_add_test(progress, P9_between_arrival_and_its_slot_the_first_new_command_is_shown);
     tcase_add_test(progress, P9_the_index_stays_at_the_fault);
     tcase_add_test(progress, P9_the_index_is_0_after_a_total_stop);
     tcase_add_test(progress, P9_the_steps_count_up_during_a_motion_and_are_0_after_it);
