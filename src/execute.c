@@ -67,10 +67,17 @@ static void write_bit(struct rkm04_unit *unit, struct rkm04_motor *motor, uint32
     }
 }
 
+static void set_position(struct rkm04_unit *unit, struct rkm04_motor *motor, int32_t position)
+{
+    if (motor->position != position)
+        report_event(unit, motor, unit->now, RKM04_EVENT_POSITION, (uint32_t)position);
+    motor->position = position;
+}
+
 COMMAND(clear)
 {
     if (n == 100)
-        motor->position = 0;
+        set_position(unit, motor, 0);
     else
         write_bit(unit, motor, n, false);
 }
@@ -120,8 +127,7 @@ COMMAND(reverse)
 
 COMMAND(write_position)
 {
-    UNUSED(unit);
-    motor->position = (int32_t)n;
+    set_position(unit, motor, (int32_t)n);
 }
 
 /* Steps and direction from the counter to a place; 64 bits, as the difference may need 33 (U3). */

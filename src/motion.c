@@ -22,6 +22,8 @@ static void end_motion(struct rkm04_unit *unit, struct rkm04_motor *motor, uint6
     motor->change_speed = 0;
     if (motor->led == RKM04_LED_ON)
         write_led(unit, motor, tick, RKM04_LED_OFF);
+    if (unit->simulation)
+        report_event(unit, motor, tick, RKM04_EVENT_POSITION, (uint32_t)motor->position);
     report_event(unit, motor, tick, RKM04_EVENT_MOTION, 0);
     motor->due = motor->last_pulse + RKM04_PULSE_TICKS;
     switch ((enum rkm04_after)motor->after) {

@@ -144,8 +144,8 @@ START_TEST(those_who_watch_are_told_what_has_changed)
     session_forget(&here);
     restore(snapshot);
     session_same("0 unit 1 motor 0 inputs 0\n0 unit 1 motor 0 outputs 0\n0 unit 1 motor 0 variables 0\n"
-                 "0 unit 1 motor 2 motion 0\n0 unit 1 motor 2 direction 0\n0 unit 1 motor 2 command 0\n"
-                 "0 unit 1 motor 2 led 0\n",
+                 "0 unit 1 motor 2 position 0\n0 unit 1 motor 2 motion 0\n0 unit 1 motor 2 direction 0\n"
+                 "0 unit 1 motor 2 command 0\n0 unit 1 motor 2 led 0\n",
                  session_seen(&here), "what was told");
     snapshot_free(snapshot);
 }

@@ -91,6 +91,24 @@ START_TEST(a_trace_that_begins_later_begins_with_what_is_not_as_after_power_up)
 }
 END_TEST
 
+START_TEST(a_counter_that_is_set_has_a_row)
+{
+    trace_rig_set(1, '1', "=-7 =-7 C100 C100");
+    sim_advance(trace_rig_sim(), 5000);
+    ck_assert_str_eq(trace_rig_text(), HEADER "1000,m1,command,1\n1000,m1,position,-7\n2000,m1,command,2\n"
+                                              "3000,m1,command,3\n3000,m1,position,0\n4000,m1,command,4\n");
+}
+END_TEST
+
+START_TEST(C11_under_T41_the_end_of_a_motion_tells_where_the_counter_is)
+{
+    trace_rig_set(1, '1', "S100 V100 T41 B2 R");
+    sim_advance(trace_rig_sim(), 26000);
+    ck_assert_str_eq(strstr(trace_rig_text(), "5000,m1,motion,begin\n"),
+                     "5000,m1,motion,begin\n25000,m1,led,off\n25000,m1,position,-2\n25000,m1,motion,end\n");
+}
+END_TEST
+
 /* ---- Order ---------------------------------------------------------------------------------------------------------- */
 
 START_TEST(rows_of_several_motors_come_in_the_order_of_time)
@@ -249,6 +267,8 @@ static Suite *trace_suite(void)
     tcase_add_test(rows, every_event_has_its_row);
     tcase_add_test(rows, with_several_units_the_source_begins_with_the_name_of_the_unit);
     tcase_add_test(rows, a_trace_that_begins_later_begins_with_what_is_not_as_after_power_up);
+    tcase_add_test(rows, a_counter_that_is_set_has_a_row);
+    tcase_add_test(rows, C11_under_T41_the_end_of_a_motion_tells_where_the_counter_is);
     suite_add_tcase(suite, rows);
     TCase *order = tcase_create("order");
     tcase_add_checked_fixture(order, csv, trace_rig_end);

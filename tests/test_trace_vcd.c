@@ -121,6 +121,14 @@ START_TEST(a_position_is_signed)
 }
 END_TEST
 
+START_TEST(a_position_that_is_set_is_seen_at_once)
+{
+    trace_rig_set(1, '1', "=-2000000000 C100");
+    sim_advance(trace_rig_sim(), 2500);
+    ck_assert_str_eq(changes(), "#1000\nr1 F\nr-2000000000 H\n#2000\nr2 F\nr0 H\n#2500\n");
+}
+END_TEST
+
 START_TEST(the_values_at_the_beginning_are_those_there_are)
 {
     struct sim *sim = trace_rig_sim();
@@ -241,6 +249,7 @@ static Suite *vcd_suite(void)
     tcase_add_test(signals, R7_a_pulse_is_10_us_wide);
     tcase_add_test(signals, only_the_bits_that_change_are_written);
     tcase_add_test(signals, a_position_is_signed);
+    tcase_add_test(signals, a_position_that_is_set_is_seen_at_once);
     tcase_add_test(signals, the_values_at_the_beginning_are_those_there_are);
     suite_add_tcase(suite, signals);
     TCase *time = tcase_create("time");

@@ -50,7 +50,9 @@ enum rkm04_event {
     RKM04_EVENT_COMMAND,  /* value: place 1..700 of the command being executed; 0: the motor went idle or ended */
     RKM04_EVENT_LED,      /* value: enum rkm04_led */
     RKM04_EVENT_VARIABLE, /* motor 0; value: all 16 variables, VAR 80 in bit 0 */
-    RKM04_EVENT_FAULT     /* value: enum rkm04_fault */
+    RKM04_EVENT_FAULT,    /* value: enum rkm04_fault */
+    RKM04_EVENT_POSITION  /* value: counter, as two's complement, that no pulse led to: set (C100, =), or at the end of a motion
+                             under T41 */
 };
 
 /* What a unit asks of its surroundings. All are called from within rkm04_init, _receive, _send or _advance. The calls about one

@@ -50,6 +50,7 @@ static const char doc[] =
     "A trace as CSV has the columns t_us,source,event,value:\n"
     "  m1,step,POSITION   m1,dir,1|-1        m1,motion,begin|end\n"
     "  m1,led,off|on|blink                   m1,command,INDEX (0: idle)\n"
+    "  m1,position,POSITION   where no pulse led there: C100, =, after a motion under T41\n"
     "  unit,di|do|var,MASK\n"
     "FILE.vcd is for GTKWave and PulseView, FILE.jsonl has every event as JSON; see docs/TRACES.md.\n"
     "\n"

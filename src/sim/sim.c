@@ -86,6 +86,7 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_ev
     static const enum watch_kind kinds[] = {
         [RKM04_EVENT_MOTION] = WATCH_MOTION,     [RKM04_EVENT_COMMAND] = WATCH_COMMAND, [RKM04_EVENT_LED] = WATCH_LED,
         [RKM04_EVENT_VARIABLE] = WATCH_VARIABLES, [RKM04_EVENT_FAULT] = WATCH_FAULT,
+        [RKM04_EVENT_POSITION] = WATCH_POSITION,
     };
     tell(context, tick, phase_of(context), kinds[what], motor, (int32_t)value);
 }

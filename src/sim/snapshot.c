@@ -20,6 +20,7 @@ struct look_motor {
     bool forward, moving;
     uint8_t led, fault;
     uint16_t index;
+    int32_t position;
 };
 
 struct look {
@@ -189,6 +190,7 @@ static void look_at(const struct sim *sim, unsigned number, struct look *look)
             .led = (uint8_t)state.led,
             .fault = (uint8_t)state.fault,
             .index = state.index,
+            .position = state.position,
         };
     }
 }
@@ -216,6 +218,7 @@ static void tell_changes(struct sim *sim, unsigned number, const struct look *be
     tell(sim, number, 0, WATCH_VARIABLES, before->variables, after.variables);
     for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
         const struct look_motor *a = &before->motor[motor - 1u], *b = &after.motor[motor - 1u];
+        tell(sim, number, motor, WATCH_POSITION, a->position, b->position);
         tell(sim, number, motor, WATCH_MOTION, a->moving, b->moving);
         tell(sim, number, motor, WATCH_DIRECTION, a->forward, b->forward);
         tell(sim, number, motor, WATCH_COMMAND, a->index, b->index);

@@ -7,7 +7,7 @@
 static const char *const names[WATCH_KINDS] = {
     [WATCH_STEP] = ",step,",  [WATCH_DIRECTION] = ",dir,", [WATCH_MOTION] = ",motion,",   [WATCH_COMMAND] = ",command,",
     [WATCH_LED] = ",led,",    [WATCH_INPUTS] = ",di,",     [WATCH_OUTPUTS] = ",do,",      [WATCH_VARIABLES] = ",var,",
-    [WATCH_POWER] = ",power,",
+    [WATCH_POWER] = ",power,", [WATCH_POSITION] = ",position,",
 };
 
 static char *put_value(char *at, const struct watch_event *event)
@@ -57,14 +57,14 @@ static void tell(struct trace_file *file, unsigned number, unsigned motor, enum 
     struct watch_event event = {
         .tick = sim_now(file->sim), .value = value, .kind = (uint8_t)kind, .unit = (uint8_t)number, .motor = (uint8_t)motor};
     if (value != 0 || kind == WATCH_POWER)
-        write_row(file, &event, kind == WATCH_STEP ? ",position," : names[kind]);
+        write_row(file, &event, names[kind]);
 }
 
 static void tell_motor(struct trace_file *file, unsigned number, unsigned motor)
 {
     struct rkm04_motor_state state;
     rkm04_motor_state(sim_core(file->sim, number), motor, &state);
-    tell(file, number, motor, WATCH_STEP, state.position);
+    tell(file, number, motor, WATCH_POSITION, state.position);
     tell(file, number, motor, WATCH_COMMAND, state.index);
     tell(file, number, motor, WATCH_DIRECTION, state.forward);
     tell(file, number, motor, WATCH_LED, (int32_t)state.led);
@@ -99,7 +99,7 @@ const struct trace_writer trace_csv = {
     .suffix = ".csv",
     .kinds = WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_COMMAND) |
              WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
-             WATCH_BIT(WATCH_POWER),
+             WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION),
     .begin = begin,
     .see = see,
     .end = end,

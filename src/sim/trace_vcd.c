@@ -263,6 +263,10 @@ static void see_motor(struct trace_file *file, const struct watch_event *event)
         state->forward = event->value != 0;
         write_bit(file, signal_of(event->unit, event->motor, DIRECTION), state->forward);
         break;
+    case WATCH_POSITION:
+        state->position = event->value;
+        write_real(file, signal_of(event->unit, event->motor, POSITION), event->value, 0);
+        break;
     case WATCH_COMMAND:
         state->command = event->value;
         write_real(file, signal_of(event->unit, event->motor, COMMAND), event->value, 0);
@@ -485,7 +489,7 @@ const struct trace_writer trace_vcd = {
     .suffix = ".vcd",
     .kinds = WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_COMMAND) |
              WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
-             WATCH_BIT(WATCH_POWER),
+             WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION),
     .state = sizeof(struct vcd),
     .begin = begin,
     .see = see,

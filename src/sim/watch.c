@@ -15,6 +15,7 @@ static const char *const names[WATCH_KINDS] = {
     [WATCH_COMMAND] = "command",
     [WATCH_LED] = "led",
     [WATCH_FAULT] = "fault",
+    [WATCH_POSITION] = "position",
     [WATCH_INPUTS] = "inputs",
     [WATCH_OUTPUTS] = "outputs",
     [WATCH_VARIABLES] = "variables",

@@ -19,6 +19,7 @@ enum watch_kind {
     WATCH_COMMAND,   /* value: place 1..700 of the command being executed, 0: idle */
     WATCH_LED,       /* value: enum rkm04_led */
     WATCH_FAULT,     /* of a motor; value: enum rkm04_fault */
+    WATCH_POSITION,  /* value: counter, where no pulse led there: set (C100, =), restored, or after a motion under T41 */
     WATCH_INPUTS,    /* value: mask of DI, bit 0 is DI 01; likewise: */
     WATCH_OUTPUTS,
     WATCH_VARIABLES, /* bit 0 is VAR 80 */
