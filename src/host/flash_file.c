@@ -2,6 +2,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -13,21 +15,59 @@
 
 /* ---- Opening -------------------------------------------------------------------------------------------------------- */
 
-/* Write an erased flash to the new, empty file. */
+/* See that the name of a new file is on the disk, too. Not every file system can do that. */
+static void sync_folder(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char folder[PATH_MAX] = ".";
+    if (slash)
+        snprintf(folder, sizeof folder, "%.*s", slash == path ? 1 : (int)(slash - path), path);
+    int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0)
+        return;
+    (void)fsync(fd);
+    close(fd);
+}
+
+/* Write an erased flash to the new file, which is empty or was left unfinished. */
 static bool make_image(struct flash_file *flash)
 {
     uint8_t bytes[FLASH_FILE_SIZE];
     memset(bytes, ERASED, sizeof bytes);
     ssize_t written = pwrite(flash->fd, bytes, sizeof bytes, 0);
-    if (written == (ssize_t)sizeof bytes && fsync(flash->fd) == 0)
+    if (written == (ssize_t)sizeof bytes && fsync(flash->fd) == 0) {
+        sync_folder(flash->path);
         return true;
-    log_error("cannot write the flash image %s: %s", flash->path, written >= 0 ? "the disk is full" : strerror(errno));
+    }
+    bool full = written >= 0 && written < (ssize_t)sizeof bytes;
+    log_error("cannot write the flash image %s: %s", flash->path, full ? "the disk is full" : strerror(errno));
     if (ftruncate(flash->fd, 0) != 0)
         log_error("%s is not whole: remove it", flash->path);
     return false;
 }
 
-/* Is the open file an image, or empty, and ours alone? */
+/* Is there nothing in the file but the beginning of an erased flash? Then its making was cut. */
+static bool unfinished(const struct flash_file *flash, off_t size)
+{
+    uint8_t bytes[FLASH_FILE_SIZE];
+    if (size >= FLASH_FILE_SIZE || pread(flash->fd, bytes, sizeof bytes, 0) != (ssize_t)size)
+        return false;
+    for (off_t i = 0; i < size; i++)
+        if (bytes[i] != ERASED)
+            return false;
+    return true;
+}
+
+/* What a killed process left unsynced has to be on the disk before anything is written on the strength of it. */
+static bool settle(const struct flash_file *flash)
+{
+    if (fdatasync(flash->fd) == 0)
+        return true;
+    log_error("cannot write the flash image %s: %s", flash->path, strerror(errno));
+    return false;
+}
+
+/* Is the open file an image, or about to be one, and ours alone? */
 static bool check_image(struct flash_file *flash)
 {
     struct stat found;
@@ -41,10 +81,10 @@ static bool check_image(struct flash_file *flash)
         return false;
     }
     /* The size under the lock: it may have been made just now. */
-    if (fstat(flash->fd, &found) == 0 && found.st_size == 0)
+    if (fstat(flash->fd, &found) == 0 && unfinished(flash, found.st_size))
         return make_image(flash);
     if (found.st_size == FLASH_FILE_SIZE)
-        return true;
+        return settle(flash);
     log_error("--flash: %s has %lld bytes and is no flash image: expected %d bytes, or a name that is free", flash->path,
               (long long)found.st_size, FLASH_FILE_SIZE);
     return false;
@@ -52,10 +92,7 @@ static bool check_image(struct flash_file *flash)
 
 bool flash_file_open(struct flash_file *flash, const char *path)
 {
-    flash->path = path;
-    flash->fd = -1;
-    flash->unsynced = false;
-    flash->end = 0;
+    *flash = (struct flash_file){.path = path, .unsynced = -1};
     flash->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, 0666);
     if (flash->fd < 0) {
         log_error("cannot open the flash image %s: %s", path, strerror(errno));
@@ -77,24 +114,23 @@ static bool within(unsigned block, unsigned offset, unsigned length)
 
 bool flash_file_sync(struct flash_file *flash)
 {
-    if (flash->fd < 0 || !flash->unsynced)
+    int block = flash->unsynced;
+    if (flash->fd < 0 || block < 0)
         return true;
-    if (fdatasync(flash->fd) != 0) {
-        log_error("cannot write the flash image %s: %s", flash->path, strerror(errno));
-        return false;
-    }
-    flash->unsynced = false;
-    return true;
+    flash->unsynced = -1;
+    if (fdatasync(flash->fd) == 0)
+        return true;
+    /* The system may now take for written what is not: it is only told once. */
+    flash->lost[block] = true;
+    log_error("cannot write the flash image %s: %s", flash->path, strerror(errno));
+    return false;
 }
 
 static int write_at(struct flash_file *flash, unsigned block, unsigned offset, const void *data, unsigned length)
 {
-    unsigned at = block * RKM04_FLASH_BLOCK_SIZE + offset;
-    if (at != flash->end && !flash_file_sync(flash))
-        return 1;
-    flash->unsynced = true;
-    flash->end = at + length;
-    ssize_t written = pwrite(flash->fd, data, length, at);
+    flash->unsynced = (int)block;
+    flash->end = offset + length;
+    ssize_t written = pwrite(flash->fd, data, length, block * RKM04_FLASH_BLOCK_SIZE + offset);
     if (written == (ssize_t)length)
         return 0;
     log_error("cannot write the flash image %s: %s", flash->path, written >= 0 ? "the disk is full" : strerror(errno));
@@ -105,10 +141,11 @@ int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, v
 {
     if (!within(block, offset, length))
         return 1;
-    unsigned at = block * RKM04_FLASH_BLOCK_SIZE + offset;
-    if (!flash_file_sync(flash))
+    if (flash->unsynced == (int)block)
+        flash_file_sync(flash);
+    if (flash->lost[block])
         return 1;
-    if (pread(flash->fd, data, length, at) == (ssize_t)length)
+    if (pread(flash->fd, data, length, block * RKM04_FLASH_BLOCK_SIZE + offset) == (ssize_t)length)
         return 0;
     log_error("cannot read the flash image %s", flash->path);
     return 1;
@@ -120,12 +157,21 @@ int flash_file_erase(struct flash_file *flash, unsigned block)
     if (!within(block, 0, sizeof bytes))
         return 1;
     memset(bytes, ERASED, sizeof bytes);
-    return write_at(flash, block, 0, bytes, sizeof bytes);
+    if (flash->unsynced != (int)block && !flash_file_sync(flash))
+        return 1;
+    int result = write_at(flash, block, 0, bytes, sizeof bytes);
+    flash->lost[block] = flash->lost[block] && result != 0;
+    return result;
 }
 
 int flash_file_program(struct flash_file *flash, unsigned block, unsigned offset, const void *data, unsigned length)
 {
-    return within(block, offset, length) ? write_at(flash, block, offset, data, length) : 1;
+    if (!within(block, offset, length))
+        return 1;
+    bool follows = flash->unsynced == (int)block && offset == flash->end;
+    if ((!follows && !flash_file_sync(flash)) || flash->lost[block])
+        return 1;
+    return write_at(flash, block, offset, data, length);
 }
 
 bool flash_file_close(struct flash_file *flash)

@@ -3,7 +3,8 @@
  * The image is the blocks of the flash one after the other, RKM04_FLASH_BLOCKS x RKM04_FLASH_BLOCK_SIZE bytes, and nothing
  * else. Every operation reaches the file when it is asked for, so a killed emulator loses nothing of what it has done. For a
  * machine that loses its power: operations become lasting in the order in which they were asked for, but for programs that
- * follow one another without a gap, which count as one; what has been read back is on the disk. */
+ * follow one another without a gap, which count as one, and an erase of the block that was written last; what has been read
+ * is on the disk. A new image is on the disk with its name before it is used, and one whose making was cut is made anew. */
 #ifndef RKM04_HOST_FLASH_FILE_H
 #define RKM04_HOST_FLASH_FILE_H
 
@@ -17,15 +18,17 @@
 struct flash_file {
     const char *path;
     int fd;           /* -1: not open */
-    bool unsynced;
-    unsigned end;     /* where the operation before ended */
+    int unsynced;     /* block with writes that may not be on the disk yet; -1: none */
+    unsigned end;     /* where the write before ended in it */
+    bool lost[RKM04_FLASH_BLOCKS]; /* a sync failed: it does not count what can be read there, until the next erase */
 };
 
 /* Open the image `path`, making an erased one if there is none, for this process alone. `path` must stay.
  * Failures are reported. Returns false if it did not work. */
 bool flash_file_open(struct flash_file *flash, const char *path);
 
-/* See that all is on the disk. Failures are reported. Returns false if it did not work. */
+/* See that all is on the disk. Failures are reported. Returns false if it did not work: the block that was written cannot be
+ * read or programmed then until it has been erased. */
 bool flash_file_sync(struct flash_file *flash);
 
 /* Sync and close. Returns as flash_file_sync(). */
