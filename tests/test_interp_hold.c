@@ -365,6 +365,99 @@ START_TEST(C3_any_number_of_requests_in_one_slot_keep_their_meaning)
 }
 END_TEST
 
+START_TEST(C3_C75_K_C75_in_one_slot_stop_a_motion_and_let_it_go_on)
+{
+    rig_accept(&rig, '1', "F5000 R");
+    rig_accept_at(&rig, 1001 * MS + 1, "C75");
+    rig_accept(&rig, '1', "K");
+    rig_accept(&rig, '1', "C75");
+    rig_to(&rig, 20 * SECOND);
+    rig_expect_motion_near(&rig, 1, 1, 2 * MS, HELD_AT, HELD_STEPS, true);
+    uint64_t begin = slot_behind(HELD_AT), end = begin + move_ticks(100, 1000, 2000, 5000 - HELD_STEPS);
+    rig_expect_motion(&rig, 1, 2, begin, end, 5000 - HELD_STEPS, true);
+}
+END_TEST
+
+START_TEST(C3_C4_a_change_of_speed_between_K_C75_and_a_second_K_is_dropped_by_it)
+{
+    rig_accept(&rig, '1', "F5000 R");
+    rig_accept_at(&rig, 1001 * MS + 1, "K");
+    rig_accept(&rig, '1', "C75");
+    rig_accept(&rig, '1', "V300");
+    rig_accept(&rig, '1', "K");
+    rig_to(&rig, 3 * SECOND);
+    expect_state(RKM04_HELD);
+    rig_expect_motion_near(&rig, 1, 1, 2 * MS, HELD_AT, HELD_STEPS, true);
+    rig_accept(&rig, '1', "C75");
+    rig_to(&rig, 20 * SECOND);
+    rig_expect_motion(&rig, 1, 2, 3 * SECOND, 3 * SECOND + move_ticks(100, 1000, 2000, 5000 - HELD_STEPS), 5000 - HELD_STEPS,
+                      true);
+}
+END_TEST
+
+START_TEST(C3_K_behind_C75_in_the_slot_behind_the_last_command_holds_nothing)
+{
+    rig_accept(&rig, '1', "T01");
+    rig_accept_at(&rig, 1 * MS + 500, "C75");
+    rig_accept(&rig, '1', "K");
+    rig_to(&rig, 10 * MS);
+    expect_state(RKM04_IDLE);
+    rig_accept(&rig, '1', "T02");
+    rig_to(&rig, 12 * MS);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 3);
+}
+END_TEST
+
+/* "F5000 R" with a guard that stops it at 1002 ms; K comes 100 ms later. */
+static void hold_in_the_ramp_of_a_guard(const char *text)
+{
+    rig_accept(&rig, '1', text);
+    rig_input_at(&rig, 1003 * MS, 1, true);
+    rig_accept_at(&rig, 1103 * MS, "K");
+}
+
+START_TEST(C3_C75_during_the_ramp_of_a_guard_is_remembered_for_the_hold_behind_it)
+{
+    hold_in_the_ramp_of_a_guard("M01 F5000 R T01");
+    rig_accept_at(&rig, 1203 * MS, "C75");
+    rig_to(&rig, 1300 * MS);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
+    rig_to(&rig, 3 * SECOND);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 1);
+    ck_assert_uint_eq(rig_motions(&rig, 1), 1);
+    ck_assert_int_eq(rig_motor(&rig, 1).position, HELD_STEPS);
+    expect_state(RKM04_IDLE);
+}
+END_TEST
+
+START_TEST(P9_held_behind_the_last_command_the_index_stays_at_it)
+{
+    hold_in_the_ramp_of_a_guard("M01 F5000 R");
+    rig_to(&rig, 3 * SECOND);
+    expect_state(RKM04_HELD);
+    ck_assert_uint_eq(rig_motor(&rig, 1).index, 3);
+    rig_accept(&rig, '1', "T01"); /* new commands end the hold */
+    rig_to(&rig, 3 * SECOND + 5 * MS);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 1);
+}
+END_TEST
+
+START_TEST(R5_a_held_limit_move_whose_input_came_meanwhile_does_no_further_step)
+{
+    rig_accept(&rig, '1', ")03 T01");
+    rig_accept_at(&rig, 500 * MS, "K");
+    rig_to(&rig, 1 * SECOND);
+    expect_state(RKM04_HELD);
+    int32_t position = rig_motor(&rig, 1).position;
+    rig_input_at(&rig, 1 * SECOND, 3, true);
+    rig_accept_at(&rig, 2 * SECOND, "C75");
+    rig_to(&rig, 3 * SECOND);
+    expect_output_about(2 * SECOND);
+    ck_assert_int_eq(rig_motor(&rig, 1).position, position);
+    expect_state(RKM04_IDLE);
+}
+END_TEST
+
 static Suite *interp_hold_suite(void)
 {
     Suite *suite = suite_create("interp_hold");
@@ -394,6 +487,9 @@ static Suite *interp_hold_suite(void)
     tcase_add_test(by_state, C3_in_a_stop_ramp_of_a_guard_the_hold_falls_behind_the_motion);
     tcase_add_test(by_state, C3_K_stops_a_limit_move_at_the_next_step_and_C75_goes_on_with_it);
     tcase_add_test(by_state, C3_an_endless_motion_goes_on_endlessly_after_a_hold);
+    tcase_add_test(by_state, C3_K_behind_C75_in_the_slot_behind_the_last_command_holds_nothing);
+    tcase_add_test(by_state, P9_held_behind_the_last_command_the_index_stays_at_it);
+    tcase_add_test(by_state, R5_a_held_limit_move_whose_input_came_meanwhile_does_no_further_step);
     suite_add_tcase(suite, by_state);
 
     TCase *order = tcase_create("order");
@@ -402,6 +498,9 @@ static Suite *interp_hold_suite(void)
     tcase_add_test(order, C3_a_K_after_it_cancels_the_remembered_C75);
     tcase_add_test(order, C3_K_and_C75_in_one_slot_act_in_order_of_arrival);
     tcase_add_test(order, C3_any_number_of_requests_in_one_slot_keep_their_meaning);
+    tcase_add_test(order, C3_C75_K_C75_in_one_slot_stop_a_motion_and_let_it_go_on);
+    tcase_add_test(order, C3_C4_a_change_of_speed_between_K_C75_and_a_second_K_is_dropped_by_it);
+    tcase_add_test(order, C3_C75_during_the_ramp_of_a_guard_is_remembered_for_the_hold_behind_it);
     suite_add_tcase(suite, order);
 
     return suite;

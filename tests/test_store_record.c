@@ -212,6 +212,35 @@ START_TEST(U5_garbage_in_the_flash_is_not_trusted_and_can_be_stored_over)
 }
 END_TEST
 
+/* A flash whose cells lose their contents one by one: the reads from the n-th on get one bit wrong. */
+static unsigned reads_before_decay;
+
+static int decaying_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    int error = flash_fake_read(context, block, offset, data, length);
+    if (reads_before_decay > 0)
+        reads_before_decay--;
+    if (reads_before_decay == 0 && length > 1)
+        ((uint8_t *)data)[length - 1] ^= 1;
+    return error;
+}
+
+START_TEST(U5_a_record_that_reads_otherwise_the_second_time_is_not_trusted)
+{
+    const struct rkm04_port port = {.flash_read = decaying_read};
+    struct rkm04_program found;
+    memcpy(flash.data[2], record, sizeof record);
+    reads_before_decay = 100;
+    ck_assert_int_eq(store_load(&port, &flash, 2, &found), RKM04_SLOT_LOADED);
+    /* Loading looks at both blocks (three reads: two headers, the commands), then reads the chosen one into memory. */
+    for (unsigned good = 3; good <= 4; good++) {
+        reads_before_decay = good + 1;
+        ck_assert_int_eq(store_load(&port, &flash, 2, &found), RKM04_SLOT_UNTRUSTED);
+        ck_assert_uint_eq(program_count(&found), 0);
+    }
+}
+END_TEST
+
 static Suite *record_suite(void)
 {
     Suite *suite = suite_create("store_record");
@@ -228,6 +257,7 @@ static Suite *record_suite(void)
     tcase_add_test(bytes, U5_if_the_newest_record_is_spoiled_the_one_before_is_loaded);
     tcase_add_test(bytes, U5_generations_count_on_through_zero);
     tcase_add_test(bytes, U5_garbage_in_the_flash_is_not_trusted_and_can_be_stored_over);
+    tcase_add_test(bytes, U5_a_record_that_reads_otherwise_the_second_time_is_not_trusted);
     return suite;
 }
 

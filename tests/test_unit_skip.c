@@ -112,6 +112,50 @@ START_TEST(U3_the_longest_motion_ends_at_the_tick_of_its_closed_form_without_a_s
 }
 END_TEST
 
+START_TEST(P9_an_endless_motion_goes_on_past_2_to_the_32_steps)
+{
+    /* 2000 steps/s at once, for 25 days. G+ is the third command: it begins at tick 3000. */
+    const uint64_t minute = 60 * UINT64_C(1000000), steps_a_minute = 60 * 2000;
+    const uint64_t minutes = (UINT64_C(1) << 32) / steps_a_minute + 2;
+    struct rkm04_motor_state state;
+    power_up();
+    rkm04_set_command(&unseen, '1', "S2000 V2000 G+", 14, NULL);
+    rkm04_advance(&unseen, 3001);
+    for (uint64_t i = 1; i <= minutes; i++) {
+        rkm04_advance(&unseen, minute);
+        rkm04_motor_state(&unseen, 1, &state);
+        ck_assert_int_eq(state.state, RKM04_MOVING);
+        ck_assert_uint_eq(state.steps, (uint32_t)(i * steps_a_minute));
+        ck_assert_uint_eq((uint32_t)state.position, (uint32_t)(i * steps_a_minute));
+    }
+    ck_assert_uint_eq(state.speed, 2000);
+}
+END_TEST
+
+/* A motion of constant speed through two segments, the first of `first` steps: its last pulse sets DO 1 (C12). */
+static void two_segments(unsigned first, uint64_t due)
+{
+    char text[100];
+    power_up();
+    sprintf(text, "T51 S1000 V1000 F%u Y F90000 Y R", first);
+    both_set(text);
+    both_advance(due);
+    ck_assert_uint_eq(rkm04_outputs(&unseen), 0);
+    both_advance(1);
+    ck_assert_uint_eq(rkm04_outputs(&unseen), 1);
+    both_advance(100 * UINT64_C(1000000));
+}
+
+START_TEST(C12_an_output_comes_on_at_its_pulse_however_many_are_passed_over)
+{
+    two_segments(30, 8000 + 30 * 1000); /* R is the eighth command: it begins at tick 8000 */
+    two_segments(3000, 8000 + 3000 * 1000);
+    two_segments(64, 8000 + 64 * 1000);
+    two_segments(65, 8000 + 65 * 1000);
+    two_segments(66, 8000 + 66 * 1000);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("unit_skip");
@@ -119,6 +163,8 @@ int main(void)
     tcase_set_timeout(one, 200);
     tcase_add_loop_test(one, K3_pulses_nobody_sees_lead_to_the_same_positions_at_the_same_ticks, 0, 40);
     tcase_add_test(one, U3_the_longest_motion_ends_at_the_tick_of_its_closed_form_without_a_sink);
+    tcase_add_test(one, P9_an_endless_motion_goes_on_past_2_to_the_32_steps);
+    tcase_add_test(one, C12_an_output_comes_on_at_its_pulse_however_many_are_passed_over);
     suite_add_tcase(suite, one);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_NORMAL);

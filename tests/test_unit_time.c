@@ -146,6 +146,20 @@ START_TEST(K3_an_idle_year_passes_at_once)
 }
 END_TEST
 
+START_TEST(K3_time_ends_at_the_last_tick_and_never_wraps)
+{
+    static struct rig rig;
+    rig_power_up(&rig, NULL);
+    rkm04_advance(&rig.unit, UINT64_MAX - 10);
+    ck_assert_uint_eq(rkm04_now(&rig.unit), UINT64_MAX - 10);
+    rkm04_advance(&rig.unit, 100);
+    ck_assert_uint_eq(rkm04_now(&rig.unit), UINT64_MAX);
+    rkm04_advance(&rig.unit, UINT64_MAX);
+    ck_assert_uint_eq(rkm04_now(&rig.unit), UINT64_MAX);
+    rig_free(&rig);
+}
+END_TEST
+
 START_TEST(K3_advancing_by_nothing_changes_nothing)
 {
     story_tell(&story, 42, 100 * MS, false);
@@ -256,6 +270,7 @@ static Suite *unit_time_suite(void)
     tcase_add_test(events, K3_nothing_happens_before_the_next_event);
     tcase_add_test(events, K3_a_unit_that_waits_for_ever_has_no_next_event);
     tcase_add_test(events, K3_an_idle_year_passes_at_once);
+    tcase_add_test(events, K3_time_ends_at_the_last_tick_and_never_wraps);
     tcase_add_test(events, K3_advancing_by_nothing_changes_nothing);
     suite_add_tcase(suite, events);
 
