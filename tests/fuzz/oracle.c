@@ -43,15 +43,14 @@ static struct limits limits_of(const struct oracle_motor *seen, const struct rkm
     return limits;
 }
 
-/* Changes of speed (C4) show in the segments. At speeds up to S they are jumps. */
+/* Changes of speed (C4) show in the segments. */
 static void look_at_changes(struct oracle_motor *seen, const struct rkm04_motion *motion)
 {
     for (unsigned i = 0; i < motion->segments; i++) {
         uint16_t old = seen->speed[i], now = motion->segment[i].speed;
         if (old == now)
             continue;
-        if (old <= motion->start_speed || now <= motion->start_speed)
-            seen->remembered = 0;
+        seen->jumps = seen->jumps || old <= motion->start_speed || now <= motion->start_speed;
         seen->speed[i] = now;
         if (now > seen->fastest[i])
             seen->fastest[i] = now;
@@ -76,7 +75,7 @@ static void check_window(const struct oracle_motor *seen, const struct rkm04_mot
                limits.fastest, (unsigned long long)last);
     FUZZ_CHECK(time <= TICK || n * 1e6 / (time - TICK) >= seen->slowest - SMALL, "R1: %u steps in %.0f us, not slower than %u", n,
                time, seen->slowest);
-    if (2 * n > seen->remembered)
+    if (2 * n > seen->count || seen->jumps)
         return;
     limits = limits_of(seen, motion, last - 2 * n + 1, last);
     before = ticks_between(seen, 2 * n, n);
@@ -99,7 +98,7 @@ static void check_start(const struct oracle_motor *seen, const struct rkm04_moti
 static void check_end(const struct oracle_motor *seen, const struct rkm04_motion *motion)
 {
     uint64_t last = (uint64_t)seen->begin_done + seen->count;
-    for (uint32_t n = 1; n <= seen->remembered && n < ORACLE_PULSES; n *= 2) {
+    for (uint32_t n = 1; n <= seen->count && n < ORACLE_PULSES && !seen->jumps; n *= 2) {
         struct limits limits = limits_of(seen, motion, last - n + 1, last);
         double time = (ticks_between(seen, n, 0) + TICK) / 1e6;
         FUZZ_CHECK(n <= motion->start_speed * time + limits.acceleration * time * time / 2 + SMALL,
@@ -164,14 +163,13 @@ static void see_step(void *context, uint64_t tick, unsigned number, int32_t posi
     seen->known = true;
     seen->last_pulse = tick;
     seen->count++;
-    seen->remembered++;
     seen->pulse[seen->count % ORACLE_PULSES] = tick;
     if (!seen->whole)
         return;
     look_at_changes(seen, motion);
     if (seen->count < ORACLE_PULSES && !motion->changed)
         check_start(seen, motion);
-    for (uint32_t n = 1; n <= seen->remembered && n <= ORACLE_PULSES / 4; n *= 2)
+    for (uint32_t n = 1; n <= seen->count && n <= ORACLE_PULSES / 4; n *= 2)
         check_window(seen, motion, n);
     check_exact(seen, motion, tick);
 }
@@ -206,7 +204,8 @@ static void begin_motion(struct oracle *oracle, unsigned number, uint64_t tick)
     seen->begin = tick;
     seen->begin_position = motor->position;
     seen->begin_done = motor->motion.done;
-    seen->count = seen->remembered = 0;
+    seen->count = 0;
+    seen->jumps = false;
     seen->pulse[0] = tick;
     seen->slowest = motor->motion.start_speed;
     for (unsigned i = 0; i < motor->motion.segments; i++) {

@@ -18,7 +18,7 @@ struct oracle_motor {
     uint64_t begin;             /* of the motion, tick */
     int32_t begin_position;
     uint32_t begin_done, count; /* steps done before; pulses since */
-    uint32_t remembered;        /* pulses since the speed could last jump */
+    bool jumps;                 /* it may: a change (C4) to a speed up to S is a ramp down to S, then a jump (R6) */
     uint64_t pulse[ORACLE_PULSES]; /* ticks; of pulse n at n % ORACLE_PULSES, the begin as pulse 0 */
     uint16_t speed[RKM04_SEGMENTS_MAX], fastest[RKM04_SEGMENTS_MAX], slowest; /* of its segments: V now, and so far */
     uint8_t guard_m, guard_n;   /* at the begin */
