@@ -16,6 +16,14 @@ static const char *path_of(const struct bus *bus, const char *pattern, char path
     return NULL;
 }
 
+/* Say why a file could not be written; `error` is an errno. Returns true if it could. */
+static bool check(const char *path, int error)
+{
+    if (error != 0)
+        log_error("cannot write %s: %s", path, strerror(error));
+    return error == 0;
+}
+
 static bool complain(char *error)
 {
     log_error("%s", error ? error : "out of memory");
@@ -64,14 +72,6 @@ bool bus_files_begin(struct bus *bus)
     return true;
 }
 
-/* Close a file that could not be written; `error` is why. Returns true if it could. */
-static bool check(const char *path, int error)
-{
-    if (error != 0)
-        log_error("cannot write %s: %s", path, strerror(error));
-    return error == 0;
-}
-
 void bus_files_look(struct bus *bus)
 {
     const struct serve_options *options = bus->options;
@@ -87,6 +87,13 @@ void bus_files_look(struct bus *bus)
             files->wire[i] = NULL;
             files->failed = true;
         }
+        if (files->trace[i])
+            trace_file_flush(files->trace[i]);
+    }
+    if (files->record && record_failed(files->record) != 0) {
+        check(options->record, record_end(files->record));
+        files->record = NULL;
+        files->failed = true;
     }
 }
 

@@ -23,7 +23,8 @@ struct bus_files {
 /* Open what the options ask for. Failures are reported. Returns false if it did not work. */
 bool bus_files_begin(struct bus *bus);
 
-/* One could not be written any more: report it, once. */
+/* Write out what has gathered, so that little is lost if the process is killed. One that could not be written is reported,
+ * once, and given up. */
 void bus_files_look(struct bus *bus);
 
 /* Close them all. Returns false if one could not be written (reported). */

@@ -1,6 +1,7 @@
 /* rkm04: the virtual RKM04. This file chooses the sub-command. */
 #include <argp.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -57,6 +58,7 @@ static void fill_standard_streams(void)
 int main(int argc, char **argv)
 {
     fill_standard_streams();
+    signal(SIGXFSZ, SIG_IGN); /* writing says so, too */
     argp_err_exit_status = STATUS_USAGE;
     if (argc < 2) {
         fputs("rkm04: no sub-command: expected `rkm04 serve', `exec', `test' or `replay'; `rkm04 --help' tells more\n", stderr);

@@ -192,11 +192,6 @@ struct record *record_begin(struct sim *sim, FILE *out)
     return record;
 }
 
-void record_flush(struct record *record)
-{
-    settle(record);
-}
-
 int record_failed(const struct record *record)
 {
     return record->error;

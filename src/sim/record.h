@@ -18,9 +18,6 @@ struct record *record_begin(struct sim *sim, FILE *out);
 /* End: write the last digests, and flush. Returns 0 or the errno of the first failure. Frees the record. */
 int record_end(struct record *record);
 
-/* Everything that could not be written so far is (nothing is lost if the process is killed). */
-void record_flush(struct record *record);
-
 /* 0, or the errno with which writing has failed. Nothing is written after the first failure. */
 int record_failed(const struct record *record);
 

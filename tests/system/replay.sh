@@ -155,4 +155,16 @@ test_a_trace_that_cannot_be_written_is_a_failure() {
     holds "$complained" "cannot write $folder/nowhere/x.csv: No such file" "the complaint"
 }
 
+test_a_record_that_cannot_grow_is_reported_and_the_units_go_on() {
+    start bus bash -c 'ulimit -f 4; exec "$@"' - "$RKM04" serve --link "$folder/bus" --clock max --record "$folder/bus.record"
+    soon "the unit is ready" ready bus
+    exits 0 ctl bus set 'L255 F10 R H E'
+    soon "the full file is reported" grep -q 'cannot write .*bus.record: File too large' "$folder/bus.err"
+    exits 0 ctl bus version
+    kill "$started"
+    status_of "$started"
+    same 1 "$status" "exit status"
+    same 1 "$(grep -c 'cannot write' "$folder/bus.err")" "reports"
+}
+
 run_cases "$@"
