@@ -1,0 +1,137 @@
+#include "board.h"
+
+#include "mps2.h"
+#include "uart.h"
+
+struct pulses board_pulses;
+
+static volatile uint32_t wake_tick; /* when the main loop wants to be woken */
+static volatile bool awake;         /* that tick has come */
+static volatile bool changed;       /* an input has, since board_inputs */
+
+/* ---- Pins ----------------------------------------------------------------------------------------------------------- */
+
+static void set_step(unsigned motor, bool on)
+{
+    unsigned bit = 1u << (motor - 1);
+    MPS2_GPIO0->low[bit] = on ? bit : 0;
+}
+
+static void set_direction(unsigned motor, bool forward)
+{
+    unsigned bit = 1u << (motor + 3);
+    MPS2_GPIO0->low[bit] = forward ? bit : 0;
+}
+
+static void set_outputs(uint8_t mask)
+{
+    MPS2_GPIO1->low[0xff] = mask;
+}
+
+const struct pulse_pins board_pins = {.step = set_step, .direction = set_direction, .outputs = set_outputs};
+
+void board_driver(bool on)
+{
+    MPS2_GPIO0->high[1u << (BOARD_DRIVER_PIN - 8)] = on ? 1u << BOARD_DRIVER_PIN : 0;
+}
+
+/* Have a change of an input interrupt: pins at 1 when they go to 0, and the other way round. */
+uint8_t board_inputs(void)
+{
+    changed = false;
+    uint32_t high = MPS2_GPIO1->data & BOARD_INPUT_PINS;
+    MPS2_GPIO1->high_level_clear = high;
+    MPS2_GPIO1->high_level_set = BOARD_INPUT_PINS & ~high;
+    MPS2_GPIO1->interrupt_set = BOARD_INPUT_PINS;
+    return (uint8_t)(high >> 8);
+}
+
+/* The pin stays as it is, so no more interrupts until the main loop has looked; it filters bounces by being slower. */
+void board_input_interrupt(void)
+{
+    MPS2_GPIO1->interrupt_clear = BOARD_INPUT_PINS;
+    changed = true;
+}
+
+uint8_t board_switch(void)
+{
+    return MPS2_SWITCHES & 0xf;
+}
+
+void board_led(unsigned motor, bool lit)
+{
+    uint32_t bit = 1u << (motor - 1);
+    MPS2_LEDS = lit ? MPS2_LEDS | bit : MPS2_LEDS & ~bit;
+}
+
+/* ---- Time ------------------------------------------------------------------------------------------------------------- */
+
+uint64_t board_clock(void)
+{
+    static uint64_t clock;
+    clock += MPS2_COUNTER - (uint32_t)clock;
+    return clock;
+}
+
+/* Have the timer run out once, `ticks` from now. Longer than 100 s is cut: the interrupt then looks and arms it again. */
+static void arm(uint32_t ticks)
+{
+    const uint32_t cycles = MPS2_CLOCK / 1000000;
+    const uint32_t longest = 100000000;
+    MPS2_TIMER0->control = 0;
+    MPS2_TIMER0->value = (ticks < longest ? ticks : longest) * cycles;
+    MPS2_TIMER0->control = TIMER_ON;
+}
+
+void board_timer_interrupt(void)
+{
+    uint32_t next, now;
+    bool any;
+    MPS2_TIMER0->interrupt = 1;
+    do {
+        now = MPS2_COUNTER;
+        any = pulses_play(&board_pulses, &board_pins, now, &next);
+        if (!awake && (int32_t)(wake_tick - now) <= 0)
+            awake = true;
+        if (!awake && (!any || (int32_t)(next - wake_tick) > 0)) {
+            next = wake_tick;
+            any = true;
+        }
+    } while (any && (int32_t)(next - MPS2_COUNTER) <= 0);
+    if (any)
+        arm(next - now);
+}
+
+void board_play(uint32_t wake)
+{
+    interrupts_off();
+    wake_tick = wake;
+    awake = false;
+    NVIC_PEND = 1u << IRQ_TIMER0;
+    interrupts_on();
+}
+
+void board_sleep(bool more)
+{
+    interrupts_off(); /* or what comes between the look and the sleep would be slept through; WFI wakes all the same */
+    if (!awake && !changed && !uart_wants_main_loop(more))
+        __asm__ volatile("wfi");
+    interrupts_on();
+}
+
+void board_start(void)
+{
+    MPS2_PRESCALE = MPS2_CLOCK / 1000000 - 1;
+    MPS2_COUNTER = 0;
+    MPS2_GPIO0->low[0xff] = 0;
+    MPS2_GPIO0->high[0xff] = 0;
+    MPS2_GPIO1->low[0xff] = 0;
+    MPS2_GPIO0->enable_set = 0x1ff;
+    MPS2_GPIO1->enable_set = 0xff;
+    MPS2_LEDS = 0;
+    MPS2_TIMER0->control = 0;
+    MPS2_TIMER0->reload = 0;
+    NVIC_PRIORITY[IRQ_TIMER0] = BOARD_PRIORITY_PULSES;
+    NVIC_PRIORITY[IRQ_GPIO1] = BOARD_PRIORITY_INPUTS;
+    NVIC_ENABLE = 1u << IRQ_TIMER0 | 1u << IRQ_GPIO1;
+}

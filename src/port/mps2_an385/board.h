@@ -1,0 +1,47 @@
+/* board.h: clock, pins and LEDs of the board. */
+#ifndef BOARD_H
+#define BOARD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "pulses.h"
+
+/* Pins. GPIO0: 0-3 step, 4-7 direction of motors 1-4, 8 RS485 driver-enable. GPIO1: 0-7 DO 01-08, 8-15 DI 01-08. */
+#define BOARD_DRIVER_PIN 8u
+#define BOARD_INPUT_PINS 0xff00u
+
+/* Priorities, 0 is the most urgent: a pulse waits for nobody; a byte waits for pulses (it has 521 us). */
+#define BOARD_PRIORITY_PULSES 0x00u
+#define BOARD_PRIORITY_LINE 0x80u
+#define BOARD_PRIORITY_INPUTS 0xc0u
+
+extern struct pulses board_pulses; /* main loop and timer interrupt share it */
+extern const struct pulse_pins board_pins;
+
+/* Once, before anything else: pins, clock, timer. */
+void board_start(void);
+
+/* Microseconds since board_start. Main loop only: it counts the wraps of the hardware's 32 bits and has to be called at least
+ * once in 71 minutes. */
+uint64_t board_clock(void);
+
+/* The timer interrupt looks at the pulses anew (call it when something has been put there), and at this tick wakes the main loop. */
+void board_play(uint32_t wake);
+
+/* Sleep until the tick handed to board_play, a change of an input, a byte on the line, or, if there is more to send, room for it. */
+void board_sleep(bool more);
+
+/* DI 01..08, S1 (0..15), LED of motor 1..4. */
+uint8_t board_inputs(void);
+uint8_t board_switch(void);
+void board_led(unsigned motor, bool lit);
+
+/* RS485 driver on or off. */
+void board_driver(bool on);
+
+/* The one-shot timer has run out; an input has changed. */
+void board_timer_interrupt(void);
+void board_input_interrupt(void);
+
+#endif

@@ -1,0 +1,61 @@
+/* mps2.h: the registers used of Arm's MPS2 board with image AN385 (Cortex-M3, 25 MHz); QEMU calls it mps2-an385. */
+#ifndef MPS2_H
+#define MPS2_H
+
+#include <stdint.h>
+
+#define MPS2_CLOCK 25000000u /* Hz, of the processor and of everything below */
+
+/* CMSDK UART: a buffer of one byte each way. */
+struct mps2_uart {
+    volatile uint32_t data, state, control, interrupt, divider;
+};
+#define MPS2_UART0 ((struct mps2_uart *)0x40004000)
+#define UART_SENDING 1u /* state: the transmit buffer is full */
+#define UART_RECEIVED 2u /* state: the receive buffer is full */
+#define UART_ON (1u | 2u | 4u | 8u) /* control: transmitter, receiver, an interrupt of each */
+#define UART_RECEIVE_INTERRUPT 8u
+#define UART_SENT 1u /* interrupt: write 1 to clear */
+#define UART_CAME 2u
+
+/* CMSDK timer: counts down; with reload at 0 it stops at 0, once. */
+struct mps2_timer {
+    volatile uint32_t control, value, reload, interrupt;
+};
+#define MPS2_TIMER0 ((struct mps2_timer *)0x40000000)
+#define MPS2_TIMER1 ((struct mps2_timer *)0x40001000)
+#define TIMER_ON (1u | 8u) /* control: counts, and its interrupt is on */
+
+/* CMSDK GPIO, 16 pins. low[mask] and high[mask] write only the pins of the mask, in one access. */
+struct mps2_gpio {
+    volatile uint32_t data, out, unused[2], enable_set, enable_clear, unused2[2];
+    volatile uint32_t interrupt_set, interrupt_clear, edge_set, edge_clear, high_level_set, high_level_clear, status, unused3[241];
+    volatile uint32_t low[256], high[256];
+};
+#define MPS2_GPIO0 ((struct mps2_gpio *)0x40010000)
+#define MPS2_GPIO1 ((struct mps2_gpio *)0x40011000)
+
+/* FPGA I/O: a free counter behind a prescaler. */
+#define MPS2_COUNTER (*(volatile uint32_t *)0x40028018)
+#define MPS2_PRESCALE (*(volatile uint32_t *)0x4002801c)
+/* Configuration registers: eight LEDs, eight switches. */
+#define MPS2_LEDS (*(volatile uint32_t *)0x4002f004)
+#define MPS2_SWITCHES (*(volatile uint32_t *)0x4002f00c)
+
+/* Interrupts of the processor: enable, set pending; one byte of priority each, 0 is the most urgent. */
+#define NVIC_ENABLE (*(volatile uint32_t *)0xe000e100)
+#define NVIC_PEND (*(volatile uint32_t *)0xe000e200)
+#define NVIC_PRIORITY ((volatile uint8_t *)0xe000e400)
+enum mps2_interrupt { IRQ_UART0_RECEIVE = 0, IRQ_UART0_SENT = 1, IRQ_GPIO1 = 7, IRQ_TIMER0 = 8, IRQ_TIMER1 = 9 };
+
+static inline void interrupts_off(void)
+{
+    __asm__ volatile("cpsid i" ::: "memory");
+}
+
+static inline void interrupts_on(void)
+{
+    __asm__ volatile("cpsie i" ::: "memory");
+}
+
+#endif

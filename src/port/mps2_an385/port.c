@@ -1,0 +1,39 @@
+#include "port.h"
+
+#include "board.h"
+#include "flash.h"
+
+/* Hand it to the timer interrupt. A lane is full only when the board has fallen far behind: then wait for the interrupt. */
+static void put(unsigned lane, uint64_t tick, enum pulse_what what, uint8_t value)
+{
+    while (!pulses_room(&board_pulses, lane))
+        board_play((uint32_t)tick);
+    pulses_put(&board_pulses, lane, (uint32_t)tick, what, value);
+}
+
+static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
+{
+    (void)context, (void)position;
+    put(motor, tick, PULSE_STEP, 0);
+}
+
+static void on_direction(void *context, uint64_t tick, unsigned motor, bool forward)
+{
+    (void)context;
+    put(motor, tick, PULSE_DIRECTION, forward);
+}
+
+static void on_outputs(void *context, uint64_t tick, uint8_t mask)
+{
+    (void)context;
+    put(0, tick, PULSE_OUTPUTS, mask);
+}
+
+const struct rkm04_port port = {
+    .step = on_step,
+    .direction = on_direction,
+    .outputs = on_outputs,
+    .flash_read = flash_read,
+    .flash_erase = flash_erase,
+    .flash_program = flash_program,
+};
