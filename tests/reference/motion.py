@@ -106,7 +106,7 @@ class Motion:
         self.stopping = False
         self.planned = True     # no stop, no change of speed since it began from rest
         self.met = met          # takes the clauses that are met
-        self.points = []        # P7: (step, speed) passed for good
+        self.pristine = True    # no stop, no change of speed, no hold so far
         self.last = None        # tick of the last pulse
         self.due = None         # tick of the next one
         self.legs = []
@@ -131,6 +131,7 @@ class Motion:
         x = Fraction(self.done)
         if self.total is not None:
             speed = min(speed, self.reach(i, x))
+        self.pristine = self.done == 0
         self.take(self.plan(x, speed, i), Fraction(0), True)
         self.planned = True
 
@@ -210,6 +211,17 @@ class Motion:
         """Is it a single motion from rest, not disturbed (R2)?"""
         return self.planned and len(self.parts) == 1
 
+    def points(self):
+        """Break points as (step, speed) of a motion that nothing has disturbed (P7)."""
+        corners = [leg for i, leg in enumerate(self.legs) if i == 0 or leg.a != self.legs[i - 1].a]
+        found = []
+        for leg in corners:
+            step = leg.x0.numerator // leg.x0.denominator + 1
+            point = (step if self.total is None else min(step, self.total), leg.v0.numerator // leg.v0.denominator)
+            if point not in found[-1:]:
+                found.append(point)
+        return found + ([] if self.total is None else [(self.total, 0)])
+
     def now(self, tick):
         """Leg, place, speed at this tick, and whether they are exact."""
         t = Fraction(tick - self.begin, MICRO)
@@ -228,7 +240,7 @@ class Motion:
     def stop(self, tick):
         """K, M, N, X (R5)."""
         i, x, v, exact = self.now(tick)
-        self.stopping = True
+        self.stopping, self.pristine = True, False
         if self.on_final_ramp(i):
             self.met("R5 a stop on the final ramp")
             return
@@ -248,7 +260,7 @@ class Motion:
         self.end = max(self.end, self.done)
         if self.end > x:
             legs.append(Leg(x, q, 0, Fraction(self.end), q))
-        self.planned = False
+        self.planned = self.pristine = False
         self.take(legs, Fraction(tick - self.begin, MICRO), exact)
 
     def whole(self, x, exact):
@@ -295,5 +307,5 @@ class Motion:
                 x, q = tidy(to), Fraction(min(low, speed * speed))
         if j < len(self.parts):
             legs += self.plan(x, q, j)
-        self.planned = False
+        self.planned = self.pristine = False
         self.take(legs, Fraction(tick - self.begin, MICRO), exact)

@@ -323,6 +323,8 @@ class Motor:
             if not self.motion.stopping:
                 self.stop(tick)
         else:
+            if self.state == "dwell":
+                self.due = tick
             self.end(tick)
 
     # ---- a turn (K2, K4) ----------------------------------------------------------------------------------------------

@@ -233,9 +233,9 @@ class Author:
                 actions.append(Send(tick, motor, self.spell(self.interruption())))
                 tick = min(self.end - 1, tick + r.choice([0, 1, 10, 300, 1000, self.log(1, 100_000)]))
         for _ in range(r.choice([1, 4, 12])):
-            actions.append(Ask(self.tick(), r.choice([4, 4, 7, 7, 7, 5]), self.motor()))
+            actions.append(Ask(self.tick(), r.choice([4, 4, 7, 7, 7, 6, 6, 6, 5]), self.motor()))
         for motor in range(1, 5):
-            actions += [Ask(self.end - 1, number, motor) for number in (4, 5, 7)]
+            actions += [Ask(self.end - 1, number, motor) for number in (4, 5, 6, 7)]
         actions.sort(key=lambda action: action.tick)
         return Story(r.choice([0, 0, 0, 7, 300, 2000]), actions, self.end)
 

@@ -3,7 +3,7 @@
     latency MS                how long a change of speed takes (C4); first, 0 if missing
     input TICK MASK           inputs from this tick on, bit 0 is DI 01
     send TICK MOTOR TEXT      Set Command; %XX is a byte
-    ask TICK NUMBER MOTOR     message 4, 5 or 7
+    ask TICK NUMBER MOTOR     message 4 to 7
     end TICK
 """
 

@@ -50,7 +50,8 @@ static void event(void *context, uint64_t tick, unsigned motor, enum rkm04_event
     };
 
     (void)context;
-    printf("n %" PRIu64 " %u %s %" PRIu32 "\n", tick, motor, name[what], value);
+    if ((unsigned)what < sizeof name / sizeof *name && name[what] != NULL) /* the counter is asked for by message 4 */
+        printf("n %" PRIu64 " %u %s %" PRIu32 "\n", tick, motor, name[what], value);
 }
 
 static void message(const char *hex)

@@ -114,7 +114,7 @@ class Unit:
     # ---- messages -----------------------------------------------------------------------------------------------------
 
     def message(self, data):
-        """A message at this tick. Returns the answer."""
+        """A message at this tick. Returns the answer, or None if the reference does not know it."""
         self.busy = True
         number, who = data[0], data[1] - ord("0")
         some = self.motors if who == 0 else [self.motors[who - 1]]
@@ -127,7 +127,17 @@ class Unit:
             return data[:2] + b"ERROR COMMAND! "
         if number == 5:
             return data[:2] + " ".join(language.canonical(c) for c in some[0].tape.values()).encode()
+        if number == 6:
+            return self.points(data[:2], some[0].motion)
         return data[:2] + b" %d; %d" % (self.steps(some[0]), self.index(some[0]))
+
+    @staticmethod
+    def points(head, motion):
+        """Get Tabul Run (P7), but of motions that nothing has disturbed only."""
+        if motion is not None and not motion.pristine:
+            return None
+        points = [] if motion is None else motion.points()
+        return head + b" %d;[%s]" % (len(points), ",".join("(%d;%d)" % point for point in points).encode())
 
     def set_command(self, motors, text):
         try:
