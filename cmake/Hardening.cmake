@@ -1,0 +1,16 @@
+# Hardening of what runs beside other programs (docs/SECURITY.md): every optimised build has it, but not one with sanitizers,
+# which look for the same and more. tests/system/security.sh looks whether it is in the programs.
+option(RKM04_HARDEN "Harden optimised builds: PIE, RELRO, stack protector, fortified library calls" ON)
+
+add_compile_options(-Werror=format-security)
+if(RKM04_HARDEN AND NOT RKM04_SANITIZE)
+  set(optimised $<CONFIG:Release,RelWithDebInfo,MinSizeRel>)
+  # -U: builders of packages define a level of their own. -fPIE, not -fPIC, which would keep the core from calling its own
+  # functions directly.
+  foreach(option -fPIE -fstack-protector-strong -fstack-clash-protection -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
+    add_compile_options($<${optimised}:${option}>)
+  endforeach()
+  foreach(option -pie -Wl,-z,relro -Wl,-z,now -Wl,-z,noexecstack)
+    add_link_options($<${optimised}:${option}>)
+  endforeach()
+endif()
