@@ -95,7 +95,7 @@ test_L4_a_full_memory_comes_whole_through_small_buffers() {
     exits 0 unit -m 2 send "$folder/program.rks"
     echo "O01 [ $(tr '\n' ' ' <"$folder/program.rks")]" >"$folder/expected"
     unit -m 2 command >"$folder/answer"
-    cmp -s "$folder/expected" "$folder/answer" || fail "$(cmp "$folder/expected" "$folder/answer" 2>&1), of $(wc -c <"$folder/expected")"
+    cmp "$folder/expected" "$folder/answer" >"$folder/cmp.err" 2>&1 || fail "another program came back"
 }
 
 test_U7_the_driver_is_on_for_each_answer_and_off_again() {

@@ -22,14 +22,16 @@ extern const struct pulse_pins board_pins;
 /* Once, before anything else: pins, clock, timer. */
 void board_start(void);
 
-/* Microseconds since board_start. Main loop only: it counts the wraps of the hardware's 32 bits and has to be called at least
- * once in 71 minutes. */
+/* Microseconds since board_start. Main loop only: it counts the wraps of the hardware's 32 bits, so it has to be called at
+ * least once in 71 minutes. */
 uint64_t board_clock(void);
 
-/* The timer interrupt looks at the pulses anew (call it when something has been put there), and at this tick wakes the main loop. */
+/* The timer interrupt looks at the pulses anew (call it when something has been put there), and wakes the main loop at this
+ * tick. */
 void board_play(uint32_t wake);
 
-/* Sleep until the tick handed to board_play, a change of an input, a byte on the line, or, if there is more to send, room for it. */
+/* Sleep until the tick handed to board_play, a change of an input, a byte on the line or, if there is more to send, room for
+ * it. */
 void board_sleep(bool more);
 
 /* DI 01..08, S1 (0..15), LED of motor 1..4. */

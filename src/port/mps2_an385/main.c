@@ -1,12 +1,12 @@
 /* main.c: an RKM04 on Arm's MPS2 board with image AN385. The main loop keeps the unit ahead of the clock; what the unit wants
- * done at which tick waits in pulses.c, and the timer's interrupt does it. Motions are planned here, so pulses never wait for that. */
+ * done at which tick waits in pulses.c, and the timer's interrupt does it. Motions are planned here: no pulse waits for that. */
 #include "board.h"
 #include "flash.h"
 #include "port.h"
 #include "uart.h"
 
-/* How far the unit runs ahead, in ticks. It must be more than planning takes, and as little as possible else: commands and inputs
- * take effect later by as much, and an answer tells of a time as much ahead. */
+/* How far the unit runs ahead, in ticks. It must be more than planning takes, and as little as possible else: commands and
+ * inputs take effect later by as much, and an answer tells of a time as much ahead. */
 #define AHEAD 3000u
 #define AHEAD_LEAST 2000u /* with so much left before the next event it is advanced again */
 #define LED_TICKS 100000u /* how often the LEDs are looked at, at least */

@@ -29,7 +29,8 @@ struct mps2_timer {
 /* CMSDK GPIO, 16 pins. low[mask] and high[mask] write only the pins of the mask, in one access. */
 struct mps2_gpio {
     volatile uint32_t data, out, unused[2], enable_set, enable_clear, unused2[2];
-    volatile uint32_t interrupt_set, interrupt_clear, edge_set, edge_clear, high_level_set, high_level_clear, status, unused3[241];
+    volatile uint32_t interrupt_set, interrupt_clear, edge_set, edge_clear, high_level_set, high_level_clear, status;
+    volatile uint32_t unused3[241];
     volatile uint32_t low[256], high[256];
 };
 #define MPS2_GPIO0 ((struct mps2_gpio *)0x40010000)

@@ -4,8 +4,8 @@
  *     main loop                                 timer interrupt
  *     rkm04_advance -> on_step -> pulses_step   pulses_play -> pins.step; arm the timer for the tick returned
  *
- * One lane a motor, one for the outputs: a lane is filled in the order of its ticks, lanes are merged when played. Ticks here have
- * 32 bits: what waits lies far less than 2^31 us ahead. */
+ * One lane a motor, one for the outputs: a lane is filled in the order of its ticks, lanes are merged when played. Ticks here
+ * have 32 bits: what waits lies far less than 2^31 us ahead. */
 #ifndef PULSES_H
 #define PULSES_H
 

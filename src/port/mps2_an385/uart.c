@@ -43,8 +43,8 @@ void uart_start(void)
 
 /* ---- In --------------------------------------------------------------------------------------------------------------- */
 
-/* If the queue is full the byte stays in the UART, and the interrupt off, until uart_taken. What comes on top of that is lost, as
- * it must be on a line without handshake (and QEMU waits with the next byte). */
+/* If the queue is full the byte stays in the UART, and the interrupt off, until uart_taken. What comes on top of that is lost,
+ * as it must be on a line without handshake (and QEMU waits with the next byte). */
 void uart_receive_interrupt(void)
 {
     MPS2_UART0->interrupt = UART_CAME;
@@ -88,7 +88,7 @@ void uart_send(const uint8_t *bytes, size_t count)
     NVIC_PEND = 1u << IRQ_UART0_SENT; /* there everything else happens */
 }
 
-/* The buffer of the UART is empty: the next byte; or, if there is none, the last one is being shifted out: driver off after it. */
+/* The buffer of the UART is empty: the next byte. If there is none the last one is being shifted out: driver off after it. */
 void uart_sent_interrupt(void)
 {
     MPS2_UART0->interrupt = UART_SENT;
