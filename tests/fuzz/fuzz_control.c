@@ -3,6 +3,7 @@
  * are left alone. First byte: how many units. */
 #include <string.h>
 
+#include "condition.h"
 #include "control_rpc.h"
 #include "fuzz.h"
 #include "snapshot.h"
@@ -30,6 +31,28 @@ static void check_answer(char *text)
     free(text);
 }
 
+/* Wait for a condition, up to 100 ms. */
+static json_t *wait_for(const json_t *params, struct refusal *refusal)
+{
+    uint64_t ticks = left < 100000 ? left : 100000;
+    const json_t *until = json_object_get(params, "until");
+    struct condition *condition = until ? condition_read(&sim, until, refusal) : NULL;
+    if (!until)
+        refuse(refusal, REFUSED_PARAMS, "until: missing");
+    if (!condition)
+        return NULL;
+    condition_arm(condition);
+    left -= ticks;
+    bool held = condition_run(condition, sim_now(&sim) + ticks);
+    FUZZ_CHECK(held == condition_holds(condition), "a condition that holds does not");
+    char *text = condition_text(condition);
+    json_t *result = json_pack("{s:b, s:s}", "held", held, "text", text);
+    FUZZ_CHECK(result, "no text");
+    free(text);
+    condition_free(condition);
+    return result;
+}
+
 /* As the control socket does it, but for what needs files or a clock. */
 static void obey(const char *line, size_t length)
 {
@@ -38,7 +61,8 @@ static void obey(const char *line, size_t length)
     json_t *result = NULL;
     if (rpc_read(&request, line, length, 1, &refusal)) {
         json_object_del(request.params, "file");
-        result = sim_command(&sim, request.method, request.params, &refusal);
+        result = strcmp(request.method, "wait") == 0 ? wait_for(request.params, &refusal)
+                                                     : sim_command(&sim, request.method, request.params, &refusal);
     }
     FUZZ_CHECK(result || (refusal.code != 0 && refusal.text[0]), "refused without a reason");
     if (request.id)
