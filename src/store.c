@@ -258,9 +258,14 @@ enum rkm04_slot store_load(const struct rkm04_port *port, void *context, unsigne
         bool blank = survey.content[0] == CONTENT_BLANK && survey.content[1] == CONTENT_BLANK;
         return blank ? RKM04_SLOT_EMPTY : RKM04_SLOT_UNTRUSTED;
     }
-    struct header header;
-    if (read_record(&slot, block_of(&slot, survey.newest), &header, program) == CONTENT_RECORD)
-        return header.count > 0 ? RKM04_SLOT_LOADED : RKM04_SLOT_EMPTY;
-    program_clear(program);
+    /* Whatever could be read a moment ago and now cannot: the other record is better than none. */
+    for (int half = survey.newest, left = 2; left > 0; half = !half, left--) {
+        struct header header;
+        if (survey.content[half] != CONTENT_RECORD)
+            continue;
+        if (read_record(&slot, block_of(&slot, half), &header, program) == CONTENT_RECORD)
+            return header.count > 0 ? RKM04_SLOT_LOADED : RKM04_SLOT_EMPTY;
+        program_clear(program);
+    }
     return RKM04_SLOT_UNTRUSTED;
 }

@@ -274,6 +274,22 @@ START_TEST(P6_a_read_that_fails_once_costs_at_most_the_store)
 }
 END_TEST
 
+START_TEST(U5_a_read_that_fails_once_at_power_up_costs_at_most_the_newest_program)
+{
+    ck_assert_int_eq(save(3, &programs[SHORT]), 0);
+    ck_assert_int_eq(save(3, &programs[FULL]), 0);
+    unsigned n = 0;
+    do {
+        struct rkm04_program found;
+        flash_fake_arm_read(&flash, ++n);
+        enum rkm04_slot slot = load(3, &found);
+        ck_assert_msg(slot == RKM04_SLOT_LOADED, "read %u fails: slot %d", n, (int)slot);
+        ck_assert_msg(same(&found, &programs[FULL]) || same(&found, &programs[SHORT]), "read %u fails: a mixture", n);
+    } while (flash.reads >= n);
+    ck_assert_uint_gt(n, 90);
+}
+END_TEST
+
 START_TEST(U5_a_flash_that_cannot_be_read_is_reported_and_gives_an_empty_program)
 {
     ck_assert_int_eq(save(1, &programs[SHORT]), 0);
@@ -306,6 +322,7 @@ static Suite *store_suite(void)
     tcase_add_test(power, P6_a_power_cut_in_the_store_after_a_power_cut_leaves_the_old_program);
     tcase_add_test(power, P6_through_any_sequence_of_stores_and_power_cuts_the_slots_hold_what_they_held_or_were_given);
     tcase_add_test(power, P6_a_read_that_fails_once_costs_at_most_the_store);
+    tcase_add_test(power, U5_a_read_that_fails_once_at_power_up_costs_at_most_the_newest_program);
     tcase_add_test(power, U5_a_flash_that_cannot_be_read_is_reported_and_gives_an_empty_program);
     return suite;
 }
