@@ -1,6 +1,7 @@
 /* fuzz_message.c: the message handler (section 3): messages bare, in frames, damaged, for others, broadcast, and any bytes on
  * the line, with time between them. An answer has the number of its request, comes whole out of its frame, and comes only to
- * whom it is due. First byte: 1 plain. Then actions: a byte that chooses, and what it needs. */
+ * whom it is due. First byte: 1 plain, 2 slow changes of speed, the rest n: each n-th operation of the flash fails. Then
+ * actions: a byte that chooses, and what it needs. */
 #include <string.h>
 
 #include <rkm04/unit.h>
@@ -14,13 +15,19 @@ static struct rkm04_unit unit;
 static uint8_t flash[RKM04_FLASH_BLOCKS][RKM04_FLASH_BLOCK_SIZE];
 static uint8_t answer[12000], frame[4 * MESSAGE_MAX], line[64], heard[12000];
 static struct rkm04_receiver master;
+static unsigned operations, failing; /* of the flash; each failing-th fails, 0: none */
+
+static bool fails(void)
+{
+    return failing > 0 && ++operations % failing == 0;
+}
 
 static int flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
 {
     (void)context;
     FUZZ_CHECK(block < RKM04_FLASH_BLOCKS && offset + length <= RKM04_FLASH_BLOCK_SIZE, "%u %u %u", block, offset, length);
     memcpy(data, &flash[block][offset], length);
-    return 0;
+    return fails();
 }
 
 static int flash_erase(void *context, unsigned block)
@@ -28,7 +35,7 @@ static int flash_erase(void *context, unsigned block)
     (void)context;
     FUZZ_CHECK(block < RKM04_FLASH_BLOCKS, "%u", block);
     memset(flash[block], 0xff, sizeof flash[block]);
-    return 0;
+    return fails();
 }
 
 static int flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
@@ -37,7 +44,7 @@ static int flash_program(void *context, unsigned block, unsigned offset, const v
     FUZZ_CHECK(block < RKM04_FLASH_BLOCKS && offset + length <= RKM04_FLASH_BLOCK_SIZE, "%u %u %u", block, offset, length);
     FUZZ_CHECK(offset % 8 == 0 && length % 8 == 0, "%u bytes at %u", length, offset);
     memcpy(&flash[block][offset], data, length);
-    return 0;
+    return fails();
 }
 
 static const struct rkm04_port port = {.flash_read = flash_read, .flash_erase = flash_erase, .flash_program = flash_program};
@@ -94,7 +101,7 @@ static void check_answer(uint8_t number, uint8_t motor, const uint8_t *bytes, si
     if (number == 2)
         FUZZ_CHECK(length == 4 && bytes[2] <= 3 && (bytes[2] == 1 || bytes[2] == 2 || bytes[3] == 0), "flag %u", bytes[2]);
     if (number == 3)
-        FUZZ_CHECK(length == 3, "%zu bytes", length);
+        FUZZ_CHECK(length == 3 && (bytes[2] == 0 || failing > 0 || !is_motor(motor)), "err %u", bytes[2]);
     if (number == 5 && is_motor(motor))
         check_program(bytes + 2, length - 2);
     if (number == 6 && is_motor(motor))
@@ -192,6 +199,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     uint8_t mode = fuzz_byte(&fuzz);
     struct rkm04_config config = {.node = NODE, .framing = mode & 1 ? &rkm04_plain : &rkm04_hdlc,
                                   .speed_change_latency = mode & 2 ? 700 : 0};
+    failing = mode >> 2;
+    operations = 0;
     memset(flash, 0xff, sizeof flash);
     memset(&master, 0, sizeof master);
     rkm04_init(&unit, &config, &port, NULL);
