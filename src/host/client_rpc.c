@@ -85,8 +85,17 @@ static const char *advice(const char *path, int error)
     }
 }
 
+/* Is it an emulator of another user? Somebody may have made the folder of our default before us. */
+static bool is_foreign(const struct client_rpc *rpc)
+{
+    struct ucred peer;
+    socklen_t size = sizeof peer;
+    return getsockopt(rpc->fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0 || (peer.uid != geteuid() && peer.uid != 0);
+}
+
 bool client_rpc_open(struct client_rpc *rpc, const char *path)
 {
+    const char *chosen = path != NULL ? path : getenv("RKM04_CONTROL");
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     if (!client_rpc_path(path, rpc->path))
         return false;
@@ -96,10 +105,14 @@ bool client_rpc_open(struct client_rpc *rpc, const char *path)
     }
     strcpy(address.sun_path, rpc->path);
     rpc->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    if (rpc->fd >= 0 && connect(rpc->fd, (const struct sockaddr *)&address, sizeof address) == 0)
-        return true;
+    bool connected = rpc->fd >= 0 && connect(rpc->fd, (const struct sockaddr *)&address, sizeof address) == 0;
     int error = errno;
-    warnx("cannot connect to %s: %s%s", rpc->path, strerror(error), advice(rpc->path, error));
+    if (connected && ((chosen != NULL && chosen[0] != '\0') || !is_foreign(rpc)))
+        return true;
+    if (connected)
+        warnx("%s: the emulator there is not yours; if it is the one that is meant, name it: --control PATH", rpc->path);
+    else
+        warnx("cannot connect to %s: %s%s", rpc->path, strerror(error), advice(rpc->path, error));
     if (rpc->fd >= 0)
         close(rpc->fd);
     return false;

@@ -72,7 +72,7 @@ static bool claim(struct control_socket *control, const struct sockaddr_un *addr
                       record[0] ? record : "about to start", control->path);
         else
             log_error("cannot lock %s: %s; choose a --control in a folder that is there and that you may write to",
-                      control->lock_path, strerror(errno));
+                      control->lock_path, lock_file_reason(errno));
         return false;
     }
     long pid;

@@ -156,10 +156,10 @@ json_t *control_unsubscribe(struct control_context *context, struct refusal *ref
     int64_t number;
     if (!params_known(params, names, refusal) || !param_integer(params, "subscription", 1, INT32_MAX, &number, refusal))
         return NULL;
-    struct sim *sim = bus_sim(context->bus); /* what has happened so far is told */
+    bus_sim(context->bus); /* what has happened so far is told */
     for (struct subscription **at = &context->peer->subscriptions; *at; at = &(*at)->next) {
         if ((*at)->number == number) {
-            sim = &(*at)->bus->sim;
+            struct sim *sim = &(*at)->bus->sim;
             end(at);
             return json_pack("{s:I}", "t_us", (json_int_t)sim_now(sim));
         }

@@ -90,10 +90,20 @@ static bool check_image(struct flash_file *flash)
     return false;
 }
 
+/* Open the file, or make it; what is made is a file of that very name, never one that somebody's link leads to. */
+static int open_or_make(const char *path)
+{
+    const int flags = O_RDWR | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
+    int fd = open(path, flags);
+    if (fd < 0 && errno == ENOENT)
+        fd = open(path, flags | O_CREAT | O_EXCL, 0666);
+    return fd < 0 && errno == EEXIST ? open(path, flags) : fd; /* another emulator has made it just now */
+}
+
 bool flash_file_open(struct flash_file *flash, const char *path)
 {
     *flash = (struct flash_file){.path = path, .unsynced = -1};
-    flash->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, 0666);
+    flash->fd = open_or_make(path);
     if (flash->fd < 0) {
         log_error("cannot open the flash image %s: %s", path, strerror(errno));
         return false;

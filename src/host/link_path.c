@@ -109,7 +109,7 @@ bool link_path_claim(struct link_path *link, const char *path, unsigned number)
                       record[0] ? record : "about to start", link->path);
         else
             log_error("cannot lock %s: %s; choose a --link in a folder that is there and that you may write to",
-                      link->lock_path, strerror(errno));
+                      link->lock_path, lock_file_reason(errno));
         return false;
     }
     if (!read_record(record, target)) {

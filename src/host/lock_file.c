@@ -16,12 +16,26 @@ static bool is_there(int fd, const char *path)
     return fstat(fd, &ours) == 0 && lstat(path, &there) == 0 && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
 }
 
+/* Is it a file that we have made? In a folder of everybody, somebody else may have put another one there, or a second name of
+ * a file that must not be written to; and what stands in it would tell us what to remove. */
+static bool is_ours(int fd)
+{
+    struct stat found;
+    return fstat(fd, &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == geteuid() && found.st_nlink <= 1;
+}
+
 int lock_file_take(const char *path, char record[LOCK_RECORD_MAX])
 {
+    record[0] = '\0';
     for (;;) {
         int fd = open(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0600);
         if (fd < 0)
             return -1;
+        if (!is_ours(fd)) {
+            close(fd);
+            errno = EPERM;
+            return -1;
+        }
         bool locked = flock(fd, LOCK_EX | LOCK_NB) == 0;
         int why = errno;
         ssize_t length = pread(fd, record, LOCK_RECORD_MAX - 1, 0);
@@ -35,6 +49,13 @@ int lock_file_take(const char *path, char record[LOCK_RECORD_MAX])
             return -1;
         }
     }
+}
+
+const char *lock_file_reason(int error)
+{
+    if (error == EPERM)
+        return "it is not a lock file that you have made";
+    return error == ELOOP ? "a link is in its place" : strerror(error);
 }
 
 bool lock_file_write(int fd, const char *format, ...)

@@ -9,8 +9,11 @@
 #define LOCK_RECORD_MAX 128 /* bytes of the text, its end included */
 
 /* Open, making it if it is not there, and lock `path`; its first line goes to `record`. Returns a descriptor; -1: errno says
- * why, EWOULDBLOCK: somebody else holds it, `record` is his. */
+ * why. EWOULDBLOCK: somebody else holds it, `record` is his. EPERM: it is another user's, no file, or has several names. */
 int lock_file_take(const char *path, char record[LOCK_RECORD_MAX]);
+
+/* Why it could not be taken, for people. */
+const char *lock_file_reason(int error);
 
 /* Write the record: one line. Returns false if it did not work (errno). */
 bool lock_file_write(int fd, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "record.h"
 #include "record_line.h"
@@ -117,7 +118,8 @@ static json_t *write_file(struct sim_snapshots *store, const char *path, struct 
         return refuse(refusal, REFUSED_STATE, "file: cannot write a snapshot: %s", gap);
     if (asprintf(&fresh, "%s.new", path) < 0)
         return refuse(refusal, REFUSED_MEMORY, out_of_memory);
-    FILE *out = fopen(fresh, "we");
+    unlink(fresh);
+    FILE *out = fopen(fresh, "wxe"); /* a new file, never one that somebody's link leads to */
     bool well = out && journal_write(store->journal, out);
     int error = well ? 0 : errno;
     if (out && fclose(out) != 0 && well) {
@@ -193,7 +195,8 @@ static bool read_file(struct sim_snapshots *store, const char *path, struct refu
         fclose(in);
     if (well) {
         store->length = length;
-        store->text = realloc(text, length + 1u);
+        char *less = realloc(text, length + 1u);
+        store->text = less ? less : text;
         return true;
     }
     free(text);
