@@ -394,6 +394,32 @@ START_TEST(a_break_spoils_what_is_sent_meanwhile)
 }
 END_TEST
 
+START_TEST(a_break_that_ends_while_bytes_take_no_time_is_over)
+{
+    begin(one);
+    segment_break(line, true);
+    segment_advance(line, 5000);
+    segment_set_timed(line, false);
+    segment_break(line, false);
+    segment_set_timed(line, true);
+    line_ask(1, VERSION, 1, 50000);
+    line_settle();
+    ck_assert_uint_eq(line_answers(1, 1), 1);
+}
+END_TEST
+
+START_TEST(a_break_that_begins_while_bytes_take_no_time_is_there_when_they_do)
+{
+    begin(one);
+    segment_set_timed(line, false);
+    segment_break(line, true);
+    segment_set_timed(line, true);
+    line_ask(1, VERSION, 1, 100);
+    segment_advance(line, 100000);
+    ck_assert_uint_eq(line_answers(1, 1), 0);
+}
+END_TEST
+
 START_TEST(a_break_is_no_byte_for_the_master_either)
 {
     struct segment_config config = line_timed();
@@ -509,6 +535,8 @@ int main(void)
     TCase *master = add_case(suite, "master");
     tcase_add_loop_test(master, with_an_echo_the_master_hears_itself, 0, 2);
     tcase_add_test(master, a_break_spoils_what_is_sent_meanwhile);
+    tcase_add_test(master, a_break_that_ends_while_bytes_take_no_time_is_over);
+    tcase_add_test(master, a_break_that_begins_while_bytes_take_no_time_is_there_when_they_do);
     tcase_add_test(master, a_break_is_no_byte_for_the_master_either);
     tcase_add_test(master, bytes_that_are_purged_never_set_out);
     TCase *state = add_case(suite, "state");

@@ -405,6 +405,7 @@ void segment_set_timed(struct segment *segment, bool timed)
 {
     segment->config.timed = timed;
     wire_hold(&segment->wire, WIRE_NOISE, timed && segment->disturbed, parts_of(segment->now));
+    wire_hold(&segment->wire, WIRE_MASTER, timed && segment->held, parts_of(segment->now));
     segment->master_free = parts_of(segment->now);
 }
 
@@ -439,6 +440,7 @@ size_t segment_purge(struct segment *segment)
 
 void segment_break(struct segment *segment, bool on)
 {
+    segment->held = on;
     if (segment->config.timed)
         wire_hold(&segment->wire, WIRE_MASTER, on, parts_of(segment->now));
 }

@@ -121,7 +121,7 @@ struct segment {
     uint64_t quiet_bytes;    /* sent, without time */
     uint64_t overruns;
     uint64_t again;          /* without time: tick at which units answer without being asked again; RKM04_NEVER: they do not */
-    bool disturbed;          /* segment_disturb() */
+    bool disturbed, held;    /* segment_disturb(), segment_break() */
     uint64_t more_start;     /* parts: start bit of the next of the master's more[0] */
     struct segment_more more[WIRE_STATIONS];
     uint64_t master_free;    /* parts: when the master's last byte will have passed */
@@ -170,7 +170,8 @@ void segment_take(struct segment *segment, const uint8_t *bytes, size_t length, 
 /* Forget the bytes handed over that have not set out at the present tick (purge of RFC 2217). Returns their number. */
 size_t segment_purge(struct segment *segment);
 
-/* The master holds the line at 0 from the present tick on, or lets it go (break). Nothing without `timed`. */
+/* The master holds the line at 0 from the present tick on, or lets it go (break). Without `timed` nothing comes
+ * of it until bytes take time again. */
 void segment_break(struct segment *segment, bool on);
 
 /* Something that is no station holds the line at 0 from the present tick on, or lets it go. Without `timed`: no byte gets
