@@ -442,6 +442,21 @@ START_TEST(P9_held_behind_the_last_command_the_index_stays_at_it)
 }
 END_TEST
 
+START_TEST(C5_a_guard_that_has_become_true_in_a_hold_lets_the_rest_do_no_step)
+{
+    rig_accept(&rig, '1', "M01 F5000 R T01 F10 R");
+    rig_accept_at(&rig, 1003 * MS, "K");
+    rig_input_at(&rig, 2 * SECOND, 1, true);
+    expect_state(RKM04_HELD);
+    rig_accept_at(&rig, 3 * SECOND, "C75");
+    rig_to(&rig, 3 * SECOND + 2 * MS);
+    expect_output_about(3 * SECOND);
+    ck_assert_int_eq(rig_motor(&rig, 1).position, HELD_STEPS);
+    rig_to(&rig, 5 * SECOND); /* the guard is used up: it does not stop the next motion */
+    ck_assert_int_eq(rig_motor(&rig, 1).position, HELD_STEPS + 10);
+}
+END_TEST
+
 START_TEST(R5_a_held_limit_move_whose_input_came_meanwhile_does_no_further_step)
 {
     rig_accept(&rig, '1', ")03 T01");
@@ -489,6 +504,7 @@ static Suite *interp_hold_suite(void)
     tcase_add_test(by_state, C3_an_endless_motion_goes_on_endlessly_after_a_hold);
     tcase_add_test(by_state, C3_K_behind_C75_in_the_slot_behind_the_last_command_holds_nothing);
     tcase_add_test(by_state, P9_held_behind_the_last_command_the_index_stays_at_it);
+    tcase_add_test(by_state, C5_a_guard_that_has_become_true_in_a_hold_lets_the_rest_do_no_step);
     tcase_add_test(by_state, R5_a_held_limit_move_whose_input_came_meanwhile_does_no_further_step);
     suite_add_tcase(suite, by_state);
 

@@ -241,6 +241,51 @@ START_TEST(U5_a_record_that_reads_otherwise_the_second_time_is_not_trusted)
 }
 END_TEST
 
+START_TEST(U5_of_two_records_of_the_same_generation_one_is_loaded)
+{
+    struct rkm04_program program;
+    fill_example(&program);
+    plant(2, record);
+    plant(3, record);
+    assert_slot(2, &program);
+}
+END_TEST
+
+START_TEST(U5_garbage_in_either_block_beside_a_blank_one_is_not_trusted)
+{
+    for (unsigned block = 2; block <= 3; block++) {
+        flash_fake_init(&flash);
+        memset(flash.data[block], 0x5a, 100);
+        assert_untrusted(2);
+    }
+}
+END_TEST
+
+static int ignore_erase(void *context, unsigned block)
+{
+    (void)context, (void)block;
+    return 0;
+}
+
+static int ignore_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    (void)context, (void)block, (void)offset, (void)data, (void)length;
+    return 0;
+}
+
+START_TEST(P6_a_flash_that_does_nothing_and_says_all_is_well_is_an_error)
+{
+    const struct rkm04_port port = {.flash_read = flash_fake_read, .flash_erase = ignore_erase, .flash_program = ignore_program};
+    struct rkm04_program program;
+    fill_example(&program);
+    ck_assert_int_eq(store_save(&port, &flash, 2, &program), 1);
+    plant(2, record); /* whole records, but not the one that was to be written */
+    plant(3, record);
+    program_append(&program, (struct rkm04_command){'U', 0});
+    ck_assert_int_eq(store_save(&port, &flash, 2, &program), 1);
+}
+END_TEST
+
 static Suite *record_suite(void)
 {
     Suite *suite = suite_create("store_record");
@@ -258,6 +303,9 @@ static Suite *record_suite(void)
     tcase_add_test(bytes, U5_generations_count_on_through_zero);
     tcase_add_test(bytes, U5_garbage_in_the_flash_is_not_trusted_and_can_be_stored_over);
     tcase_add_test(bytes, U5_a_record_that_reads_otherwise_the_second_time_is_not_trusted);
+    tcase_add_test(bytes, U5_of_two_records_of_the_same_generation_one_is_loaded);
+    tcase_add_test(bytes, U5_garbage_in_either_block_beside_a_blank_one_is_not_trusted);
+    tcase_add_test(bytes, P6_a_flash_that_does_nothing_and_says_all_is_well_is_an_error);
     return suite;
 }
 

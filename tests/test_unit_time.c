@@ -252,6 +252,14 @@ START_TEST(K3_two_units_in_one_process_know_nothing_of_each_other)
 }
 END_TEST
 
+START_TEST(P9_what_has_no_name_is_called_unknown)
+{
+    ck_assert_str_eq(rkm04_state_name((enum rkm04_state)99), "unknown");
+    ck_assert_str_eq(rkm04_fault_name((enum rkm04_fault)99), "unknown");
+    ck_assert_str_eq(rkm04_led_name((enum rkm04_led)99), "unknown");
+}
+END_TEST
+
 static Suite *unit_time_suite(void)
 {
     Suite *suite = suite_create("unit_time");
@@ -280,6 +288,7 @@ static Suite *unit_time_suite(void)
     tcase_add_test(snapshots, K3_a_copy_put_back_goes_on_identically);
     tcase_add_test(snapshots, K3_a_copy_goes_on_identically_in_another_place);
     tcase_add_test(snapshots, K3_two_units_in_one_process_know_nothing_of_each_other);
+    tcase_add_test(snapshots, P9_what_has_no_name_is_called_unknown);
     suite_add_tcase(suite, snapshots);
 
     return suite;
