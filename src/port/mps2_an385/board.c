@@ -66,45 +66,48 @@ void board_led(unsigned motor, bool lit)
 
 /* ---- Time ------------------------------------------------------------------------------------------------------------- */
 
+static uint64_t clock;
+
+void board_clock_start(void)
+{
+    clock = 0;
+    MPS2_COUNTER = 0;
+}
+
 uint64_t board_clock(void)
 {
-    static uint64_t clock;
     clock += MPS2_COUNTER - (uint32_t)clock;
     return clock;
 }
 
-/* Have the timer run out once, `ticks` from now. Longer than 100 s is cut: the interrupt then looks and arms it again. */
-static void arm(uint32_t ticks)
+/* Have the timer run out once, `ticks` from now. What is longer than it can count is cut: the interrupt then looks and arms it
+ * again. */
+static inline void arm(uint32_t ticks)
 {
-    const uint32_t cycles = MPS2_CLOCK / 1000000;
-    const uint32_t longest = 100000000;
-    MPS2_TIMER0->control = 0;
-    MPS2_TIMER0->value = (ticks < longest ? ticks : longest) * cycles;
-    MPS2_TIMER0->control = TIMER_ON;
+    const uint32_t longest = UINT32_MAX / BOARD_TICK_CYCLES;
+    MPS2_TIMER0->value = (ticks < longest ? ticks : longest) * BOARD_TICK_CYCLES;
 }
 
 void board_timer_interrupt(void)
 {
-    uint32_t next, now;
-    bool any;
+    uint32_t next, now, far;
+    int32_t left;
     MPS2_TIMER0->interrupt = 1;
     do {
         now = MPS2_COUNTER;
-        any = pulses_play(&board_pulses, &board_pins, now, &next);
+        far = awake ? now + PULSES_FAR : wake_tick;
+        next = pulses_play(&board_pulses, &board_pins, now, far);
         if (!awake && (int32_t)(wake_tick - now) <= 0)
             awake = true;
-        if (!awake && (!any || (int32_t)(next - wake_tick) > 0)) {
-            next = wake_tick;
-            any = true;
-        }
-    } while (any && (int32_t)(next - MPS2_COUNTER) <= 0);
-    if (any)
-        arm(next - now);
+        left = (int32_t)(next - MPS2_COUNTER);
+    } while (left <= 0);
+    arm((uint32_t)left);
 }
 
 void board_play(uint32_t wake)
 {
     interrupts_off();
+    pulses_refresh(&board_pulses);
     wake_tick = wake;
     awake = false;
     NVIC_PEND = 1u << IRQ_TIMER0;
@@ -121,16 +124,18 @@ void board_sleep(bool more)
 
 void board_start(void)
 {
-    MPS2_PRESCALE = MPS2_CLOCK / 1000000 - 1;
-    MPS2_COUNTER = 0;
+    MPS2_PRESCALE = BOARD_TICK_CYCLES - 1;
     MPS2_GPIO0->low[0xff] = 0;
     MPS2_GPIO0->high[0xff] = 0;
     MPS2_GPIO1->low[0xff] = 0;
     MPS2_GPIO0->enable_set = 0x1ff;
     MPS2_GPIO1->enable_set = 0xff;
     MPS2_LEDS = 0;
-    MPS2_TIMER0->control = 0;
+    board_clock_start();
+    pulses_start(&board_pulses, 0);
     MPS2_TIMER0->reload = 0;
+    MPS2_TIMER0->value = UINT32_MAX; /* until board_play */
+    MPS2_TIMER0->control = TIMER_ON;
     NVIC_PRIORITY[IRQ_TIMER0] = BOARD_PRIORITY_PULSES;
     NVIC_PRIORITY[IRQ_GPIO1] = BOARD_PRIORITY_INPUTS;
     NVIC_ENABLE = 1u << IRQ_TIMER0 | 1u << IRQ_GPIO1;

@@ -11,6 +11,11 @@
 #define BOARD_DRIVER_PIN 8u
 #define BOARD_INPUT_PINS 0xff00u
 
+/* Cycles of the board's clock in one tick of the unit, 1 us. (tools/port-figures slows the unit's time down by more.) */
+#ifndef BOARD_TICK_CYCLES
+#define BOARD_TICK_CYCLES 25u
+#endif
+
 /* Priorities, 0 is the most urgent: a pulse waits for nobody; a byte waits for pulses (it has 521 us). */
 #define BOARD_PRIORITY_PULSES 0x00u
 #define BOARD_PRIORITY_LINE 0x80u
@@ -22,7 +27,10 @@ extern const struct pulse_pins board_pins;
 /* Once, before anything else: pins, clock, timer. */
 void board_start(void);
 
-/* Microseconds since board_start. Main loop only: it counts the wraps of the hardware's 32 bits, so it has to be called at
+/* Let the clock begin at 0. */
+void board_clock_start(void);
+
+/* Microseconds since board_clock_start. Main loop only: it counts the wraps of the hardware's 32 bits, so it has to be called at
  * least once in 71 minutes. */
 uint64_t board_clock(void);
 

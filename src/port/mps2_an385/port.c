@@ -4,29 +4,29 @@
 #include "flash.h"
 
 /* Hand it to the timer interrupt. A lane is full only when the board has fallen far behind: then wait for the interrupt. */
-static void put(unsigned lane, uint64_t tick, enum pulse_what what, uint8_t value)
+static void put(unsigned lane, uint64_t tick, uint8_t item)
 {
     while (!pulses_room(&board_pulses, lane))
         board_play((uint32_t)tick);
-    pulses_put(&board_pulses, lane, (uint32_t)tick, what, value);
+    pulses_put(&board_pulses, lane, (uint32_t)tick, item);
 }
 
 static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
 {
     (void)context, (void)position;
-    put(motor, tick, PULSE_STEP, 0);
+    put(motor, tick, PULSE_STEP);
 }
 
 static void on_direction(void *context, uint64_t tick, unsigned motor, bool forward)
 {
     (void)context;
-    put(motor, tick, PULSE_DIRECTION, forward);
+    put(motor, tick, forward ? PULSE_FORWARD : PULSE_BACK);
 }
 
 static void on_outputs(void *context, uint64_t tick, uint8_t mask)
 {
     (void)context;
-    put(0, tick, PULSE_OUTPUTS, mask);
+    put(0, tick, mask);
 }
 
 const struct rkm04_port port = {

@@ -3,81 +3,90 @@
 #include <rkm04/limits.h>
 
 /* Is tick a after tick b? They lie less than 2^31 apart. */
-static bool after(uint32_t a, uint32_t b)
+static inline bool after(uint32_t a, uint32_t b)
 {
     return (int32_t)(a - b) > 0;
 }
 
-bool pulses_room(const struct pulses *pulses, unsigned lane)
+void pulses_start(struct pulses *pulses, uint32_t now)
 {
-    return pulses->lane[lane].in - pulses->lane[lane].out < PULSES_ROOM;
+    *pulses = (struct pulses){.latest = 0};
+    for (unsigned i = 0; i < PULSES_LANES; i++) {
+        pulses->lane[i].next = now + PULSES_FAR;
+        pulses->lane[i].free = now;
+        pulses->lane[i].idle = true;
+    }
 }
 
-void pulses_put(struct pulses *pulses, unsigned number, uint32_t tick, enum pulse_what what, uint8_t value)
+void pulses_put(struct pulses *pulses, unsigned number, uint32_t tick, uint8_t item)
 {
     struct pulse_lane *lane = &pulses->lane[number];
     uint32_t in = lane->in;
-    lane->item[in % PULSES_ROOM] = (struct pulse_item){.tick = tick, .what = (uint8_t)what, .value = value};
+    lane->tick[in % PULSES_ROOM] = tick;
+    lane->item[in % PULSES_ROOM] = item;
     __atomic_signal_fence(__ATOMIC_SEQ_CST); /* the interrupt sees the item whole before it sees that there is one */
     lane->in = in + 1;
 }
 
-/* Do one item; a step makes the pin busy for its width, a change of direction for as long as it takes to settle. */
-static void play(struct pulse_lane *lane, unsigned number, const struct pulse_pins *pins, uint32_t now)
+/* When does the lane go on? The pin is at 0. */
+static inline void look_ahead(struct pulse_lane *lane, uint32_t now)
 {
-    const struct pulse_item *item = &lane->item[lane->out % PULSES_ROOM];
-    if (item->what == PULSE_STEP) {
-        pins->step(number, true);
-        lane->high = true;
-        lane->until = now + RKM04_PULSE_TICKS;
-    } else if (item->what == PULSE_DIRECTION) {
-        pins->direction(number, item->value != 0);
-        lane->resting = true;
-        lane->until = now + PULSES_SETTLE;
-    } else {
-        pins->outputs(item->value);
+    lane->idle = lane->in == lane->out;
+    if (lane->idle) {
+        lane->next = now + PULSES_FAR;
+        return;
     }
-    __atomic_signal_fence(__ATOMIC_SEQ_CST);
-    lane->out++;
+    uint32_t due = lane->tick[lane->out % PULSES_ROOM];
+    lane->next = after(lane->free, due) ? lane->free : due;
 }
 
-/* Do what is due in one lane. Returns whether something is left, with its tick in *next. */
-static bool play_lane(struct pulses *pulses, unsigned number, const struct pulse_pins *pins, uint32_t now, uint32_t *next)
+void pulses_refresh(struct pulses *pulses)
+{
+    for (unsigned i = 0; i < PULSES_LANES; i++)
+        if (pulses->lane[i].idle && pulses->lane[i].in != pulses->lane[i].out)
+            look_ahead(&pulses->lane[i], 0);
+}
+
+/* Do what is due in a lane. */
+static void play(struct pulses *pulses, unsigned number, const struct pulse_pins *pins, uint32_t now)
 {
     struct pulse_lane *lane = &pulses->lane[number];
-    for (;;) {
-        if (lane->high) {
-            *next = lane->until;
-            if (after(lane->until, now))
-                return true;
-            pins->step(number, false);
-            lane->high = false;
-            lane->resting = true;
-            lane->until = now + PULSES_REST;
+    if (lane->high) {
+        pins->step(number, false);
+        lane->high = false;
+        lane->free = now + PULSES_REST;
+    } else if (lane->idle) {
+        lane->free = now; /* or it would seem to lie ahead one day */
+    } else {
+        uint32_t at = lane->out % PULSES_ROOM, late = now - lane->tick[at];
+        uint8_t item = lane->item[at];
+        __atomic_signal_fence(__ATOMIC_SEQ_CST);
+        lane->out++;
+        if (late > pulses->latest)
+            pulses->latest = late;
+        if (number == 0) {
+            pins->outputs(item);
+        } else if (item == PULSE_STEP) {
+            pins->step(number, true);
+            lane->high = true;
+            lane->next = now + RKM04_PULSE_TICKS;
+            return;
+        } else {
+            pins->direction(number, item == PULSE_FORWARD);
+            lane->free = now + PULSES_SETTLE;
         }
-        if (lane->resting && !after(lane->until, now))
-            lane->resting = false;
-        if (lane->in == lane->out)
-            return false;
-        uint32_t due = lane->item[lane->out % PULSES_ROOM].tick;
-        *next = lane->resting && after(lane->until, due) ? lane->until : due;
-        if (after(*next, now))
-            return true;
-        if (now - due > pulses->latest)
-            pulses->latest = now - due;
-        play(lane, number, pins, now);
     }
+    look_ahead(lane, now);
 }
 
-bool pulses_play(struct pulses *pulses, const struct pulse_pins *pins, uint32_t now, uint32_t *next)
+uint32_t pulses_play(struct pulses *pulses, const struct pulse_pins *pins, uint32_t now, uint32_t latest)
 {
-    bool any = false;
     for (unsigned i = 0; i < PULSES_LANES; i++) {
-        uint32_t tick;
-        if (play_lane(pulses, i, pins, now, &tick) && (!any || after(*next, tick))) {
-            *next = tick;
-            any = true;
-        }
+        const struct pulse_lane *lane = &pulses->lane[i];
+        if (!after(lane->next, now))
+            play(pulses, i, pins, now);
+        if (after(latest, lane->next))
+            latest = lane->next;
     }
-    return any;
+    return latest;
 }

@@ -13,7 +13,8 @@
 #include <stdint.h>
 
 #define PULSES_LANES 5u  /* motors 1..4, and 0: DO */
-#define PULSES_ROOM 64u  /* a lane: 3 ms at 16 000 steps/s are 48; a power of 2 */
+#define PULSES_ROOM 128u /* of a lane; a power of 2. 7 ms at 16 000 steps/s are 112. */
+#define PULSES_FAR 0x40000000u /* us: a lane without anything is looked at again so late */
 #define PULSES_REST 10u  /* us a step pin rests at 0 after a pulse, if what follows is late; also R7's 10 us of the direction */
 #define PULSES_SETTLE 20u /* us between direction and step (R7), if they are late; in time the unit sees to it */
 
@@ -24,34 +25,41 @@ struct pulse_pins {
     void (*outputs)(uint8_t mask);
 };
 
-enum pulse_what { PULSE_STEP, PULSE_DIRECTION, PULSE_OUTPUTS };
-
-struct pulse_item {
-    uint32_t tick;
-    uint8_t what; /* enum pulse_what */
-    uint8_t value;
-};
+enum pulse_what { PULSE_STEP, PULSE_BACK, PULSE_FORWARD };
 
 struct pulse_lane {
+    uint32_t next;         /* tick at which there is something to do */
+    uint32_t free;         /* tick before which no item may be played: rest after a pulse, settling of the direction */
+    bool high, idle;       /* the step pin is at 1; there was nothing more to play */
     volatile uint32_t in;  /* items ever put in: only the main loop writes it */
     volatile uint32_t out; /* items ever played: only the interrupt writes it */
-    uint32_t until;        /* high: tick at which the pin goes to 0; resting: tick before which nothing else may be done */
-    bool high, resting;
-    struct pulse_item item[PULSES_ROOM];
+    uint32_t tick[PULSES_ROOM];
+    uint8_t item[PULSES_ROOM]; /* enum pulse_what; in lane 0 the mask of DO */
 };
 
 struct pulses {
     struct pulse_lane lane[PULSES_LANES]; /* 0: DO */
-    uint32_t latest;                      /* us: the most by which anything was late; for the one who tries a clock rate */
+    uint32_t latest;                      /* us: the most by which anything was late; for who tries a clock rate */
 };
 
+/* Everything empty, at tick `now`. */
+void pulses_start(struct pulses *pulses, uint32_t now);
+
 /* Is there room for one more item of this lane (0..4)? */
-bool pulses_room(const struct pulses *pulses, unsigned lane);
+static inline bool pulses_room(const struct pulses *pulses, unsigned lane)
+{
+    return pulses->lane[lane].in - pulses->lane[lane].out < PULSES_ROOM;
+}
 
-/* Main loop: put an item in, for lane 0 (DO) or motor 1..4, in the order of ticks. There must be room. */
-void pulses_put(struct pulses *pulses, unsigned lane, uint32_t tick, enum pulse_what what, uint8_t value);
+/* Main loop: put an item in, for lane 0 (DO: item is the mask) or motor 1..4 (item: enum pulse_what), in the order of ticks.
+ * There must be room. */
+void pulses_put(struct pulses *pulses, unsigned lane, uint32_t tick, uint8_t item);
 
-/* Interrupt: do what is due at `now`. Returns whether anything is left to do, and then in *next the tick of it (> now). */
-bool pulses_play(struct pulses *pulses, const struct pulse_pins *pins, uint32_t now, uint32_t *next);
+/* Main loop, with the timer's interrupt off: lanes that were empty learn of what has been put there. Then have it play. */
+void pulses_refresh(struct pulses *pulses);
+
+/* Interrupt: do what is due at `now`. Returns the tick at which to come again, or `latest`, whichever is first; it may have come
+ * already. Has to be called at least once in 2^30 us. */
+uint32_t pulses_play(struct pulses *pulses, const struct pulse_pins *pins, uint32_t now, uint32_t latest);
 
 #endif

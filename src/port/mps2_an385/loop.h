@@ -1,0 +1,16 @@
+/* loop.h: the main loop. It keeps the unit ahead of the clock; what the unit wants done at which tick waits in pulses.c, and the
+ * timer's interrupt does it. Motions are planned here: no pulse waits for that. */
+#ifndef LOOP_H
+#define LOOP_H
+
+#include <rkm04/unit.h>
+
+extern struct rkm04_unit unit;
+
+/* Power-up of board and unit. */
+void loop_start(void);
+
+/* Do what is to be done now, then sleep until there is more. */
+void loop_turn(void);
+
+#endif
