@@ -1,5 +1,6 @@
 #include "bus.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,6 +11,7 @@
 #include "log.h"
 #include "snapshot.h"
 
+#define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
 #define INJECTED_TOLD 100u /* acts of faults on demand in the log */
 
 /* ---- The log -------------------------------------------------------------------------------------------------------- */
@@ -164,24 +166,28 @@ static void gather(void *context, const uint8_t *bytes, size_t length)
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
-/* Read a whole file. Returns a string to be freed; NULL: reported. */
+/* Read a whole plant. Returns a string to be freed; NULL: reported. */
 static char *read_text(const char *path)
 {
-    FILE *file = fopen(path, "r");
-    char *text = NULL;
-    size_t room = 0;
-    ssize_t length = file ? getdelim(&text, &room, EOF, file) : -1;
-    if (file && length < 0 && !ferror(file)) { /* empty */
-        free(text);
-        text = strdup("");
-    } else if (length < 0) {
-        log_error("cannot read %s: %m", path);
-        free(text);
-        text = NULL;
-    }
+    FILE *file = fopen(path, "re");
+    char *text = file ? malloc(PLANT_MAX + 1u) : NULL;
+    size_t length = text ? fread(text, 1, PLANT_MAX + 1u, file) : 0;
+    const char *wrong = NULL;
+    if (!text || ferror(file))
+        wrong = strerror(errno);
+    else if (length > PLANT_MAX)
+        wrong = "it is longer than 1 MiB";
+    else if (memchr(text, '\0', length))
+        wrong = "expected text without the character 0";
     if (file)
         fclose(file);
-    return text;
+    if (!wrong) {
+        text[length] = '\0';
+        return text;
+    }
+    log_error("cannot read %s: %s", path, wrong);
+    free(text);
+    return NULL;
 }
 
 static bool configure_plant(struct bus *bus)

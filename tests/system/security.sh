@@ -140,6 +140,12 @@ test_TCP_listens_to_this_machine_unless_asked() {
     same 2 "$(wc -l <"$folder/listening")" "listeners at all"
 }
 
+test_a_plant_without_end_or_with_more_behind_its_text_is_refused() {
+    refused "a plant without end" "longer than 1 MiB" "$RKM04" serve --link "$folder/bus" --plant /dev/zero
+    printf 'motors: {}\n\0more' >"$folder/plant.yaml"
+    refused "a plant with a 0 in it" "character 0" "$RKM04" serve --link "$folder/bus" --plant "$folder/plant.yaml"
+}
+
 test_texts_from_outside_are_no_formats() {
     local text='%n%n%s%s%99999d'
     exits 2 "$RKM04" serve --clock "$text"
