@@ -1,0 +1,162 @@
+"""target.py: what stands around the unit under test: its time, its inputs, its power; with a control socket or a hand."""
+import json
+import socket
+import sys
+import time
+
+from link import Unreachable
+
+
+class Control:
+    """A client of rkm04 serve's control socket (docs/CONTROL.md)."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.socket.settimeout(60)
+        try:
+            self.socket.connect(path)
+        except OSError as error:
+            raise Unreachable(f"cannot connect to the control socket {path}: {error}") from None
+        self.lines = self.socket.makefile("r", encoding="utf-8")
+        self.last = 0
+        self.events = []
+
+    def call(self, method, **params):
+        self.last += 1
+        request = {"jsonrpc": "2.0", "id": self.last, "method": method, "params": params}
+        try:
+            self.socket.sendall(json.dumps(request).encode() + b"\n")
+            for line in self.lines:
+                said = json.loads(line)
+                if said.get("id") == self.last:
+                    if "error" in said:
+                        raise Unreachable(f"{method}: {said['error']['message']}")
+                    return said["result"]
+                if said.get("method") == "event":
+                    self.events.append(said["params"])
+        except OSError as error:
+            raise Unreachable(f"the control socket is gone: {error}") from None
+        raise Unreachable("the control socket was closed")
+
+
+class Real:
+    """Time as it is, `speed` times as fast; inputs and power are in the hands of whoever sits there. A host may see things late
+    by `latency` seconds: adapters, drivers, a busy machine."""
+    exact = False
+    silence = 0.3  # seconds after which a unit that has to be silent has been
+
+    def __init__(self, has, speed, latency):
+        self.has, self.speed, self.latency = has, speed, latency
+        self.start_us = self.now_us()
+
+    def now_us(self):
+        return time.monotonic_ns() // 1000 * self.speed
+
+    def start(self):
+        """Called just before the request is sent from which time is counted."""
+        self.start_us = self.now_us()
+
+    def since_start(self):
+        return self.now_us() - self.start_us
+
+    def pass_us(self, ticks):
+        time.sleep(max(ticks, 0) / 1e6 / self.speed)
+
+    def until_idle(self, motor, limit_us, is_idle):
+        """Time since the start at which the motor is found idle; None: not within the limit."""
+        end = self.now_us() + limit_us
+        while not is_idle(motor):
+            if self.now_us() > end:
+                return None
+            time.sleep(0.005)
+        return self.since_start()
+
+    def latency_us(self):
+        return self.latency * 1e6 * self.speed
+
+    @staticmethod
+    def hand(what):
+        print(f"\n>>> {what}, then press Enter: ", end="", file=sys.stderr, flush=True)
+        if not sys.stdin.readline():
+            raise Unreachable("standard input has ended, nobody is there to do it")
+
+    def inputs(self, levels):
+        self.hand("; ".join(f"set input {int(number):02} to {level}" for number, level in levels.items()))
+
+    def rest(self):
+        """Before each case."""
+
+    def power(self):
+        self.hand("switch the unit off and on again")
+
+    def close(self):
+        pass
+
+
+class Stepped:
+    """rkm04 serve with its control socket: time stands but when it is told to pass, bytes take none."""
+    exact = True
+    silence = 0.05
+    has = {"inputs", "outputs", "time", "flash", "power"}
+
+    def __init__(self, path, node):
+        self.control = Control(path)
+        self.clock = self.control.call("clock")["clock"]
+        units = self.control.call("units")["units"]
+        self.unit = next((unit for unit in units if unit.split("-")[0] == str(node)), None)
+        if self.unit is None:
+            raise Unreachable(f"there is no unit {node} on that line, but {', '.join(units)}")
+        if self.clock != "stepped":
+            self.control.call("clock", clock="stepped")
+        self.control.call("subscribe", kinds=["motion", "outputs", "variables"], unit=self.unit)
+        self.start_us = self.now_us()
+
+    def state(self):
+        return self.control.call("state", unit=self.unit)
+
+    def now_us(self):
+        return self.control.call("clock")["t_us"]
+
+    def start(self):
+        """Time is counted from a slot; the request arrives one tick behind it, so that the next slot, 1000, obeys it."""
+        state = self.state()
+        begin = state["since_us"]
+        behind = (state["t_us"] - begin - 1) % 1000
+        if behind:
+            self.pass_us(1000 - behind)
+            state["t_us"] += 1000 - behind
+        self.start_us = state["t_us"] - 1
+        self.control.events.clear()
+
+    def since_start(self):
+        return self.now_us() - self.start_us
+
+    def pass_us(self, ticks):
+        if ticks > 0:
+            self.control.call("advance", ticks=int(ticks))
+
+    def until_idle(self, motor, limit_us, _is_idle):
+        result = self.control.call("advance", until={"motor": motor, "idle": True, "unit": self.unit}, limit=int(limit_us))
+        return result["t_us"] - 1 - self.start_us if result["holds"] else None
+
+    @staticmethod
+    def latency_us():
+        return 0
+
+    def inputs(self, levels):
+        self.control.call("di.set", unit=self.unit, di=levels)
+
+    def rest(self):
+        self.control.call("di.set", unit=self.unit, mask=0)
+
+    def power(self):
+        self.control.call("reset", unit=self.unit)
+
+    def events(self, kind, motor=None):
+        """(time since the start, value) of each event of that kind."""
+        return [(event["t_us"] - self.start_us, event["value"]) for event in self.control.events
+                if event["kind"] == kind and event.get("motor") == motor]
+
+    def close(self):
+        if self.clock != "stepped":
+            self.control.call("clock", clock=self.clock)
