@@ -326,6 +326,30 @@ START_TEST(C3_a_K_after_it_cancels_the_remembered_C75)
 }
 END_TEST
 
+START_TEST(C3_a_second_K_during_the_ramp_leaves_the_rest_to_be_done)
+{
+    rig_accept(&rig, '1', "F5000 R");
+    rig_accept_at(&rig, 1002 * MS, "K");
+    rig_accept_at(&rig, 1202 * MS, "K");
+    rig_accept_at(&rig, 3 * SECOND, "C75");
+    rig_to(&rig, 20 * SECOND);
+    uint64_t end = 3 * SECOND + move_ticks(100, 1000, 2000, 5000 - HELD_STEPS);
+    rig_expect_motion(&rig, 1, 2, 3 * SECOND, end, 5000 - HELD_STEPS, true);
+}
+END_TEST
+
+START_TEST(C6_K_during_the_ramp_of_X_holds_nothing)
+{
+    rig_accept(&rig, '1', "X04 F5000 R T01");
+    rig_input_at(&rig, 1003 * MS, 4, true);
+    rig_accept_at(&rig, 1203 * MS, "K");
+    rig_accept_at(&rig, 3 * SECOND, "C75");
+    rig_to(&rig, 4 * SECOND);
+    expect_state(RKM04_ENDED);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
+}
+END_TEST
+
 START_TEST(C3_K_and_C75_in_one_slot_act_in_order_of_arrival)
 {
     rig_accept(&rig, '1', "F5000 R");
@@ -512,6 +536,8 @@ static Suite *interp_hold_suite(void)
     tcase_add_checked_fixture(order, setup, teardown);
     tcase_add_test(order, C3_C75_during_the_ramp_is_remembered);
     tcase_add_test(order, C3_a_K_after_it_cancels_the_remembered_C75);
+    tcase_add_test(order, C3_a_second_K_during_the_ramp_leaves_the_rest_to_be_done);
+    tcase_add_test(order, C6_K_during_the_ramp_of_X_holds_nothing);
     tcase_add_test(order, C3_K_and_C75_in_one_slot_act_in_order_of_arrival);
     tcase_add_test(order, C3_any_number_of_requests_in_one_slot_keep_their_meaning);
     tcase_add_test(order, C3_C75_K_C75_in_one_slot_stop_a_motion_and_let_it_go_on);

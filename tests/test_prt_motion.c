@@ -1,5 +1,6 @@
 /* test_prt_motion.c: what Get Tabul Run and Get Pozic Run answer, P7 and P9 of the specification. */
 #include <check.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "rig.h"
@@ -148,6 +149,29 @@ START_TEST(P7_a_change_of_speed_adds_its_corners)
 END_TEST
 
 
+/* Every change up to S happens at once and adds two corners, before and behind it: of more than the table holds, the oldest are
+ * forgotten. G+ begins at 3 ms; the speed is 200 + 10 * i behind the i-th change, at 100 + 70 * i ms. */
+START_TEST(P7_of_many_changes_of_speed_the_newest_corners_are_kept)
+{
+    enum { CHANGES = RKM04_BREAKS_MAX, KEPT = RKM04_BREAKS_MAX / 2 };
+    char text[20], wanted[40 * KEPT + 20];
+    unsigned tenths = 970; /* of a step: where the next change is */
+    rig_accept(&rig, '1', "S1000 V1000 G+");
+    size_t length = (size_t)sprintf(wanted, " %u;[", RKM04_BREAKS_MAX);
+    for (unsigned i = 0; i < CHANGES; i++) {
+        unsigned speed = 200 + 10 * i, step = tenths / 10 + 1;
+        sprintf(text, "V%u", speed);
+        rig_accept_at(&rig, (100 + 70 * i) * MS - 500, text);
+        if (i >= CHANGES - KEPT)
+            length += (size_t)sprintf(wanted + length, "(%u;%u),(%u;%u)%s", step, speed - 10, step, speed,
+                                      i + 1 < CHANGES ? "," : "]");
+        tenths += 140 + 7 * i;
+    }
+    rig_to(&rig, 10 * SECOND);
+    ck_assert_str_eq(rig_ask(&rig, 6, 1), wanted);
+}
+END_TEST
+
 START_TEST(P9_the_index_is_the_place_of_the_command_being_executed)
 {
     ASK("\x07" "1", "\x07" "1 0; 0");
@@ -245,6 +269,7 @@ static Suite *prt_motion_suite(void)
     tcase_add_test(table, P7_a_held_motion_shows_how_far_it_went);
     tcase_add_test(table, P7_points_that_a_stop_has_made_void_are_gone);
     tcase_add_test(table, P7_a_change_of_speed_adds_its_corners);
+    tcase_add_test(table, P7_of_many_changes_of_speed_the_newest_corners_are_kept);
     suite_add_tcase(suite, table);
 
     TCase *progress = tcase_create("progress");
