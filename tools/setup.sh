@@ -5,7 +5,7 @@
 # Needed to build and run the emulator and its client.
 run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libyaml-dev libncurses-dev)
 # Needed on top of that by the tests.
-test_packages=(check libgmp-dev socat procps dpkg-dev file gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
+test_packages=(check libgmp-dev socat procps dpkg-dev file cppcheck gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
     python3-serial python3-pyte gensio-bin tshark sigrok-cli gtkwave)
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
