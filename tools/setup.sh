@@ -1,12 +1,14 @@
 # tools/setup.sh: what has to be installed. Sourced by tools/run and tools/test; needs nothing but bash.
 #
-#   setup_packages run|test    install the Debian packages that are missing, or say which ones are needed elsewhere
+#   setup_packages run|test|quick    install the Debian packages that are missing, or say which ones are needed elsewhere
 
 # Needed to build and run the emulator and its client.
 run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libyaml-dev libncurses-dev)
 # Needed on top of that by the tests.
-test_packages=(check libgmp-dev socat procps dpkg-dev file cppcheck gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
-    python3-serial python3-pyte gensio-bin tshark sigrok-cli gtkwave)
+test_packages=(check libgmp-dev socat procps dpkg-dev file clang cppcheck python3-serial python3-pyte gensio-bin tshark
+    sigrok-cli gtkwave)
+# Needed by the tests that are about another processor than this machine's, which `quick` leaves out.
+foreign_packages=(gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm)
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
@@ -32,11 +34,11 @@ missing_tools() {
     for tool in cc make cmake pkg-config; do
         command -v "$tool" >/dev/null || echo "$tool"
     done
-    for tool in libuv jansson yaml-0.1 ncursesw $([[ $1 == test ]] && echo check gmp); do
+    for tool in libuv jansson yaml-0.1 ncursesw $([[ $1 != run ]] && echo check gmp); do
         pkg-config --exists "$tool" 2>/dev/null || echo "library $tool (pkg-config)"
     done
-    if [[ $1 == test ]]; then
-        for tool in socat ps arm-none-eabi-gcc; do
+    if [[ $1 != run ]]; then
+        for tool in socat ps $([[ $1 == test ]] && echo arm-none-eabi-gcc); do
             command -v "$tool" >/dev/null || echo "$tool"
         done
     fi
@@ -69,7 +71,8 @@ install_packages() {
 
 setup_packages() {
     local packages=("${run_packages[@]}") missing
-    [[ $1 == test ]] && packages+=("${test_packages[@]}")
+    [[ $1 != run ]] && packages+=("${test_packages[@]}")
+    [[ $1 == test ]] && packages+=("${foreign_packages[@]}")
     if ! is_debian; then
         say "this is not Debian 12 or later; needed are what these Debian packages hold: ${packages[*]}"
         check_tools "$1"

@@ -18,7 +18,7 @@ stand_ins() {
     : >"$folder/calls"
 }
 
-# set_up run|test: ends with the status of the set-up; "went on" if the tool would go on.
+# set_up run|test|quick: ends with the status of the set-up; "went on" if the tool would go on.
 set_up() {
     OS_RELEASE=$folder/os-release PATH=$folder/bin:$PATH \
         bash -c '. "$1/setup.sh"; setup_packages "$2"; echo "went on"' tools "$tools" "$1"
@@ -42,6 +42,14 @@ test_running_does_not_need_what_only_tests_need() {
     stand_ins socat 0 debian
     exits 0 set_up run
     same "" "$(<"$folder/calls")" "calls of apt-get"
+}
+
+test_the_quick_tests_do_not_need_what_is_for_other_processors() {
+    stand_ins qemu-system-arm 0 debian
+    exits 0 set_up quick
+    same "" "$(<"$folder/calls")" "calls of apt-get"
+    exits 0 set_up test
+    holds "$(<"$folder/calls")" "install qemu-system-arm" "calls of apt-get"
 }
 
 test_without_network_it_goes_on_if_the_tools_are_found_all_the_same() {
