@@ -29,8 +29,8 @@ programs are lost), `power` (off and on again). A step is an object; which one i
     motion N       the Nth motion of motor M (1) since the start: `begins`, `ends`, each within `near` (0) µs
     moving M       motor M is on its way (position changes)
 
-`about` N: a number may be N off for each 0.1 s by which the target's answers may be late; at no such target, N = 0. `outputs` with `at` and `motion` are looked at only
-where there is a control socket; elsewhere they count as finer expectations that have not been looked at.
+`about` N: a number may be N off for each 0.1 s by which we may see things late; nothing where time is ours to stop. `outputs` and
+`motion` are looked at where there is a control socket; elsewhere they count as finer expectations that were not looked at.
 """
 import json
 import os
@@ -91,15 +91,22 @@ class Case:
                 return True
         return self.name == only
 
-    def skipped(self, has, no_motion, still):
+    def skipped(self, has, options):
         """Why it cannot be run; None: it can."""
+        framings = {step["framing"] for step in self.steps if "frame" in step}
+        if framings - {options.framing}:
+            return "about framing " + ", ".join(framings)
+        if framings and options.node != 1:
+            return "about node 1"
         missing = sorted(self.needs - has)
         if missing:
             return "needs " + ", ".join(missing)
-        if no_motion and self.moves:
+        if options.no_motion and self.moves:
             return "moves motor " + ", ".join(map(str, self.moves))
-        if still and (self.needs & {"outputs", "power"} or any("C41" in str(step) for step in self.steps)):
-            return "would end T41, or needs outputs"
+        if options.still and (any("C41" in str(step) for step in self.steps) or "power" in self.needs and self.moves):
+            return "would end T41"
+        if options.still and "outputs" in self.needs:
+            return "outputs are held at 0 by T41"
         return None
 
 
@@ -235,8 +242,6 @@ class Run:
             raise Mismatch("Version", shown(text_bytes(text)), shown(got))
 
     def do_frame(self, hexadecimal, step):
-        if step["framing"] != self.line.framing.name or self.line.node != 1:
-            return
         what, answer = f"the bytes {hexadecimal}", step["answer"]
         self.line.say(bytes.fromhex(hexadecimal))
         if answer is None:

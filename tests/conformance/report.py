@@ -57,8 +57,8 @@ def junit(path, results, about):
             if result.status == SKIPPED:
                 file.write(f"    <skipped message={quoteattr(result.reason)}/>\n")
             for mismatch in result.mismatches:
-                file.write(f"    <failure message={quoteattr(clean(str(mismatch)))}>expected: {escape(clean(mismatch.expected))}\n"
-                           f"observed: {escape(clean(mismatch.observed))}</failure>\n")
+                text = f"{mismatch.what}\nexpected: {mismatch.expected}\nobserved: {mismatch.observed}"
+                file.write(f"    <failure message={quoteattr(clean(str(mismatch)))}>{escape(clean(text))}</failure>\n")
             if result.transcript and result.status == FAILED:
                 file.write(f"    <system-out>{escape(clean(chr(10).join(result.transcript)))}</system-out>\n")
             file.write("  </testcase>\n")
