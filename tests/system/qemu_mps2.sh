@@ -4,37 +4,12 @@
 
 . "$(dirname "$0")/lib.sh"
 
-tree=$(cd "$(dirname "$0")/../.." && pwd)
-limit=60 # an emulator of a processor, on a machine that may be busy
-command -v qemu-system-arm arm-none-eabi-gcc >/dev/null || {
-    echo "skipped: qemu-system-arm or arm-none-eabi-gcc not found: apt-get install qemu-system-arm gcc-arm-none-eabi"
-    exit 77
-}
-firmware=${BUILD:-/tmp}/port_mps2_an385
-make -s -C "$tree/src/port/mps2_an385" OUT="$firmware" >/dev/null || exit 1
+. "$(dirname "$0")/qemu/board.sh"
 
-# board: power up a board; its line is $line, its pins' log $folder/pins, its monitor $folder/monitor.
-board() {
-    start qemu qemu-system-arm -M mps2-an385 -kernel "$firmware/firmware.elf" -display none -serial pty \
-        -monitor "unix:$folder/monitor,server,nowait" -d unimp,guest_errors -D "$folder/pins"
-    soon "QEMU has a pty" line_found
-    exec 9<>"$line" # or QEMU looks for a client only once a second
-    soon "the unit answers" answers
-}
+firmware mps2_an385 "qemu-system-arm gcc-arm-none-eabi libnewlib-arm-none-eabi" qemu-system-arm arm-none-eabi-gcc
 
-line_found() {
-    line=$(sed -n 's/^char device redirected to \([^ ]*\) .*/\1/p' "$folder/qemu.out" "$folder/qemu.err" 2>/dev/null | head -1)
-    [[ -n $line ]]
-}
-
-# unit ARGUMENTS...: the client on the board's line.
-unit() {
-    "$RKMCTL" --timeout 20000 --message-max 1024 -p "$line" "$@"
-}
-
-answers() { "$RKMCTL" --timeout 500 -p "$line" version >"$folder/version" 2>&1; }
-
-stands_at() { [[ $(unit -m "$1" position) == "motor $1: $2" ]]; }
+# Power up; what is written to the pins goes to $folder/pins.
+mps2() { board qemu-system-arm -M mps2-an385 -d unimp,guest_errors -D "$folder/pins"; }
 
 # written OFFSET VALUE: how often this was written to a GPIO; its registers from 400 and 800 on name the pins in the offset.
 written() { grep -c "write .*offset 0x$1, value 0x0*$2)" "$folder/pins"; }
@@ -42,7 +17,7 @@ written() { grep -c "write .*offset 0x$1, value 0x0*$2)" "$folder/pins"; }
 pulses() { written "$(printf '%x' $((0x400 + (4 << ($1 - 1)))))" "$((1 << ($1 - 1)))"; }
 
 test_L1_the_board_answers_as_an_RKM04_does() {
-    board
+    mps2
     same "01.02,06.03.2009" "$(unit version)" "the version"
     exits 1 unit set 'F100 Q'
     holds "$complained$said" "Q" "an unknown command"
@@ -50,7 +25,7 @@ test_L1_the_board_answers_as_an_RKM04_does() {
 }
 
 test_R8_every_step_is_a_pulse_at_the_motor_s_pin() {
-    board
+    mps2
     exits 0 unit -m 1 set '\ S100 V1000 A2000 F700 R'
     exits 0 unit -m 3 set '\ S200 V2000 A4000 F50 R B400 R'
     soon "motor 1 has arrived" stands_at 1 700
@@ -64,7 +39,7 @@ test_R8_every_step_is_a_pulse_at_the_motor_s_pin() {
 }
 
 test_U2_commands_switch_the_outputs() {
-    board
+    mps2
     exits 0 unit -m 2 set '\ T01 T08'
     soon "DO 01 and DO 08 are on" eval '[[ $(written 7fc 81) == 1 ]]'
     exits 0 unit -m 2 set 'C01'
@@ -72,13 +47,13 @@ test_U2_commands_switch_the_outputs() {
 }
 
 test_U5_a_stored_program_starts_when_the_board_is_reset() {
-    board
+    mps2
     exits 0 unit -m 4 set '\ C100 F120 R'
     exits 0 unit -m 4 store
     soon "motor 4 has arrived" stands_at 4 120
     exits 0 unit -m 4 set '\ C100'
     soon "its counter is 0" stands_at 4 0
-    echo system_reset | socat - "unix-connect:$folder/monitor" >"$folder/monitor.out"
+    monitor system_reset >"$folder/monitor.out"
     soon "the program has run again" eval '[[ $(pulses 4) == 240 ]]'
     soon "the unit answers again" answers
     stands_at 4 120 || fail "motor 4 stands at $(unit -m 4 position)"
@@ -86,20 +61,12 @@ test_U5_a_stored_program_starts_when_the_board_is_reset() {
 }
 
 test_L4_a_full_memory_comes_whole_through_small_buffers() {
-    local i
-    board
-    for i in {1..232}; do
-        echo 'F16000000 V16000 A60000'
-    done >"$folder/program.rks"
-    exits 0 unit -m 2 set '\ O01' # waits for an input that never comes
-    exits 0 unit -m 2 send "$folder/program.rks"
-    echo "O01 [ $(tr '\n' ' ' <"$folder/program.rks")]" >"$folder/expected"
-    unit -m 2 command >"$folder/answer"
-    cmp "$folder/expected" "$folder/answer" >"$folder/cmp.err" 2>&1 || fail "another program came back"
+    mps2
+    full_memory_comes_back
 }
 
 test_U7_the_driver_is_on_for_each_answer_and_off_again() {
-    board
+    mps2
     soon "the driver is off" eval '(($(written 804 0) > 1))'
     local on
     on=$(written 804 100)

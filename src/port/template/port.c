@@ -8,7 +8,8 @@
  *
  * Exact pulses: a callback is told the tick of its happening, and is called when the main loop gets there, some microseconds
  * later. A board that wants its pulses exact to the microsecond lets the unit run ahead by a few slots, puts the callbacks'
- * happenings into a queue with their ticks, and plays the queue from a timer interrupt; inputs then act later by as much. */
+ * happenings into a queue with their ticks, and plays the queue from a timer interrupt; inputs then act later by as much.
+ * ../mps2_an385 does so; ../riscv_virt is this file filled in. docs/PORTING.md goes through it step by step. */
 #include <rkm04/unit.h>
 
 /* What the callbacks need to know of the board; handed to them as `context`. */
@@ -24,17 +25,18 @@ static void board_start(struct board *board)
     board->outputs = 0;
 }
 
-/* Microseconds since board_start, never going back. 64 bits: a 32-bit timer wraps after 71 minutes, so count its wraps. */
+/* Microseconds since board_start (a timer that goes on over a reset: take the difference), never going back. 64 bits: a 32-bit timer wraps after 71 minutes, so count its wraps. */
 static uint64_t board_clock(void)
 {
     return 0;
 }
 
-/* Sleep (WFI) until this tick of the clock, or until an interrupt of the line or a change of an input, whichever is first.
- * Return at once if the line has bytes already. Waking too early is harmless. */
-static void board_sleep_until(uint64_t tick)
+/* Sleep (WFI) until this tick of the clock, until a byte comes or an input changes, or, if there is `more` to send, until the
+ * queue to the UART has room for it, whichever is first. Return at once if the line has bytes already, unless there is more to
+ * send: then they may have to wait (P10). Waking too early is harmless. */
+static void board_sleep_until(uint64_t tick, bool more)
 {
-    (void)tick;
+    (void)tick, (void)more;
 }
 
 /* Terminals BI 01..08, bit 0 is BI 01; 1 = current flows. Filter bounces here: the unit takes what it gets. */
@@ -193,8 +195,7 @@ static void show_leds(void)
 static void rest(uint64_t now)
 {
     uint64_t next = rkm04_next_event(&unit), latest = now + LED_TICKS;
-    if (!rkm04_sending(&unit))
-        board_sleep_until(next < latest ? next + 1 : latest);
+    board_sleep_until(next < latest ? next + 1 : latest, rkm04_sending(&unit));
 }
 
 int main(void)
