@@ -7,7 +7,8 @@
 static const char *const programs[] = {
     "\\S50 V900 A3000 F90 R B40 R", "V3000 F300 R", "L5 T03 W2 C03 W3 E", "G-", "G+", "K", "C75", "V700", "[F10 R", "] D R",
     "M01 F200 R U", "(01 C100 F30 R", "T80 O81 F3 R", "T81 Z80 B3 R", "Y F20 Y B50 V400 Y R", "\\", "T41 F500 R", "@1 F2 R D J1",
-    "I01H1 J2", "X02 G+", "F100 V100 R W5 H", ")02 =7 H", "T40", "C41", "'9", "E", ".", "L255 L255 W1 E E", "T51 T52 F10 Y F20 Y R",
+    "I01H1 J2", "X02 G+", "F100 V100 R W5 H", ")02 =7 H", "T40", "C41", "'9", "E", ".", "L255 L255 W1 E E",
+    "T51 T52 F10 Y F20 Y R",
 };
 
 static const char *const faults[] = {
@@ -23,7 +24,8 @@ static const char *const faults[] = {
 
 /* They change what is stored. */
 static const char *const flash_faults[] = {
-    "\"kind\":\"flash\",\"operation\":\"program\",\"torn\":true,\"count\":2", "\"kind\":\"flash\",\"probability\":0.3,\"for\":\"5s\"",
+    "\"kind\":\"flash\",\"operation\":\"program\",\"torn\":true,\"count\":2",
+    "\"kind\":\"flash\",\"probability\":0.3,\"for\":\"5s\"",
     "\"kind\":\"flash\",\"operation\":\"read\",\"count\":3", "\"kind\":\"power\",\"operation\":2,\"duration\":\"1s\"",
     "\"kind\":\"power\",\"operation\":3",
 };
@@ -121,7 +123,8 @@ static void act_line(struct soak *soak)
 /* A request, perhaps into the middle of others' answers. */
 static void act_request(struct soak *soak, bool flash)
 {
-    uint8_t message[200] = {2, (uint8_t)dice_roll(&soak->dice, '0', '4')}, frame[400], node = (uint8_t)dice_roll(&soak->dice, 0, 16);
+    uint8_t message[200] = {2, (uint8_t)dice_roll(&soak->dice, '0', '4')}, frame[400];
+    uint8_t node = (uint8_t)dice_roll(&soak->dice, 0, 16);
     size_t length = 2;
     if (dice_chance(&soak->dice, 60)) {
         const char *text = programs[dice_roll(&soak->dice, 0, sizeof programs / sizeof *programs - 1)];
@@ -203,7 +206,8 @@ static void come_back(struct soak *soak)
 
 void soak_clear(struct soak *soak)
 {
-    static const char clear[] = "\2" "0\\C100 C41", quiet[] = "\2" "1C01 C02 C03 C04 C05 C06 C07 C08 C80 C81 C82 C83 C84 C85 C86 C87 C88 C89 "
+    static const char clear[] = "\2" "0\\C100 C41",
+        quiet[] = "\2" "1C01 C02 C03 C04 C05 C06 C07 C08 C80 C81 C82 C83 C84 C85 C86 C87 C88 C89 "
         "C90 C91 C92 C93 C94 C95", empty[] = "\2" "0\\";
     for (unsigned unit = 0; unit < UNITS; unit++) {
         soak_command(soak, "power", "{\"unit\":%u,\"on\":true}", unit + 1u);

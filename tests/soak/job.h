@@ -1,5 +1,5 @@
-/* job.h: random programs whose outcome is known: a model that counts (steps, outputs, variables) and knows nothing of slots, ramps
- * and ticks runs them beforehand. */
+/* job.h: random programs whose outcome is known: a model that counts (steps, outputs, variables) and knows nothing of slots,
+ * ramps and ticks runs them beforehand. */
 #ifndef RKM04_TESTS_SOAK_JOB_H
 #define RKM04_TESTS_SOAK_JOB_H
 

@@ -304,7 +304,8 @@ void counters_check(struct soak *soak)
         check_counter(soak, i, "frames for others", now.others - unit->begin.others, unit->others);
         check_counter(soak, i, "dropped frames", now.dropped - unit->begin.dropped, unit->dropped);
     }
-    uint64_t line = segment_counters(&soak->sim.segment).bytes - soak->line_begin, master = soak->in + soak->out - soak->master_begin;
+    uint64_t line = segment_counters(&soak->sim.segment).bytes - soak->line_begin;
+    uint64_t master = soak->in + soak->out - soak->master_begin;
     if (line != master)
         soak_fail(soak, "%" PRIu64 " bytes on the line, but the master sent and heard %" PRIu64, line, master);
 }

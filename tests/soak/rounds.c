@@ -322,7 +322,8 @@ static void for_others(struct soak *soak)
 {
     uint8_t frame[64];
     bool answer = dice_chance(&soak->dice, 50);
-    uint8_t node = answer ? 0 : (uint8_t)dice_roll(&soak->dice, 17, 255), snode = answer ? (uint8_t)dice_roll(&soak->dice, 1, 16) : 0;
+    uint8_t node = answer ? 0 : (uint8_t)dice_roll(&soak->dice, 17, 255);
+    uint8_t snode = answer ? (uint8_t)dice_roll(&soak->dice, 1, 16) : 0;
     size_t length = master_frame(node, snode, "\2" "0\\ F100 R", 11, frame);
     for (unsigned i = 0; i < UNITS; i++)
         soak->unit[i].others++;

@@ -2,9 +2,9 @@
  *
  *     soak --days DAYS [--seed SEED] [--quiet]
  *
- * Programs whose outcome is known are given, polled, held, stored and run from flash; garbage, floods and faults of every kind come
- * between. Every answer, position, output and counter is checked, and memory has to stay as it is. Says how far it is on stderr,
- * and writes a line of JSON to stdout. Exit status: 0 all is well, 1 something is not, 2 usage. */
+ * Programs whose outcome is known are given, polled, held, stored and run from flash; garbage, floods and faults of every
+ * kind come between. Every answer, position, output and counter is checked, and memory has to stay as it is. Says how far it
+ * is on stderr, and writes a line of JSON to stdout. Exit status: 0 all is well, 1 something is not, 2 usage. */
 #include "soak.h"
 
 #include <getopt.h>
@@ -137,8 +137,8 @@ static void report_day(const struct soak *soak, double days, struct memory memor
     if (options.quiet)
         return;
     fprintf(stderr, "soak: day %.2f of %g after %.0f s: %" PRIu64 " requests, %" PRIu64 " jobs, %" PRIu64 " resets, %" PRIu64
-            " faults; heap %zu bytes, resident %.1f MiB\n", days, options.days, elapsed(), soak->requests, soak->jobs, soak->resets,
-            soak->faults, memory.heap, (double)memory.resident / 1048576);
+            " faults; heap %zu bytes, resident %.1f MiB\n", days, options.days, elapsed(), soak->requests, soak->jobs,
+            soak->resets, soak->faults, memory.heap, (double)memory.resident / 1048576);
 }
 
 static bool report(const struct soak *soak, struct memory first, struct memory last, struct memory most)
@@ -148,7 +148,8 @@ static bool report(const struct soak *soak, struct memory first, struct memory l
     printf("{\"virtual_days\":%.3f,\"seconds\":%.1f,\"times_real\":%.0f,\"seed\":%" PRIu64 ",\"units\":%u,\"rounds\":%" PRIu64
            ",\"requests\":%" PRIu64 ",\"answers\":%" PRIu64 ",\"jobs\":%" PRIu64 ",\"steps\":%" PRIu64 ",\"stores\":%" PRIu64
            ",\"garbage\":%" PRIu64 ",\"faults\":%" PRIu64 ",\"resets\":%" PRIu64 ",\"snapshots\":%" PRIu64
-           ",\"heap_begin\":%zu,\"heap_end\":%zu,\"heap_most\":%zu,\"resident_begin\":%zu,\"resident_end\":%zu,\"resident_most\":%zu"
+           ",\"heap_begin\":%zu,\"heap_end\":%zu,\"heap_most\":%zu"
+           ",\"resident_begin\":%zu,\"resident_end\":%zu,\"resident_most\":%zu"
            ",\"well\":%s}\n", days, seconds, days * 86400 / seconds, options.seed, UNITS, soak->rounds, soak->requests,
            soak->answers, soak->jobs, soak->steps_done, soak->stores, soak->garbage, soak->faults, soak->resets, soak->snapshots,
            first.heap, last.heap, most.heap, first.resident, last.resident, most.resident, well ? "true" : "false");

@@ -30,10 +30,11 @@ UNITS = 16
 PATIENCE = 60  # s until something counts as never coming
 RESIDENT_SLACK = 4 << 20  # bytes
 PLAIN = ["drop", "flip", "duplicate", "insert", "no_answer", "wrong_fcs", "echo"]  # faults that need no parameter
-PROGRAMS = [b"\\S50 V900 A3000 F90 R B40 R", b"V3000 F300 R", b"L5 T03 W2 C03 W3 E", b"G-", b"K", b"C75", b"V700", b"[F10 R", b"] R",
+PROGRAMS = [b"\\S50 V900 A3000 F90 R B40 R", b"V3000 F300 R", b"L5 T03 W2 C03 W3 E", b"G-", b"K", b"C75", b"V700", b"[F10 R",
+            b"] R",
             b"M01 F200 R U", b"(01 C100 F30 R", b"\\", b"T41 F500 R", b"@1 F2 R D J1", b"X02 G+", b"T40", b"W5 Y F20 Y B50 Y R"]
-PLANT = {"motors": {"1": {"offset": 20, "stops": {"low": -5, "high": 400}}},
-         "switches": [{"input": 1, "motor": 1, "at_most": 0, "bounce": "30ms"}]}
+PLANT = {"units": {"3": {"motors": {"1": {"offset": 20, "stops": {"low": -5, "high": 400}}},
+                         "switches": [{"input": 1, "motor": 1, "at_most": 0, "bounce": "30ms"}]}}}
 
 
 def crc16(data):
@@ -294,8 +295,9 @@ class Soak:
     # ---- Rounds
 
     def chaos(self, ticks):
-        acts = ([self.attach] * 3 + [self.detach] * 2 + [self.garbage] * 2 + [self.flood] + [self.request] * 10 + [self.listen] * 8 +
-                [self.fault] * 2 + [self.client] * 3 + [self.client_leaves] * 2 + [self.trace] + [self.trace_ends] * 2 +
+        acts = ([self.attach] * 3 + [self.detach] * 2 + [self.garbage] * 2 + [self.flood] + [self.request] * 10 +
+                [self.listen] * 8 + [self.fault] * 2 +
+                [self.client] * 3 + [self.client_leaves] * 2 + [self.trace] + [self.trace_ends] * 2 +
                 [self.hands] * 2 + [self.snapshot] + [self.clocks])
         end = self.now() + ticks
         while self.now() < end:
@@ -318,6 +320,11 @@ class Soak:
         end = self.now() + 5000000  # what is under way passes, a pty that was away comes back
         while self.now() < end or not os.path.exists(self.link):
             time.sleep(0.01)
+        passed, begin = None, time.monotonic()  # floods that stand in sockets and ptys take their time
+        while passed != (passed := self.state(1)["line"]["bytes"]):
+            if time.monotonic() > begin + 5 * PATIENCE:
+                raise Wrong("the line does not come to rest")
+            self.control.call("wait", until={"t": self.now() + 3000000})
         self.control.call("restore", name="begin")
         self.control.events.clear()
 
