@@ -149,6 +149,15 @@ START_TEST(P7_a_change_of_speed_adds_its_corners)
 END_TEST
 
 
+START_TEST(P7_R6_a_change_of_speed_on_the_final_ramp_adds_no_corner)
+{
+    rig_accept(&rig, '1', "F5000 R");
+    rig_accept_at(&rig, 5200 * MS, "V500");
+    rig_to(&rig, 5210 * MS);
+    ASK("\x06" "1", "\x06" "1 4;[(1;100),(248;1000),(4753;1000),(5000;0)]");
+}
+END_TEST
+
 /* Every change up to S happens at once and adds two corners, before and behind it: of more than the table holds, the oldest are
  * forgotten. G+ begins at 3 ms; the speed is 200 + 10 * i behind the i-th change, at 100 + 70 * i ms. */
 START_TEST(P7_of_many_changes_of_speed_the_newest_corners_are_kept)
@@ -269,6 +278,7 @@ static Suite *prt_motion_suite(void)
     tcase_add_test(table, P7_a_held_motion_shows_how_far_it_went);
     tcase_add_test(table, P7_points_that_a_stop_has_made_void_are_gone);
     tcase_add_test(table, P7_a_change_of_speed_adds_its_corners);
+    tcase_add_test(table, P7_R6_a_change_of_speed_on_the_final_ramp_adds_no_corner);
     tcase_add_test(table, P7_of_many_changes_of_speed_the_newest_corners_are_kept);
     suite_add_tcase(suite, table);
 
