@@ -339,7 +339,7 @@ class Run:
         if not self.target.exact or self.still:  # T41 holds them at 0
             self.unseen += 1
         elif "at" not in step:
-            got = self.target.state()["do"]
+            got = self.target.outputs()
             if got != mask:
                 raise Mismatch("outputs", f"{mask:#04x}", f"{got:#04x}")
         else:

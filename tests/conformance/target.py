@@ -1,6 +1,8 @@
 """target.py: what stands around the unit under test: its time, its inputs, its power; with a control socket or a hand."""
 import json
+import os
 import socket
+import subprocess
 import sys
 import time
 
@@ -152,6 +154,9 @@ class Stepped:
     def power(self):
         self.control.call("reset", unit=self.unit)
 
+    def outputs(self):
+        return self.state()["do"]
+
     def events(self, kind, motor=None):
         """(time since the start, value) of each event of that kind."""
         return [(event["t_us"] - self.start_us, event["value"]) for event in self.control.events
@@ -160,3 +165,92 @@ class Stepped:
     def close(self):
         if self.clock != "stepped":
             self.control.call("clock", clock=self.clock)
+
+
+class InProcess:
+    """A program with a unit in it and nothing around (in_process.c): its line, time, inputs and power in one. DNode 1."""
+    exact = True
+    silence = 0
+    has = Stepped.has
+
+    def __init__(self, program, framing):
+        self.heard, self.line = os.pipe()  # what the unit says, so that one can wait for it as for a port
+        self.start_us, self.now, self.mask, self.seen = 0, 0, 0, []
+        try:
+            self.process = subprocess.Popen([program, framing], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        except OSError as error:
+            raise Unreachable(f"cannot run {program}: {error}") from None
+
+    def call(self, request):
+        """The words of the answer."""
+        try:
+            self.process.stdin.write(request + "\n")
+            self.process.stdin.flush()
+            for line in self.process.stdout:
+                word, *words = line.split() or [""]
+                if word.startswith("="):
+                    return [word[1:], *words] if word[1:] else words
+                if word == "event":
+                    self.seen.append((words[0], int(words[1]), int(words[2]), int(words[3])))
+        except (OSError, ValueError) as error:
+            raise Unreachable(f"the program is gone: {error}") from None
+        raise Unreachable("the program has ended")
+
+    # As a port
+
+    def fileno(self):
+        return self.heard
+
+    def write(self, data):
+        answer = self.call("bytes " + data.hex())
+        if answer:
+            os.write(self.line, bytes.fromhex(answer[0]))
+
+    def read(self):
+        return os.read(self.heard, 4096)
+
+    # As a target
+
+    def start(self):
+        self.pass_us(-(self.now - 1) % 1000)
+        self.start_us = self.now - 1
+        self.seen.clear()
+
+    def since_start(self):
+        return self.now - self.start_us
+
+    def pass_us(self, ticks):
+        if ticks > 0:
+            self.now = int(self.call(f"advance {int(ticks)}")[0])
+
+    def until_idle(self, motor, limit_us, _is_idle):
+        now, holds = self.call(f"idle {motor} {int(limit_us)}")
+        self.now = int(now)
+        return self.now - 1 - self.start_us if holds == "1" else None
+
+    @staticmethod
+    def latency_us():
+        return 0
+
+    def inputs(self, levels):
+        for number, level in levels.items():
+            bit = 1 << int(number) - 1
+            self.mask = self.mask & ~bit | (bit if level else 0)
+        self.call(f"inputs {self.mask}")
+
+    def rest(self):
+        self.mask = 0
+        self.call("inputs 0")
+
+    def power(self):
+        self.now = int(self.call("reset")[0])
+
+    def outputs(self):
+        return int(self.call("outputs")[0])
+
+    def events(self, kind, motor=0):
+        return [(tick - self.start_us, value) for name, number, tick, value in self.seen if (name, number) == (kind, motor)]
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
