@@ -84,6 +84,10 @@ test_the_tools_explain_themselves_and_refuse_what_they_do_not_know() {
     holds "$said" "Usage: tools/test" "stdout"
     exits 2 "$tools/test" --frobnicate
     holds "$complained" --frobnicate "the message names the option"
+    exits 0 "$tools/digest-all" --help
+    holds "$said" "Usage: tools/digest-all" "stdout"
+    exits 2 "$tools/digest-all" vax
+    holds "$complained" vax "the message names the target"
 }
 
 run_cases "$@"
