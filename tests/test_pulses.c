@@ -1,4 +1,4 @@
-/* The queue between a unit that runs ahead and the interrupt that plays it (src/port/mps2_an385/pulses.c). */
+/* The queue between a unit that runs ahead and the interrupt that plays it (src/port/common/pulses.c). */
 #include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 
 #include <rkm04/unit.h>
 
-#include "../src/port/mps2_an385/pulses.h"
+#include "../src/port/common/pulses.h"
 
 static struct pulses pulses;
 static uint32_t now;

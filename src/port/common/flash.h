@@ -1,5 +1,6 @@
-/* flash.h: memory that behaves like flash. The board has none that a program may write; these blocks lie where a reset leaves
- * them alone, and keep the rules of the real thing, so that a core that broke them would be found out here. */
+/* flash.h: for boards without flash that a program may write: memory that behaves like it. The blocks lie in the section .blocks,
+ * which has to be where a reset leaves it alone. They keep the rules of the real thing: a core that broke them would be found
+ * out here. */
 #ifndef FLASH_H
 #define FLASH_H
 

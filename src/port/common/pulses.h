@@ -1,5 +1,5 @@
-/* pulses.h: the unit runs ahead of the clock; what it wants done at which tick waits here until a timer's interrupt does it.
- * So pulses are exact to the tick, whatever the main loop is busy with. Knows no board: it calls the struct pulse_pins.
+/* pulses.h: for ports whose pulses are to be exact: the unit runs ahead of the clock, and what it wants done at which tick waits
+ * here until a timer's interrupt does it, whatever the main loop is busy with. Knows no board: it calls the struct pulse_pins.
  *
  *     main loop                                 timer interrupt
  *     rkm04_advance -> on_step -> pulses_step   pulses_play -> pins.step; arm the timer for the tick returned

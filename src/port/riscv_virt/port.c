@@ -4,7 +4,7 @@
  * The machine has no pins. What would be their registers is `pins` below. */
 #include <rkm04/unit.h>
 
-#include "../mps2_an385/flash.h"
+#include "flash.h"
 
 /* ---- Clock, terminals, line ----------------------------------------------------------------------------------------- */
 

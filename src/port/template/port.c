@@ -25,7 +25,8 @@ static void board_start(struct board *board)
     board->outputs = 0;
 }
 
-/* Microseconds since board_start (a timer that goes on over a reset: take the difference), never going back. 64 bits: a 32-bit timer wraps after 71 minutes, so count its wraps. */
+/* Microseconds since board_start (of a timer that goes on over a reset take the difference), never going back. 64 bits: a 32-bit
+ * timer wraps after 71 minutes, so count its wraps. */
 static uint64_t board_clock(void)
 {
     return 0;
