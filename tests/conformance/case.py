@@ -38,6 +38,7 @@ import re
 
 NEEDS = {"inputs", "outputs", "time", "flash", "power"}
 MOTION = re.compile(r"(?<!\d)H|[RG)(]")  # the H of I01H2 is none
+MESSAGE_MAX = 1024
 REAL_SHARE = 0.002  # by how much the unit's clock or ours may be wrong
 
 
@@ -80,6 +81,8 @@ class Case:
             text = step.get("set", step.get("run", ""))
             if MOTION.search(text) and not self.moves:
                 raise Broken(f"{where}: `{text}' moves a motor, but `moves' is empty")
+            if len(text * step.get("times", 1)) + 2 > MESSAGE_MAX:
+                raise Broken(f"{where}: a message of more than {MESSAGE_MAX} bytes, which a small port does not take")
             for verb_of, need in (("input", "inputs"), ("store", "flash"), ("power", "power")):
                 if verb == verb_of and need not in self.needs:
                     raise Broken(f"{where}: `{verb}' without `{need}' in `needs'")
