@@ -112,6 +112,31 @@ test_somebody_sets_the_inputs_when_asked() {
     holds "$complained" "nobody is there" "what is told"
 }
 
+# A hand that does what it is asked: it reads the kit's questions and works the emulator behind its back.
+hand() {
+    local line
+    while read -r -d : line; do
+        line=${line##*>>> }
+        if [[ $line =~ set\ input\ ([0-9]+)\ to\ ([01]) ]]; then
+            "$RKMCTL" --control "$folder/bus.control" di "${BASH_REMATCH[1]}=${BASH_REMATCH[2]}"
+        elif [[ $line == *"switch the unit off and on"* ]]; then
+            "$RKMCTL" --control "$folder/bus.control" reset
+        fi >>"$folder/hand.out" 2>>"$folder/hand.err"
+        echo
+    done
+}
+
+test_a_hand_does_what_a_control_socket_does() {
+    serve bus --clock x10
+    mkfifo "$folder/asked" "$folder/done"
+    hand <"$folder/asked" >"$folder/done" &
+    processes+=("$!")
+    "$python" "$kit" --port "$folder/bus" --timeout 10000 --latency 5000 --speed 10 --has inputs,power,flash \
+        --only M7.32 --only a_jump_asks_an_input --only P6 >"$folder/kit.out" 2>"$folder/asked" <"$folder/done"
+    same 0 "$?" "status of the kit, which said $(<"$folder/kit.out")"
+    holds "$(<"$folder/kit.out")" "4 passed, 0 failed, 0 skipped" "the summary"
+}
+
 test_nobody_there_is_status_3() {
     serve bus
     exits 3 "$python" "$kit" --port "$folder/bus" --node 2 --timeout 300
