@@ -188,7 +188,8 @@ static void count_slots(void)
     report("slot_four_stops_in_compounds", worst);
 }
 
-static void count_messages(void)
+/* The longest request: commands for all four motors. */
+static void long_request(void)
 {
     static uint8_t message[RKM04_MESSAGE_MAX], answer[16];
     static const char command[] = "F16000000 ";
@@ -197,9 +198,15 @@ static void count_messages(void)
     size_t length = 2;
     for (; length + sizeof command - 1 <= sizeof message; length += sizeof command - 1)
         memcpy(message + length, command, sizeof command - 1);
+    (void)rkm04_exchange(&unit, message, length, answer, sizeof answer);
+}
+
+static void count_messages(void)
+{
+    uint8_t answer[16];
     fresh_unit("");
     begin();
-    (void)rkm04_exchange(&unit, message, length, answer, sizeof answer);
+    long_request();
     report("message_of_1024_bytes_to_four_motors", counted());
     begin();
     (void)rkm04_exchange(&unit, (const uint8_t *)"\0041", 2, answer, sizeof answer);
@@ -228,12 +235,16 @@ static void try_all(void)
         (void)run_until(board_clock() + 1313);
     }
     report("latest_of_four_at_16000_begun_apart", run_until(2600000));
+    set('0', "\\ S2000 V16000 A60000 F14000 R");
+    (void)run_until(2950000);
+    long_request();
+    report("latest_while_a_long_request_comes", run_until(3900000));
     set('0', "\\ S137");
     set('4', "\\ S2000 V16000 A60000 F16000 R");
-    (void)run_until(2900000);
+    (void)run_until(4200000);
     for (char motor = '1'; motor <= '3'; motor++)
         set(motor, compound_of_ten);
-    report("latest_while_three_compounds_of_ten_begin", run_until(3400000));
+    report("latest_while_three_compounds_of_ten_begin", run_until(4700000));
     report("steps_of_motor_4", (uint32_t)unit.motor[3].position);
 }
 
