@@ -11,7 +11,7 @@ firmware() {
         echo "skipped: $tool not found: apt-get install $packages"
         exit 77
     done
-    firmware=${BUILD:-/tmp}/port_$port
+    firmware=${BUILD:-/tmp}/firmware_$port
     make -s -C "$tree/src/port/$port" OUT="$firmware" >/dev/null || exit 1
 }
 
