@@ -105,7 +105,8 @@ static json_t *command(struct seen *seen, const char *method, const char *params
 
 /* ---- Time ----------------------------------------------------------------------------------------------------------- */
 
-/* What one of the clocks would do: real looks every now and then, max goes from one happening to the next, stepped goes by ticks. */
+/* What one of the clocks would do: real looks every now and then, max goes from one happening to the next, stepped goes by
+ * ticks. */
 static void go_to(struct seen *seen, uint64_t tick, unsigned way, uint64_t *dice)
 {
     while (sim_now(&seen->sim) < tick) {

@@ -6,6 +6,7 @@
 
 #include "bus.h"
 #include "log.h"
+#include "output_file.h"
 
 /* The name for this line; NULL: too long (reported). */
 static const char *path_of(const struct bus *bus, const char *pattern, char path[PATH_MAX])
@@ -39,7 +40,7 @@ static bool begin_record(struct bus *bus)
         return true;
     if (!path_of(bus, bus->options->record, path))
         return false;
-    files->record_stream = fopen(path, "we");
+    files->record_stream = output_file_open(path);
     if (!files->record_stream) {
         log_error("cannot write %s: %s", path, strerror(errno));
         return false;

@@ -90,8 +90,8 @@ uint64_t sim_now(const struct sim *sim);
 /* Do all ticks before `tick`, move every byte due by `tick`, and hand out what happened before it. */
 void sim_advance(struct sim *sim, uint64_t tick);
 
-/* Move what is due by the present tick: what comes in from outside now comes after it. Called by everything that comes in, so that
- * what follows does not depend on how time was cut. */
+/* Move what is due by the present tick: what comes in from outside now comes after it. Called by everything that comes in, so
+ * that what follows does not depend on how time was cut. */
 void sim_settle(struct sim *sim);
 
 /* A tick before which no byte moves; RKM04_NEVER: none is under way (segment_due()). */

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "output_file.h"
+
 static const struct trace_writer *const writers[TRACE_FORMATS] = {
     [TRACE_CSV] = &trace_csv,
     [TRACE_VCD] = &trace_vcd,
@@ -114,7 +116,7 @@ struct trace_file *trace_file_begin(struct sim *sim, const char *path, char **er
         explain(error, "%s: expected %s", path, TRACE_FILE_EXPECTED);
         return NULL;
     }
-    FILE *out = fopen(path, "we");
+    FILE *out = output_file_open(path);
     if (!out) {
         explain(error, "cannot write %s: %s", path, strerror(errno));
         return NULL;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "output_file.h"
 #include "wire_format.h"
 
 struct wire_file {
@@ -87,7 +88,7 @@ static void see(void *context, const struct watch_event *event)
 struct wire_file *wire_file_begin(struct sim *sim, const char *path, char **error)
 {
     struct wire_file *file = malloc(sizeof *file);
-    FILE *out = file ? fopen(path, "wbe") : NULL;
+    FILE *out = file ? output_file_open(path) : NULL;
     if (!out) {
         if (asprintf(error, "cannot write %s: %s", path, strerror(errno)) < 0)
             *error = NULL;

@@ -12,7 +12,8 @@ refused() {
 
 test_help_and_version_go_to_stdout() {
     local command
-    for command in "$RKM04 --help" "$RKM04 serve --help" "$RKM04 exec --help" "$RKM04 test --help" "$RKM04 replay --help" "$RKMCTL --help"; do
+    for command in "$RKM04 --help" "$RKM04 serve --help" "$RKM04 exec --help" "$RKM04 test --help" \
+        "$RKM04 replay --help" "$RKMCTL --help"; do
         # shellcheck disable=SC2086
         exits 0 $command
         holds "${said,,}" usage "'$command'"

@@ -146,6 +146,15 @@ test_a_plant_without_end_or_with_more_behind_its_text_is_refused() {
     refused "a plant with a 0 in it" "character 0" "$RKM04" serve --link "$folder/bus" --plant "$folder/plant.yaml"
 }
 
+test_a_pipe_in_place_of_a_trace_makes_nobody_wait() {
+    local control=(--control "$folder/bus.control" --timeout 5000)
+    mkfifo "$folder/pipe.vcd" "$folder/pipe.log"
+    serve bus
+    exits 1 "$RKMCTL" "${control[@]}" trace start "$folder/pipe.vcd"
+    exits 1 "$RKMCTL" "${control[@]}" trace start "$folder/pipe.log"
+    exits 0 ctl bus version
+}
+
 test_texts_from_outside_are_no_formats() {
     local text='%n%n%s%s%99999d'
     exits 2 "$RKM04" serve --clock "$text"
