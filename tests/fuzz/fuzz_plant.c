@@ -1,5 +1,5 @@
-/* fuzz_plant.c: any text as a plant of one unit or three. Refused with a reason; or it is taken, and the units run with it, report
- * their state, and take the same text again or say why not. */
+/* fuzz_plant.c: any text as a plant of one unit or three. Refused with a reason; or it is taken, and the units run with it,
+ * report their state, and take the same text again or say why not. */
 #include <string.h>
 
 #include "command.h"
