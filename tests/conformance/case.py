@@ -13,7 +13,7 @@ programs are lost), `power` (off and on again). A step is an object; which one i
     accepts LIST   [text, canonical text]: both texts are taken, behind a `[`, and Get Command gives the canonical one
     refuses LIST   [text, flag, character]
     ask HEX        a message as bytes; its `answer` in hexadecimal, null: silence; `node`: to another node than the unit's
-    frame HEX      bytes on the line, only with the framing named `framing`; `answer`, null: silence
+    frame HEX      bytes on the line, only with the framing named `framing`; `answer`, null: silence, empty: whatever
     position M     Get Position: `is`
     positions      Get Position of all: a list of four
     program M      Get Command: `is`, then `then` so many `times`, then `end`
@@ -249,6 +249,8 @@ class Run:
         self.line.say(bytes.fromhex(hexadecimal))
         if answer is None:
             self.quiet(what)
+            return
+        if not answer:
             return
         wanted = bytes.fromhex(answer)
         got = self.line.hear(lambda heard: len(heard) >= len(wanted), self.line.timeout)
