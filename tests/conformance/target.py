@@ -66,10 +66,12 @@ class Real:
 
     def until_idle(self, motor, limit_us, is_idle):
         """Time since the start at which the motor is found idle; None: not within the limit."""
-        end = self.now_us() + limit_us
+        end = self.now_us() + limit_us + self.latency_us()
+        over = False
         while not is_idle(motor):
-            if self.now_us() > end:
+            if over:
                 return None
+            over = self.now_us() > end  # one more look: we may have been stopped for a while
             time.sleep(0.005)
         return self.since_start()
 
