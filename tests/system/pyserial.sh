@@ -74,10 +74,10 @@ test_a_second_client_is_refused_with_a_reason() {
     serve_all
     for way in socket rfc2217; do
         mkfifo "$folder/go-$way"
-        "$python" -W ignore "$client" keep "$(url "$way")" <"$folder/go-$way" >"$folder/keep.out" 2>"$folder/keep.err" &
+        "$python" -W ignore "$client" keep "$(url "$way")" <"$folder/go-$way" >"$folder/keep-$way.out" 2>"$folder/keep.err" &
         processes+=("$!")
         exec 3>"$folder/go-$way"
-        soon "the first client has the line" grep -qs open "$folder/keep.out"
+        soon "the first client has the line" grep -qs open "$folder/keep-$way.out"
         other=$(ready_value bus "${way/socket/tcp}")
         exits 0 timeout "$limit" socat -t "$limit" "TCP:$other" -
         holds "$(tr -d '\r' <<<"$said")" "rkm04: refused: the line is in use by 127.0.0.1:" "what the second client is told"
