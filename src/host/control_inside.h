@@ -70,9 +70,6 @@ void control_look(struct control *control);
 /* A client goes: all that it waits for. */
 void control_forget(struct peer *peer);
 
-/* The handle of a client is closed. */
-void control_gone(struct peer *peer);
-
 /* Answer a request; `id` NULL: it wants none. Take the reference to `result`. */
 void control_answer(struct peer *peer, const json_t *id, json_t *result);
 void control_refuse(struct peer *peer, const json_t *id, const struct refusal *refusal);

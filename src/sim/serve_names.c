@@ -35,14 +35,6 @@ bool node_list_read(struct node_list *list, const char *text)
     }
 }
 
-bool node_list_has(const struct node_list *list, unsigned node)
-{
-    for (unsigned i = 0; i < list->count; i++)
-        if (list->node[i] == node)
-            return true;
-    return false;
-}
-
 void node_list_name(const struct node_list *list, unsigned at, char name[NODE_NAME_SIZE])
 {
     unsigned same = 1;

@@ -23,9 +23,6 @@ struct node_list {
 /* Read "3", "1,2,5-8". Returns false if it is none of NODE_LIST_EXPECTED. */
 bool node_list_read(struct node_list *list, const char *text);
 
-/* Is the address `node` on the line? */
-bool node_list_has(const struct node_list *list, unsigned node);
-
 /* The name of unit `at` (from 0): its address, "3"; of the second with the same address "3-2", of the third "3-3". */
 void node_list_name(const struct node_list *list, unsigned at, char name[NODE_NAME_SIZE]);
 

@@ -165,11 +165,6 @@ const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapsh
     return NULL;
 }
 
-bool snapshot_fits(const struct sim *sim, const struct snapshot *snapshot)
-{
-    return snapshot_misfit(sim, snapshot) == NULL;
-}
-
 /* ---- Telling what has changed --------------------------------------------------------------------------------------- */
 
 static void look_at(const struct sim *sim, unsigned number, struct look *look)

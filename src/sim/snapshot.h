@@ -23,7 +23,6 @@ bool snapshot_move(struct sim *sim, uint64_t ticks);
 
 /* In what is `sim` unlike the one that it was taken of: "the framing", …; NULL: in nothing that matters. */
 const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapshot);
-bool snapshot_fits(const struct sim *sim, const struct snapshot *snapshot);
 
 /* The tick at which it was taken. */
 uint64_t snapshot_tick(const struct snapshot *snapshot);
