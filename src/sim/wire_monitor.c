@@ -365,18 +365,3 @@ struct wire_message *wire_monitor_rest(const struct sim *sim, bool answer)
         return NULL;
     return make(sim, ear, ear->astray != WIRE_WHOLE ? ear->astray : WIRE_UNFINISHED);
 }
-
-static void end_of_ear(struct sim *sim, struct wire_ear_monitor *ear)
-{
-    if (holds_something(ear) && wanted(sim))
-        tell(sim, sim_now(sim), wire_monitor_rest(sim, ear->answer));
-    forget(ear);
-    ear->receiver = (struct rkm04_receiver){.phase = 0};
-    ear->astray = sim->monitor.framing == &rkm04_hdlc ? WIRE_OUTSIDE : WIRE_WHOLE;
-}
-
-void wire_monitor_silence(struct sim *sim)
-{
-    end_of_ear(sim, &sim->monitor.requests);
-    end_of_ear(sim, &sim->monitor.answers);
-}

@@ -89,7 +89,4 @@ void wire_monitor_hear(struct sim *sim, const struct segment_byte *byte);
  * otherwise a message to be freed. */
 struct wire_message *wire_monitor_rest(const struct sim *sim, bool answer);
 
-/* The line has fallen silent for good: what is incomplete is reported as dropped, and forgotten. */
-void wire_monitor_silence(struct sim *sim);
-
 #endif
