@@ -434,6 +434,23 @@ size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint6
     return n;
 }
 
+/* As moved(), for a way of any length. */
+struct leap {
+    uint64_t steps;       /* passed, the next one included */
+    int64_t half;         /* slope * ticks */
+    struct rkm04_fixed y; /* behind them */
+};
+
+static struct leap leap_of(const struct rkm04_ramp *ramp, uint64_t ticks)
+{
+    int64_t half = ramp->slope * (int64_t)ticks;
+    struct wide part = wide_product(ramp->w.part, ticks);
+    struct rkm04_fixed rest = sum(ramp->y, (struct rkm04_fixed){(int64_t)part.high, part.low});
+    struct wide way = wide_sum(wide_product((uint64_t)(ramp->w.whole + half), ticks), (struct wide){0, (uint64_t)rest.whole});
+    uint64_t y, steps = wide_divide(way, RAMP_STEP, &y);
+    return (struct leap){steps + 1, half, {(int64_t)y - RAMP_STEP, rest.part}};
+}
+
 uint32_t ramp_skip(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t limit, uint32_t most)
 {
     const uint32_t worth = 64;
@@ -446,20 +463,18 @@ uint32_t ramp_skip(struct rkm04_ramp *ramp, const struct rkm04_profile *profile,
     uint64_t longest = (uint64_t)(RAMP_STEP / slowest) + 1, stop = ramp->end.tick < limit ? ramp->end.tick : limit;
     if (stop < ramp->at + 4 * longest)
         return 0;
-    stop -= 2 * longest;
-    /* As moved(), for a way of up to 2^32 steps. */
-    uint64_t ticks = stop - ramp->at;
-    int64_t half = ramp->slope * (int64_t)ticks;
-    struct wide part = wide_product(ramp->w.part, ticks);
-    struct rkm04_fixed rest = sum(ramp->y, (struct rkm04_fixed){(int64_t)part.high, part.low});
-    struct wide way = wide_sum(wide_product((uint64_t)(ramp->w.whole + half), ticks), (struct wide){0, (uint64_t)rest.whole});
-    uint64_t y, steps = wide_divide(way, RAMP_STEP, &y);
-    if (steps + 1 >= ramp->left || steps + 1 > most)
-        return 0;
-    ramp->y = (struct rkm04_fixed){(int64_t)y - RAMP_STEP, rest.part};
-    ramp->w.whole += 2 * half;
-    ramp->at = stop;
-    ramp->left -= (uint32_t)steps + 1;
+    uint64_t ticks = stop - 2 * longest - ramp->at;
+    struct leap leap = leap_of(ramp, ticks);
+    while (leap.steps >= ramp->left || leap.steps > most) { /* rare: an end of another kind comes first */
+        ticks /= 2;
+        if (ticks < longest)
+            return 0;
+        leap = leap_of(ramp, ticks);
+    }
+    ramp->y = leap.y;
+    ramp->w.whole += 2 * leap.half;
+    ramp->at += ticks;
+    ramp->left -= (uint32_t)leap.steps;
     find_first(ramp);
-    return (uint32_t)steps + 1;
+    return (uint32_t)leap.steps;
 }
