@@ -116,6 +116,15 @@ static bool storable(struct rkm04_command command)
            !(command.op == 'C' && command.argument == 75);
 }
 
+/* Read from a block, once more if that fails: a block passed over for a disturbance would be the next to be erased, whatever it
+ * holds. Returns 0 or 1. */
+static int read_block(const struct slot *slot, unsigned block, unsigned offset, uint8_t *bytes, unsigned length)
+{
+    const struct rkm04_port *port = slot->port;
+    return port->flash_read(slot->context, block, offset, bytes, length) != 0 &&
+           port->flash_read(slot->context, block, offset, bytes, length) != 0;
+}
+
 /* Read the commands of a record, go on with the check value over them, and append them to `program` unless it is NULL.
  * Returns CONTENT_RECORD if all of them are commands. */
 static enum content read_commands(const struct slot *slot, unsigned block, unsigned count, uint32_t *check,
@@ -125,7 +134,7 @@ static enum content read_commands(const struct slot *slot, unsigned block, unsig
     for (unsigned done = 0; done < count;) {
         unsigned now = count - done < CHUNK_COMMANDS ? count - done : CHUNK_COMMANDS;
         unsigned offset = HEADER_SIZE + done * COMMAND_SIZE;
-        if (slot->port->flash_read(slot->context, block, offset, bytes, now * COMMAND_SIZE) != 0)
+        if (read_block(slot, block, offset, bytes, now * COMMAND_SIZE) != 0)
             return CONTENT_BROKEN;
         *check = crc32_update(*check, bytes, now * COMMAND_SIZE);
         for (unsigned i = 0; i < now; i++) {
@@ -145,7 +154,7 @@ static enum content read_commands(const struct slot *slot, unsigned block, unsig
 static enum content read_record(const struct slot *slot, unsigned block, struct header *header, struct rkm04_program *program)
 {
     uint8_t bytes[HEADER_SIZE];
-    if (slot->port->flash_read(slot->context, block, 0, bytes, HEADER_SIZE) != 0)
+    if (read_block(slot, block, 0, bytes, HEADER_SIZE) != 0)
         return CONTENT_BROKEN;
     enum content content = get_header(bytes, slot->motor, header);
     if (content != CONTENT_RECORD)

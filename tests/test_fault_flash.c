@@ -67,16 +67,27 @@ START_TEST(any_operation_of_the_flash_may_fail_by_itself)
 {
     static const char *const operations[] = {"erase", "program", "read"};
     begin();
-    inject("{'kind': 'flash', 'operation': '%s', 'torn': %s, 'count': 1}", operations[_i / 2], _i % 2 ? "true" : "false");
+    int count = _i / 2 == 2 ? 2 : 1; /* a read is tried twice */
+    inject("{'kind': 'flash', 'operation': '%s', 'torn': %s, 'count': %d}", operations[_i / 2], _i % 2 ? "true" : "false", count);
     if (_i / 2 == 2) {
         ck_assert_str_ne(found_after_reset(), "old"); /* it could not be read */
-        ck_assert_uint_eq(rig.sim.faults.fault[0].acted, 1);
+        ck_assert_uint_eq(rig.sim.faults.fault[0].acted, 2);
         ck_assert_str_eq(found_after_reset(), "old");
     } else {
         ck_assert_uint_eq(answers_to(1, STORE, 2), 1);
         ck_assert_uint_ne(answer_byte(2), 0);
         ck_assert_str_ne(found_after_reset(), "mixed");
     }
+    rig_end();
+}
+END_TEST
+
+START_TEST(U5_a_read_that_fails_once_is_tried_again)
+{
+    begin();
+    inject("{'kind': 'flash', 'operation': 'read', 'count': 1}");
+    ck_assert_str_eq(found_after_reset(), "old");
+    ck_assert_uint_eq(rig.sim.faults.fault[0].acted, 1);
     rig_end();
 }
 END_TEST
@@ -259,6 +270,7 @@ int main(void)
     TCase *flash = tcase_create("flash"), *power = tcase_create("power"), *input = tcase_create("input");
     tcase_add_test(flash, P6_a_write_to_flash_that_fails_is_an_error_in_the_answer);
     tcase_add_loop_test(flash, any_operation_of_the_flash_may_fail_by_itself, 0, 6);
+    tcase_add_test(flash, U5_a_read_that_fails_once_is_tried_again);
     tcase_add_test(flash, the_flash_of_another_unit_does_not_suffer);
     tcase_add_test(power, P6_power_lost_at_any_operation_leaves_the_old_program_or_the_new_one);
     tcase_add_test(power, power_that_goes_may_come_back_by_itself);

@@ -274,6 +274,28 @@ START_TEST(P6_a_read_that_fails_once_costs_at_most_the_store)
 }
 END_TEST
 
+START_TEST(P6_a_read_that_fails_once_and_a_power_cut_in_the_same_store_leave_the_old_or_the_new_program)
+{
+    prepare(2, ONE, 1);
+    ck_assert_int_eq(save(2, &programs[FULL]), 0);
+    struct flash_fake before = flash;
+    unsigned operations = operations_of(2, SHORT);
+    for (unsigned read = 1; read <= 90; read++) { /* all that look for the newest record */
+        for (unsigned n = 1; n <= operations; n++) {
+            flash = before;
+            flash_fake_arm(&flash, n, FLASH_CUT_AFTER, 0);
+            flash_fake_arm_read(&flash, read);
+            save(2, &programs[SHORT]);
+            flash_fake_power_on(&flash);
+            struct rkm04_program found;
+            load(2, &found);
+            ck_assert_msg(same(&found, &programs[FULL]) || same(&found, &programs[SHORT]),
+                          "read %u fails, cut after operation %u: %u commands of neither", read, n, program_count(&found));
+        }
+    }
+}
+END_TEST
+
 START_TEST(U5_a_read_that_fails_once_at_power_up_costs_at_most_the_newest_program)
 {
     ck_assert_int_eq(save(3, &programs[SHORT]), 0);
@@ -322,6 +344,7 @@ static Suite *store_suite(void)
     tcase_add_test(power, P6_a_power_cut_in_the_store_after_a_power_cut_leaves_the_old_program);
     tcase_add_test(power, P6_through_any_sequence_of_stores_and_power_cuts_the_slots_hold_what_they_held_or_were_given);
     tcase_add_test(power, P6_a_read_that_fails_once_costs_at_most_the_store);
+    tcase_add_test(power, P6_a_read_that_fails_once_and_a_power_cut_in_the_same_store_leave_the_old_or_the_new_program);
     tcase_add_test(power, U5_a_read_that_fails_once_at_power_up_costs_at_most_the_newest_program);
     tcase_add_test(power, U5_a_flash_that_cannot_be_read_is_reported_and_gives_an_empty_program);
     return suite;
