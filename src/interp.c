@@ -40,12 +40,6 @@ static void clear_stacks(struct rkm04_motor *motor)
     motor->calls = 0;
 }
 
-static void forget_fresh(struct rkm04_motor *motor)
-{
-    motor->fresh = RKM04_NEVER;
-    motor->hold_fresh = false;
-}
-
 void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     bool busy = interp_index(motor) != 0;
@@ -54,21 +48,16 @@ void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
     program_clear(&motor->program);
     clear_stacks(motor);
     motor->next = 0;
-    motor->number = 0;
-    forget_fresh(motor);
+    motor->fresh = RKM04_NEVER;
     motor->wake = RKM04_NEVER;
     motor->state = RKM04_IDLE;
-    motor->held = RKM04_READY;
     motor->resume = false;
     motor->pendings = 0;
-    motor->change_speed = 0;
     motor->start_speed = 100; /* U8 */
     motor->speed = 1000;
     motor->acceleration = 2000;
-    motor->forward = true;
-    motor->count = 0;
+    motor->count = 0; /* a direction comes with F, B or G */
     motor->segments = 0;
-    motor->segments_bad = false;
     motor->functions = 0;
     motor->keep = false;
     motor->guard_m = motor->guard_n = motor->guard_x = 0;
@@ -90,7 +79,6 @@ static void take_fresh(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->resume = false;
     motor->state = motor->hold_fresh ? RKM04_HELD : RKM04_READY;
     motor->held = RKM04_READY;
-    motor->hold_fresh = false;
     motor->due = motion_free_from(unit, motor);
 }
 
@@ -124,7 +112,6 @@ static bool ends_with_fresh(const struct rkm04_motor *motor)
 
 void interp_stored(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
 {
-    unit->touched = true;
     if (ends_with_fresh(motor) && (motor->fresh == RKM04_NEVER || motor->hold_fresh)) {
         motor->fresh = first;
         motor->hold_fresh = false;
@@ -137,32 +124,28 @@ void interp_stored(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t 
     }
 }
 
-void interp_request(struct rkm04_unit *unit, struct rkm04_motor *motor, char request)
+void interp_request(struct rkm04_motor *motor, char request)
 {
     unsigned n = motor->pendings;
-    unit->touched = true;
     if (motor->fresh != RKM04_NEVER) { /* it is about the new commands, which wait for the end of the ramp or for the slot */
         motor->hold_fresh = request == 'K';
         return;
     }
-    if (request == 'K' && n == 0 && !has_work(motor)) /* nothing to hold, whatever arrives behind it */
+    if (request == 'K' && !has_work(motor)) /* nothing to hold, whatever arrives behind it */
         return;
     if (n > 0 && motor->pending[n - 1] == request)
         return;
     if (n > 1 && request == 'K') { /* K C75 K is the same as K */
         motor->pendings--;
-        if (motor->change_after > motor->pendings)
-            motor->change_after = motor->pendings;
         return;
     }
     motor->pending[motor->pendings++] = request;
 }
 
-bool interp_change_speed(struct rkm04_unit *unit, struct rkm04_motor *motor, uint16_t speed)
+bool interp_change_speed(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint16_t speed)
 {
     if (!motor->motion.moving)
         return false;
-    unit->touched = true;
     if (motor->change_speed == 0) {
         motor->change_due = unit->now + (uint64_t)unit->config.speed_change_latency * 1000;
         motor->change_after = motor->pendings;
@@ -177,10 +160,8 @@ static void look_at_total_stop(struct rkm04_unit *unit, struct rkm04_motor *moto
 {
     if (motor->guard_x == 0 || !input_is_high(unit, motor->guard_x) || !has_work(motor))
         return;
-    if (motor->state == RKM04_MOVING && motor->after == RKM04_AFTER_END)
-        return;
     motor->guard_x = 0;
-    forget_fresh(motor);
+    motor->fresh = RKM04_NEVER;
     motor->resume = false;
     if (motor->state != RKM04_MOVING) {
         motor->motion.kind = RKM04_MOTION_NONE;
@@ -198,7 +179,6 @@ static void look_at_total_stop(struct rkm04_unit *unit, struct rkm04_motor *moto
 static void act_on_halt(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     motor->resume = false;
-    motor->change_speed = 0;
     switch ((enum rkm04_state)motor->state) {
     case RKM04_READY:
         if (motor->next == motor->program.written)
@@ -233,24 +213,25 @@ static void act_on_change(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->change_speed = 0;
 }
 
+static bool is_to_hold(const struct rkm04_motor *motor)
+{
+    return motor->state == RKM04_HELD ||
+           (motor->state == RKM04_MOVING && (motor->after == RKM04_AFTER_HOLD_REST || motor->after == RKM04_AFTER_HOLD_NEXT));
+}
+
 static void act_on_requests(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
-    unsigned count = motor->pendings;
-    motor->pendings = 0;
-    for (unsigned i = 0; i <= count; i++) {
-        if (i == (motor->change_after < count ? motor->change_after : count))
+    for (unsigned i = 0; i < motor->pendings; i++) {
+        if (i == motor->change_after)
             act_on_change(unit, motor);
-        if (i == count)
-            break;
         if (motor->pending[i] == 'K')
             act_on_halt(unit, motor);
-        else if (motor->state == RKM04_HELD || (motor->state == RKM04_MOVING && (motor->after == RKM04_AFTER_HOLD_REST ||
-                                                                                motor->after == RKM04_AFTER_HOLD_NEXT)))
+        else if (is_to_hold(motor))
             motor->resume = true;
     }
+    act_on_change(unit, motor);
+    motor->pendings = 0;
     motor->change_after = 0;
-    if (count > 0 && !ends_with_fresh(motor))
-        forget_fresh(motor);
 }
 
 static bool stands_still(const struct rkm04_motor *motor)
@@ -261,7 +242,9 @@ static bool stands_still(const struct rkm04_motor *motor)
 /* A held motor goes on: with what it was doing after C75, or with new commands, which also end X and faults. */
 static void look_at_hold(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
-    if (stands_still(motor) && motor->fresh != RKM04_NEVER)
+    if (!stands_still(motor))
+        return;
+    if (motor->fresh != RKM04_NEVER)
         take_fresh(unit, motor);
     if (motor->state != RKM04_HELD || !motor->resume || motion_free_from(unit, motor) > unit->now)
         return;
@@ -271,8 +254,6 @@ static void look_at_hold(struct rkm04_unit *unit, struct rkm04_motor *motor)
         motion_resume(unit, motor);
     else if (motor->held == RKM04_DWELL)
         motor->due += unit->now;
-    else
-        motor->due = unit->now;
 }
 
 /* ---- The turn ----------------------------------------------------------------------------------------------------------- */
@@ -293,9 +274,13 @@ static void execute_next(struct rkm04_unit *unit, struct rkm04_motor *motor)
     }
     motor->number = motor->next++;
     motor->command = program_at(&motor->program, motor->number);
-    motor->due = unit->now + RKM04_SLOT_TICKS;
     report_event(unit, motor, unit->now, RKM04_EVENT_COMMAND, program_place(motor->number));
     execute_command(unit, motor);
+}
+
+static uint64_t later(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
 }
 
 /* The slot in which the next turn is needed if nothing comes in from outside. */
@@ -305,16 +290,18 @@ static uint64_t next_turn(const struct rkm04_unit *unit, const struct rkm04_moto
     switch ((enum rkm04_state)motor->state) {
     case RKM04_READY:
     case RKM04_DWELL:
-        return interp_slot(motor->due > unit->now ? motor->due : unit->now + 1);
+        return interp_slot(later(motor->due, unit->now + 1));
     case RKM04_HELD:
     case RKM04_ENDED:
     case RKM04_FAULTY:
-        return motor->resume || motor->fresh != RKM04_NEVER ? interp_slot(motion_free_from(unit, motor)) : RKM04_NEVER;
+        if (!motor->resume && motor->fresh == RKM04_NEVER)
+            return RKM04_NEVER;
+        return interp_slot(later(motion_free_from(unit, motor), unit->now + 1));
     case RKM04_MOVING:
         quiet = ramp_quiet_until(&motor->motion.ramp);
         if (motor->change_speed != 0 && motor->change_due < quiet)
             quiet = motor->change_due;
-        return interp_slot(quiet > unit->now ? quiet : unit->now + 1);
+        return interp_slot(later(quiet, unit->now + 1));
     default:
         return RKM04_NEVER;
     }
@@ -326,6 +313,7 @@ void interp_turn(struct rkm04_unit *unit, struct rkm04_motor *motor)
     look_at_hold(unit, motor);
     look_at_total_stop(unit, motor);
     motion_look_at_inputs(unit, motor);
+    look_at_hold(unit, motor); /* an input may have ended the last steps before it */
     if (motor->state == RKM04_DWELL && unit->now >= motor->due)
         motor->state = RKM04_READY;
     if ((motor->state == RKM04_WAIT || motor->state == RKM04_BLOCK) && execute_wait_is_over(unit, motor)) {

@@ -7,14 +7,16 @@
 /* `\`: the motor's start values; program, stacks, guards, table, functions, motion are gone (C1). */
 void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
-/* Commands from number `first` on have been appended to the program: go there, or end a hold with them (C2, C3). */
+/* The calls about what arrives leave it to the caller to see to it that the next slot has a turn (unit->touched).
+ *
+ * Commands from number `first` on have been appended to the program: go there, or end a hold with them (C2, C3). */
 void interp_stored(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first);
 
 /* K ('K') or C75 ('C') has arrived; it acts in the next slot (C3). */
-void interp_request(struct rkm04_unit *unit, struct rkm04_motor *motor, char request);
+void interp_request(struct rkm04_motor *motor, char request);
 
 /* A stand-alone V has arrived. Returns false if it is an ordinary command: no motion in progress (C4). */
-bool interp_change_speed(struct rkm04_unit *unit, struct rkm04_motor *motor, uint16_t speed);
+bool interp_change_speed(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint16_t speed);
 
 /* The motor's turn in the slot unit->now. */
 void interp_turn(struct rkm04_unit *unit, struct rkm04_motor *motor);

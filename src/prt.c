@@ -88,7 +88,7 @@ static enum flag store_text(struct rkm04_unit *unit, struct rkm04_motor *motor, 
 static enum flag obey_text(struct rkm04_unit *unit, struct rkm04_motor *motor, const struct text *text)
 {
     if (text->commands == 1 && is_request(text->sole)) {
-        interp_request(unit, motor, (char)text->sole.op);
+        interp_request(motor, (char)text->sole.op);
         return FLAG_RIGHT;
     }
     if (text->commands == 1 && text->sole.op == 'V' && interp_change_speed(unit, motor, (uint16_t)text->sole.argument))

@@ -30,8 +30,10 @@ void rkm04_init(struct rkm04_unit *unit, const struct rkm04_config *config, cons
         motor->motion.ramp.next = RKM04_NEVER;
         interp_reset(unit, motor);
         motor->slot = (uint8_t)store_load(port, context, i + 1, &motor->program);
-        if (motor->program.written > 0)
+        if (motor->program.written > 0) {
             interp_stored(unit, motor, 0);
+            unit->touched = true;
+        }
     }
 }
 

@@ -112,11 +112,11 @@ static const struct {
     uint32_t position;
     uint64_t most;
 } leaps[] = {
-    {"\\ S100 V16000 A20000 G+", 1, 1382393615, 3917},
+    {"\\ S100 V16000 A20000 G+", 1, 1382393615, 3998},
     {"\\ S1 V16000 A1 G+", 100, 673062463, 1283153}, /* past 2^32 steps */
     {"\\ S1 V16000 A1 F16000000 R", 1, 16000000, 9935}, /* ramps of hours */
     {"\\ T55 S100 V16000 A20000 F16000000 YYYYYYYYYY R", 1, 160000000, 36101}, /* an output at its last border */
-    {"\\ S1 V1 =-2000000000 G2000000000", 50000, 2000000000, 2611},
+    {"\\ S1 V1 =-2000000000 G2000000000", 50000, 2000000000, 2709},
 };
 
 START_TEST(K3_pulses_that_nobody_sees_cost_nothing_each)
@@ -136,7 +136,7 @@ END_TEST
 static const struct {
     const char *text;
     uint64_t most; /* in an hour */
-} waits[] = {{"\\", 102}, {"\\ X01 M02 O03", 102}, {"\\ W3000000", 361}};
+} waits[] = {{"\\", 102}, {"\\ X01 M02 O03", 102}, {"\\ W3000000", 377}};
 
 START_TEST(K3_an_hour_of_waiting_costs_no_more_than_a_slot)
 {
