@@ -247,7 +247,7 @@ void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t lim
     struct rkm04_motion *motion = &motor->motion;
     while (motion->ramp.next <= limit && room_before_mark(motion) > 0) {
         if (!pulses_are_seen(unit))
-            count_pulses(motor, ramp_skip(&motion->ramp, &motion->profile, limit, room_before_mark(motion)));
+            count_pulses(motor, ramp_skip(&motion->ramp, limit, room_before_mark(motion)));
         run_pulses(unit, motor, limit, room_before_mark(motion));
     }
 }

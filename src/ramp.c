@@ -58,7 +58,8 @@ static struct rkm04_instant after_slope(struct rkm04_instant start, struct rkm04
     return later(start, (uint64_t)change.whole / divisor, places);
 }
 
-/* Ticks that the way from `from` to `to` takes at a constant speed in steps/s. */
+/* Ticks that the way from `from` to `to` takes at a constant speed in steps/s, up to 2^-76 of a tick less: whatever begins
+ * there must not come late. */
 static struct rkm04_instant after_way(struct rkm04_instant start, struct rkm04_place from, struct rkm04_place to, uint32_t speed)
 {
     struct wide way = wide_difference((struct wide){to.high, to.low}, (struct wide){from.high, from.low});
@@ -67,9 +68,6 @@ static struct rkm04_instant after_way(struct rkm04_instant start, struct rkm04_p
     /* share * 1e6 has 96 places and up to 148 bits: take it apart at bit 96 of 192. */
     struct wide low = wide_product(share.low, RKM04_TICKS_PER_SECOND);
     struct wide high = wide_sum(wide_product(share.high, RKM04_TICKS_PER_SECOND), (struct wide){0, low.high});
-    low.low += rest * RKM04_TICKS_PER_SECOND / speed;
-    if (low.low < rest * RKM04_TICKS_PER_SECOND / speed)
-        high = wide_sum(high, (struct wide){0, 1});
     uint64_t ticks = high.high << 32 | high.low >> 32;
     return later(start, ticks, (struct wide){high.low << 32 | low.low >> 32, low.low << 32});
 }
@@ -93,8 +91,7 @@ struct rkm04_fixed ramp_w(uint64_t speed2, bool *exact)
 static struct rkm04_fixed y_of_part(struct rkm04_place place)
 {
     struct wide places = {place.high << 32 | place.low >> 32, place.low << 32};
-    struct rkm04_fixed y = scaled((uint64_t)RAMP_STEP, places);
-    return places.high | places.low ? sum(y, ROUND_UP) : y;
+    return sum(scaled((uint64_t)RAMP_STEP, places), ROUND_UP);
 }
 
 static bool leg_is_open(const struct rkm04_profile *profile)
@@ -142,53 +139,35 @@ static void reckon_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, s
     struct rkm04_fixed y = y_of_part(place);
     y.whole = (int64_t)((uint64_t)y.whole + (uint64_t)RAMP_STEP * (ramp->left - UINT64_C(1)));
     ramp->y = difference(y, way);
-    ramp->w = w_whole;
-    if (places.high | places.low)
-        ramp->w = sum(sum(w_whole, scaled(2 * fall, places)), LAST_PLACE);
+    ramp->w = sum(sum(w_whole, scaled(2 * fall, places)), LAST_PLACE);
 }
 
 struct motion_state {
     struct rkm04_fixed y, w;
 };
 
-/* d >= 0 ticks on along a slope. */
+/* d ticks on along a slope, or back if d < 0. */
 static inline struct motion_state moved(struct rkm04_fixed y, struct rkm04_fixed w, int64_t slope, int64_t d)
 {
     int64_t half = slope * d;
     struct wide part = wide_product(w.part, (uint64_t)d);
-    struct rkm04_fixed way = {d * (w.whole + half) + (int64_t)part.high, part.low};
+    uint64_t whole = d < 0 ? part.high - w.part : part.high; /* (uint64_t)d is 2^64 more than d */
+    struct rkm04_fixed way = {d * (w.whole + half) + (int64_t)whole, part.low};
     return (struct motion_state){sum(y, way), {w.whole + 2 * half, w.part}};
 }
 
-/* d ticks back. */
-static struct motion_state moved_back(struct rkm04_fixed y, struct rkm04_fixed w, int64_t slope, int64_t d)
-{
-    struct motion_state then = {y, {w.whole - 2 * slope * d, w.part}};
-    struct wide part = wide_product(w.part, (uint64_t)d);
-    struct rkm04_fixed way = {d * (w.whole - slope * d) + (int64_t)part.high, part.low};
-    then.y = difference(y, way);
-    return then;
-}
-
 /* Roughly how many ticks until y >= 0, by Newton's rule on whole numbers: from above on a rising leg, from below on a
- * falling one, so that it never passes the vertex. */
+ * falling one. It goes one way only and so comes to an end, without passing the vertex. */
 static int64_t guess_ticks(int64_t y, int64_t w, int64_t slope)
 {
-    int64_t d = -y / w;
-    for (int i = 0; i < 64; i++) {
-        int64_t speed = w + 2 * slope * d;
-        if (speed <= 0)
-            break;
-        int64_t change = (y + d * (w + slope * d)) / speed;
-        if (change == 0)
-            break;
-        d -= change;
-    }
+    int64_t d = -y / w, change = 1;
+    for (int64_t speed; change != 0 && (speed = w + 2 * slope * d) > 0; d -= change)
+        change = (y + d * (w + slope * d)) / speed;
     return d;
 }
 
-/* Settle on the first tick with y >= 0, at most `back` ticks before the present one. Returns how many ticks on. */
-static int64_t settle(struct motion_state *state, int64_t slope, int64_t back)
+/* Settle on the first tick with y >= 0. Returns how many ticks on. */
+static int64_t settle(struct motion_state *state, int64_t slope)
 {
     int64_t d = 0;
     while (state->y.whole < 0 && state->w.whole + slope > 0) {
@@ -196,15 +175,14 @@ static int64_t settle(struct motion_state *state, int64_t slope, int64_t back)
         state->w.whole += 2 * slope;
         d++;
     }
-    while (d > -back) {
+    for (;;) {
         struct rkm04_fixed way = {state->w.whole - slope, state->w.part};
         if (below(state->y, way))
-            break;
+            return d;
         state->y = difference(state->y, way);
         state->w.whole -= 2 * slope;
         d--;
     }
-    return d;
 }
 
 /* `next`, *d ticks after the pulse at `now`, is not where the next one is due: find it. */
@@ -215,17 +193,17 @@ static struct motion_state settled(struct motion_state now, struct motion_state 
         *d = guess_ticks(now.y.whole, now.w.whole, slope);
         next = moved(now.y, now.w, slope, *d);
     }
-    *d += settle(&next, slope, *d - 1);
+    *d += settle(&next, slope);
     return next;
 }
 
 /* The leg's first pulse: from ramp->at to the tick at which it is due, which may be ramp->at itself. */
 static void find_first(struct rkm04_ramp *ramp)
 {
-    if (ramp->y.whole < 0 && ramp->w.whole > 0) {
+    if (ramp->y.whole < 0) {
         int64_t d = guess_ticks(ramp->y.whole, ramp->w.whole, ramp->slope);
         struct motion_state first = moved(ramp->y, ramp->w, ramp->slope, d);
-        d += settle(&first, ramp->slope, d);
+        d += settle(&first, ramp->slope);
         ramp->y = first.y;
         ramp->w = first.w;
         ramp->at += (uint64_t)d;
@@ -249,7 +227,7 @@ static void set_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile
 {
     const struct rkm04_break *from = &profile->point[profile->leg], *to = from + 1;
     if (leg_is_open(profile)) {
-        ramp->end = (struct rkm04_instant){RKM04_NEVER, 0, 0};
+        ramp->end.tick = RKM04_NEVER;
         ramp->left = UINT32_MAX;
         return;
     }
@@ -285,11 +263,7 @@ void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, ui
 
 void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
 {
-    struct motion_state then;
-    if (tick < ramp->at)
-        then = moved_back(ramp->y, ramp->w, ramp->slope, (int64_t)(ramp->at - tick));
-    else
-        then = moved(ramp->y, ramp->w, ramp->slope, (int64_t)(tick - ramp->at));
+    struct motion_state then = moved(ramp->y, ramp->w, ramp->slope, (int64_t)(tick - ramp->at));
     *y = then.y;
     *w = then.w;
 }
@@ -311,9 +285,7 @@ void ramp_go_on(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t
 uint64_t ramp_quiet_until(const struct rkm04_ramp *ramp)
 {
     const uint64_t margin = 4; /* more than any rounding of a leg's end */
-    if (ramp->end.tick == RKM04_NEVER)
-        return RKM04_NEVER;
-    return ramp->end.tick > margin ? ramp->end.tick - margin : 0;
+    return ramp->end.tick - margin;
 }
 
 /* ---- Pulses ------------------------------------------------------------------------------------------------------- */
@@ -361,15 +333,14 @@ static inline struct stride stride_of(const struct rkm04_ramp *ramp)
     return stride;
 }
 
-/* The interval turned out to be `ticks`. While it hardly changes, the guess is the shorter one of two that take turns; at low
- * speed it is what the last change leads to. */
+/* The interval turned out to be `ticks`. At low speed, where it still changes much, the guess is what the last change leads
+ * to. */
 static void learn(struct rkm04_ramp *ramp, int64_t ticks)
 {
     const int64_t noise = 2;
     int64_t change = ticks - ramp->interval;
-    bool steady = change <= noise && change >= -noise;
-    ramp->interval = (int32_t)(steady && change > 0 ? ticks - 1 : ticks);
-    ramp->change = steady ? 0 : (int32_t)change;
+    ramp->interval = (int32_t)ticks;
+    ramp->change = change <= noise && change >= -noise ? 0 : (int32_t)change;
 }
 
 /* Rising or falling speed: a guess, corrected to the tick. */
@@ -436,9 +407,9 @@ size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint6
 
 /* As moved(), for a way of any length. */
 struct leap {
-    uint64_t steps;       /* passed, the next one included */
-    int64_t half;         /* slope * ticks */
-    struct rkm04_fixed y; /* behind them */
+    uint64_t ticks, steps; /* passed, the next one included */
+    struct rkm04_fixed y;  /* behind them */
+    int64_t w;
 };
 
 static struct leap leap_of(const struct rkm04_ramp *ramp, uint64_t ticks)
@@ -448,32 +419,22 @@ static struct leap leap_of(const struct rkm04_ramp *ramp, uint64_t ticks)
     struct rkm04_fixed rest = sum(ramp->y, (struct rkm04_fixed){(int64_t)part.high, part.low});
     struct wide way = wide_sum(wide_product((uint64_t)(ramp->w.whole + half), ticks), (struct wide){0, (uint64_t)rest.whole});
     uint64_t y, steps = wide_divide(way, RAMP_STEP, &y);
-    return (struct leap){steps + 1, half, {(int64_t)y - RAMP_STEP, rest.part}};
+    return (struct leap){ticks, steps + 1, {(int64_t)y - RAMP_STEP, rest.part}, ramp->w.whole + 2 * half};
 }
 
-uint32_t ramp_skip(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t limit, uint32_t most)
+uint32_t ramp_skip(struct rkm04_ramp *ramp, uint64_t limit, uint32_t most)
 {
-    const uint32_t worth = 64;
-    if (ramp->left < worth || most < worth || ramp->next > limit)
+    const uint64_t worth = 64, interval = (uint64_t)ramp->interval;
+    uint64_t ticks = (ramp->end.tick < limit ? ramp->end.tick : limit) - ramp->at;
+    if (ramp->left < worth || most < worth || ticks < worth * interval)
         return 0;
-    bool exact = true; /* not asked for here */
-    int64_t slowest = ramp->w.whole;
-    if (ramp->slope < 0)
-        slowest = ramp_w(profile->point[profile->leg + 1].speed2, &exact).whole;
-    uint64_t longest = (uint64_t)(RAMP_STEP / slowest) + 1, stop = ramp->end.tick < limit ? ramp->end.tick : limit;
-    if (stop < ramp->at + 4 * longest)
-        return 0;
-    uint64_t ticks = stop - 2 * longest - ramp->at;
     struct leap leap = leap_of(ramp, ticks);
-    while (leap.steps >= ramp->left || leap.steps > most) { /* rare: an end of another kind comes first */
-        ticks /= 2;
-        if (ticks < longest)
-            return 0;
+    const uint64_t due = leap.steps;
+    for (ticks -= 4 * interval; leap.steps == due || leap.steps >= ramp->left || leap.steps > most; ticks /= 2)
         leap = leap_of(ramp, ticks);
-    }
     ramp->y = leap.y;
-    ramp->w.whole += 2 * leap.half;
-    ramp->at += ticks;
+    ramp->w.whole = leap.w;
+    ramp->at += leap.ticks;
     ramp->left -= (uint32_t)leap.steps;
     find_first(ramp);
     return (uint32_t)leap.steps;

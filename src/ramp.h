@@ -34,10 +34,10 @@ void ramp_go_on(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t
  * Returns their number; fewer than `room` means there are no more up to `limit`. */
 size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t limit, uint64_t *tick, size_t room);
 
-/* Pass over pulses that nobody wants to see one by one: most of those of the present leg that are due up to `limit`, but not
- * more than `most`. The last ones up to `limit` and of the leg are left for ramp_pulses(). A bounded number of operations,
- * whatever the number of pulses. Returns how many were passed over; 0: too few to be worth it. */
-uint32_t ramp_skip(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t limit, uint32_t most);
+/* Pass over pulses that nobody wants to see one by one: most of those of the present leg that are due up to `limit`, which the
+ * next one is, but not more than `most`. At least one of those due up to `limit` is left for ramp_pulses(). The number of
+ * operations grows with the logarithm of the number of pulses. Returns how many were passed over; 0: not worth it. */
+uint32_t ramp_skip(struct rkm04_ramp *ramp, uint64_t limit, uint32_t most);
 
 /* y and w at `tick`; the tick must lie within the present leg. */
 void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w);

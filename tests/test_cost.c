@@ -112,11 +112,11 @@ static const struct {
     uint32_t position;
     uint64_t most;
 } leaps[] = {
-    {"\\ S100 V16000 A20000 G+", 1, 1382393615, 3998},
-    {"\\ S1 V16000 A1 G+", 100, 673062463, 1283153}, /* past 2^32 steps */
-    {"\\ S1 V16000 A1 F16000000 R", 1, 16000000, 9935}, /* ramps of hours */
-    {"\\ T55 S100 V16000 A20000 F16000000 YYYYYYYYYY R", 1, 160000000, 36101}, /* an output at its last border */
-    {"\\ S1 V1 =-2000000000 G2000000000", 50000, 2000000000, 2709},
+    {"\\ S100 V16000 A20000 G+", 1, 1382393615, 4556},
+    {"\\ S1 V16000 A1 G+", 100, 673062463, 1356384}, /* past 2^32 steps */
+    {"\\ S1 V16000 A1 F16000000 R", 1, 16000000, 30567}, /* ramps of hours */
+    {"\\ T55 S100 V16000 A20000 F16000000 YYYYYYYYYY R", 1, 160000000, 45701}, /* an output at its last border */
+    {"\\ S1 V1 =-2000000000 G2000000000", 50000, 2000000000, 2884},
 };
 
 START_TEST(K3_pulses_that_nobody_sees_cost_nothing_each)
