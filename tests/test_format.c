@@ -26,6 +26,14 @@ START_TEST(P8_canonical_text_has_two_digits_for_bits_and_no_leading_zeros_elsewh
 }
 END_TEST
 
+START_TEST(P8_what_is_no_command_has_its_character_for_a_text)
+{
+    char text[RKM04_COMMAND_TEXT_MAX];
+    ck_assert_uint_eq(rkm04_format((struct rkm04_command){'q', 5}, text), 1);
+    ck_assert_int_eq(text[0], 'q');
+}
+END_TEST
+
 START_TEST(P8_canonical_text_is_that_of_the_number)
 {
     const struct limits *row = &numbers[_i];
@@ -283,6 +291,7 @@ static Suite *format_suite(void)
     Suite *suite = suite_create("format");
     TCase *canonical = tcase_create("canonical");
     tcase_set_timeout(canonical, 60);
+    tcase_add_test(canonical, P8_what_is_no_command_has_its_character_for_a_text);
     tcase_add_test(canonical, P8_canonical_text_has_two_digits_for_bits_and_no_leading_zeros_elsewhere);
     tcase_add_loop_test(canonical, P8_canonical_text_is_that_of_the_number, 0, NUMBER_ROWS);
     tcase_add_test(canonical, P8_exactly_the_commands_that_can_be_read_are_valid);

@@ -345,6 +345,9 @@ START_TEST(S5_reading_goes_on_behind_an_error_to_find_the_others)
     ck_assert_reads("F\"1", "!0:1 '1");
     ck_assert_reads("Fx100R", "!0:1 R");
     ck_assert_reads("=+5R", "!0:1 R");
+    ck_assert_reads("F0+5R", "!0:1 R");
+    ck_assert_reads("F0-5R", "!0:1 R");
+    ck_assert_reads("F  0R", "!0:3 R");
     ck_assert_reads("qR", "?0 R");
     ck_assert_reads("ab", "?0 ?1");
     ck_assert_reads("12 34", "?0 ?3");
