@@ -168,6 +168,15 @@ START_TEST(C6_X_on_the_ramp_of_a_hold_ends_the_C75_that_was_remembered)
 }
 END_TEST
 
+START_TEST(K3_a_unit_without_programs_has_nothing_to_do)
+{
+    ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
+    rig_accept(&rig, '1', "W5");
+    rig_to(&rig, 100 * MS);
+    ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
+}
+END_TEST
+
 /* ---- What is told ---- */
 
 static size_t events_of(enum rkm04_event what)
@@ -231,6 +240,7 @@ static Suite *interp_order_suite(void)
     tcase_add_test(slot, C4_a_change_that_is_due_in_the_slot_of_a_K_came_first);
     tcase_add_test(slot, C6_X_on_the_ramp_of_a_hold_ends_the_commands_that_were_to_follow_it);
     tcase_add_test(slot, C6_X_on_the_ramp_of_a_hold_ends_the_C75_that_was_remembered);
+    tcase_add_test(slot, K3_a_unit_without_programs_has_nothing_to_do);
     suite_add_tcase(suite, slot);
 
     TCase *told = tcase_create("told");

@@ -94,6 +94,21 @@ START_TEST(K3_pulses_nobody_sees_lead_to_the_same_positions_at_the_same_ticks)
 }
 END_TEST
 
+START_TEST(R7_the_last_pulse_counts_although_nobody_saw_it)
+{
+    /* 66 2/3 us from pulse to pulse: in some of these slots the last one is less than 10 us ago. */
+    for (uint64_t slot = 100000; slot < 140000; slot += RKM04_SLOT_TICKS) {
+        power_up();
+        both_set("\\ S15000 V15000 G+");
+        both_advance(slot);
+        both_set("\\ T01");
+        both_advance(1);
+        both_advance(RKM04_SLOT_TICKS);
+        ck_assert_uint_eq(rkm04_outputs(&unseen), 1);
+    }
+}
+END_TEST
+
 START_TEST(U3_the_longest_motion_ends_at_the_tick_of_its_closed_form_without_a_sink)
 {
     /* 4 000 000 000 steps of one second each: 126 years. G is the fourth command: it begins at tick 4000. */
@@ -165,6 +180,7 @@ int main(void)
     TCase *one = tcase_create("pulses that nobody sees");
     tcase_set_timeout(one, 200);
     tcase_add_loop_test(one, K3_pulses_nobody_sees_lead_to_the_same_positions_at_the_same_ticks, 0, 40);
+    tcase_add_test(one, R7_the_last_pulse_counts_although_nobody_saw_it);
     tcase_add_test(one, U3_the_longest_motion_ends_at_the_tick_of_its_closed_form_without_a_sink);
     tcase_add_test(one, P9_an_endless_motion_goes_on_past_2_to_the_32_steps);
     tcase_add_test(one, C12_an_output_comes_on_at_its_pulse_however_many_are_passed_over);
