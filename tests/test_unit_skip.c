@@ -96,10 +96,10 @@ END_TEST
 
 START_TEST(R7_the_last_pulse_counts_although_nobody_saw_it)
 {
-    /* 66 2/3 us from pulse to pulse: in some of these slots the last one is less than 10 us ago. */
+    /* 66.2 us from pulse to pulse: in some of these slots the last one is less than 10 us ago. */
     for (uint64_t slot = 400000; slot < 440000; slot += RKM04_SLOT_TICKS) {
         power_up();
-        both_set("\\ S2000 V15000 A60000 G+");
+        both_set("\\ S2000 V15100 A60000 G+");
         both_advance(slot);
         both_set("\\ T01");
         both_advance(1);
