@@ -260,8 +260,11 @@ static bool is_blank(const char *line, size_t length)
 /* Deal with one line. Returns false if there is none that could be obeyed now. */
 static bool serve_line(struct peer *peer)
 {
-    const char *begin = peer->in.byte + peer->in.at;
-    const char *end = held(&peer->in) > peer->looked ? memchr(begin + peer->looked, '\n', held(&peer->in) - peer->looked) : NULL;
+    const char *begin = NULL, *end = NULL;
+    if (held(&peer->in) > peer->looked) { /* otherwise there may be no buffer either */
+        begin = peer->in.byte + peer->in.at;
+        end = memchr(begin + peer->looked, '\n', held(&peer->in) - peer->looked);
+    }
     if (!end) {
         look_at_part(peer);
         return false;
