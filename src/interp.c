@@ -110,7 +110,7 @@ static bool ends_with_fresh(const struct rkm04_motor *motor)
     return !motor->resume && (motor->state == RKM04_HELD || (moving && motor->after != RKM04_AFTER_GO_ON));
 }
 
-void interp_stored(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
+void interp_stored(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
 {
     if (ends_with_fresh(motor) && (motor->fresh == RKM04_NEVER || motor->hold_fresh)) {
         motor->fresh = first;
@@ -180,13 +180,10 @@ static void act_on_halt(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     motor->resume = false;
     switch ((enum rkm04_state)motor->state) {
-    case RKM04_READY:
-        if (motor->next == motor->program.written)
-            return;
-        break;
     case RKM04_DWELL:
         motor->due -= unit->now;
         break;
+    case RKM04_READY:
     case RKM04_WAIT:
     case RKM04_BLOCK:
         break;

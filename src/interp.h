@@ -7,10 +7,10 @@
 /* `\`: the motor's start values; program, stacks, guards, table, functions, motion are gone (C1). */
 void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
-/* The calls about what arrives leave it to the caller to see to it that the next slot has a turn (unit->touched).
- *
- * Commands from number `first` on have been appended to the program: go there, or end a hold with them (C2, C3). */
-void interp_stored(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first);
+/* What arrives: the caller sees to it that the next slot has a turn (unit->touched). */
+
+/* Commands from number `first` on have been appended to the program: go there, or end a hold with them (C2, C3). */
+void interp_stored(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first);
 
 /* K ('K') or C75 ('C') has arrived; it acts in the next slot (C3). */
 void interp_request(struct rkm04_motor *motor, char request);

@@ -69,7 +69,7 @@ static const struct sequence full[] = {
 
 START_TEST(P6_a_power_cut_at_any_operation_of_a_store_leaves_the_old_or_the_new_program)
 {
-    cut_everywhere(&sound[_i], power_long() ? 500 : 4, 1);
+    cut_everywhere(&sound[_i], power_long() ? 600 : 4, 1);
 }
 END_TEST
 
