@@ -26,12 +26,12 @@ static uint16_t slower(uint16_t a, uint16_t b)
 /* q + gain, or Q_MAX if that is less. */
 static uint64_t raised(uint64_t q, uint64_t gain)
 {
-    return gain >= Q_MAX ? Q_MAX : lower(Q_MAX, q + gain);
+    return lower(Q_MAX, q + lower(Q_MAX, gain));
 }
 
 static uint64_t lowered(uint64_t q, uint64_t loss)
 {
-    return loss < q ? q - loss : 0;
+    return q - lower(q, loss);
 }
 
 /* ---- Places ------------------------------------------------------------------------------------------------------- */
@@ -51,12 +51,11 @@ static struct rkm04_place place_at(uint32_t step)
     return (struct rkm04_place){(uint64_t)step << 32, 0};
 }
 
-/* The change q / (4 * a * 2^34) in steps, with 96 places, cut off; *inexact: something was. */
+/* The change q / (4 * a * 2^34) in steps, with 96 places, cut off; *inexact: something was (what ends at all does so within 51). */
 static struct wide way_of(uint64_t q, uint16_t acceleration, bool *inexact)
 {
     uint64_t divisor = (uint64_t)4 * acceleration << RAMP_SPEED2_BITS;
     struct wide places = wide_fraction(q % divisor, divisor, inexact);
-    *inexact = *inexact || (uint32_t)places.low != 0;
     return (struct wide){q / divisor << 32 | places.high >> 32, places.high << 32 | places.low >> 32};
 }
 
@@ -166,7 +165,6 @@ static void reach_limit(struct rkm04_motion *motion, struct state *state, struct
     if (state->moving && at_once > state->q + ROUNDING) {
         add_break(profile, state->at, state->q, 0);
         state->q = at_once;
-        return;
     }
     if (state->q <= limit)
         return;
@@ -200,12 +198,11 @@ static void plan_segment(struct rkm04_motion *motion, const struct state *state,
         top = ahead(state->at, peak - state->q, segment->acceleration);
     }
     struct rkm04_place fall = peak > leave ? behind(end, peak - leave, segment->acceleration) : end;
-    if (peak == limit && stretches(segment->acceleration, top, fall))
+    bool level = peak == limit && stretches(segment->acceleration, top, fall);
+    if (level)
         add_break(profile, top, peak, 0);
-    else
-        fall = top;
     if (peak > leave)
-        add_break(profile, fall, peak, -slope);
+        add_break(profile, level ? fall : top, peak, -slope);
 }
 
 /* The speeds at the segments' ends: limits, then what can be braked from, then what can be reached (R4). */
@@ -230,22 +227,20 @@ static void plan_steps(struct rkm04_motion *motion, struct state state)
 {
     uint64_t leave[RKM04_SEGMENTS_MAX];
     plan_borders(motion, &state, &state.q, leave);
-    struct rkm04_place end = place_at(0);
     for (; state.segment < motion->segments; state.segment++) {
         uint16_t acceleration = motion->segment[state.segment].acceleration;
-        end = end_of(motion, state.segment);
+        struct rkm04_place end = end_of(motion, state.segment);
         reach_limit(motion, &state, end, q_of(motion->segment[state.segment].speed), leave[state.segment]);
         uint64_t gain = energy(acceleration, state.at, end);
         uint64_t out = lower(leave[state.segment], raised(state.q, gain));
         if (out < lowered(state.q, gain)) /* a present speed that cannot be braked in time */
             out = lowered(state.q, gain);
-        if (before(state.at, end))
-            plan_segment(motion, &state, end, out);
+        plan_segment(motion, &state, end, out);
         state.q = out;
         state.at = end;
         state.moving = false;
     }
-    add_end(&motion->profile, end, state.q);
+    add_end(&motion->profile, state.at, state.q);
 }
 
 static void plan_endless(struct rkm04_motion *motion, struct state state)
@@ -276,7 +271,7 @@ void profile_plan(struct rkm04_motion *motion)
     struct rkm04_place at = place_at(motion->done);
     unsigned segment = segment_at(motion, at);
     uint16_t speed = motion->segment[segment].speed;
-    if (profile->count > 0) { /* after a hold: its end is no end any more */
+    if (profile->count != 0) { /* after a hold: its end is no end any more */
         profile->count--;
         profile->leg = profile->count;
     } else {
@@ -294,12 +289,10 @@ static struct wide square_of(struct rkm04_fixed w)
     return wide_sum(square, (struct wide){0, wide_high(w.part, (uint64_t)w.whole * 2)});
 }
 
-/* w at `tick`, and y counted from the last whole step instead of the next one: 0 <= y < RAMP_STEP. */
+/* w at `tick`, and y counted from the last whole step instead of the next one: from 0 to RAMP_STEP. */
 static void look_behind_step(const struct rkm04_motion *motion, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
 {
     ramp_look(&motion->ramp, tick, y, w);
-    if (y->whole >= 0)
-        *y = (struct rkm04_fixed){-1, 0};
     y->whole += RAMP_STEP;
 }
 
@@ -309,10 +302,11 @@ static struct state present(const struct rkm04_motion *motion, uint64_t tick)
     struct rkm04_fixed y, w;
     look_behind_step(motion, tick, &y, &w);
     uint64_t rest;
-    uint64_t high = wide_divide((struct wide){(uint64_t)y.whole, y.part}, RAMP_STEP, &rest);
-    uint64_t low = wide_divide((struct wide){rest, 0}, RAMP_STEP, &rest);
+    /* y / RAMP_STEP, which may be 1, with 127 places. */
+    uint64_t high = wide_divide((struct wide){(uint64_t)y.whole, y.part}, 2 * RAMP_STEP, &rest);
+    uint64_t low = wide_divide((struct wide){rest, 0}, 2 * RAMP_STEP, &rest);
     struct state state = {.moving = true};
-    state.at = (struct rkm04_place){(uint64_t)motion->done << 32 | high >> 32, high << 32 | low >> 32};
+    state.at = (struct rkm04_place){((uint64_t)motion->done << 32) + (high >> 31), high << 33 | low >> 31};
     state.q = wide_divide(wide_shifted(square_of(w), RAMP_SPEED2_BITS), RAMP_STEP, &rest);
     state.segment = segment_at(motion, state.at);
     return state;
@@ -324,7 +318,7 @@ static bool on_final_ramp(const struct rkm04_motion *motion)
     const struct rkm04_profile *profile = &motion->profile;
     if (profile->endless)
         return false;
-    for (unsigned i = profile->leg; i + 1u < profile->count; i++)
+    for (unsigned i = profile->leg; i < profile->count; i++) /* the end falls, too */
         if (profile->point[i].slope >= 0)
             return false;
     return true;
@@ -358,13 +352,13 @@ struct stop {
 };
 
 /* What lies less than this above a whole number of steps counts as that number. Irrational ways shall (R5), rational ones
- * only as far as they were rounded: by a few units, or after a change of speed, whose place is kept with 2^-34 of speed2, by
+ * only as far as they were rounded up: not at all, or after a change of speed, whose place is kept with 2^-34 of speed2, by
  * a hundred at each; the next rational way above a whole number then is 4 000 000 units off. */
 static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint64_t unit)
 {
     if (!motion->ramp.exact)
         return unit / 1000000;
-    return motion->changed ? 100000 : 8;
+    return motion->changed ? 100000 : 1;
 }
 
 /* Steps from stop->step to the end of the ramp at this acceleration, rounded up. */
@@ -390,17 +384,16 @@ static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, stru
         if (motion->kind != RKM04_MOTION_STEPS)
             return last;
         struct rkm04_place end = end_of(motion, state->segment);
-        if (last <= ramp_step_of(end) || !falling)
-            return last;
-        if (state->segment + 1u == motion->segments)
-            return motion->total;
-        struct wide lost = wide_product(factor * (uint64_t)RAMP_STEP, ramp_step_of(end) - stop.step);
+        uint32_t end_step = ramp_step_of(end);
+        if (last <= end_step || end_step == motion->total)
+            return (uint32_t)lower(last, motion->total);
+        struct wide lost = wide_product(factor * (uint64_t)RAMP_STEP, end_step - stop.step);
         lost = wide_difference(lost, (struct wide){0, stop.offset});
         stop.energy = wide_difference(stop.energy, lost);
         state->q = lowered(state->q, energy(acceleration, state->at, end));
         state->at = end;
-        stop.step = ramp_step_of(end);
-        y = (struct rkm04_fixed){0, 0};
+        stop.step = end_step;
+        y = (struct rkm04_fixed){0};
     }
 }
 
@@ -414,8 +407,9 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
     struct stop stop = {.step = motion->done};
     struct rkm04_fixed y, w;
     look_behind_step(motion, tick, &y, &w);
-    if (state.q > q_of(motion->start_speed))
-        stop.energy = wide_difference(square_of(w), wide_product((uint64_t)w_end, (uint64_t)w_end));
+    struct wide square = square_of(w), square_end = wide_product((uint64_t)w_end, (uint64_t)w_end);
+    if (wide_less(square_end, square))
+        stop.energy = wide_difference(square, square_end);
     uint64_t q_end = lower(state.q, q_of(motion->start_speed));
     mark_present(profile);
     uint32_t last = plan_stop(motion, &state, stop, y);
@@ -444,8 +438,8 @@ bool profile_point(const struct rkm04_motion *motion, unsigned i, struct profile
     bool last = !profile->endless && i + 1u == profile->count;
     uint32_t end = ramp_step_of(profile->point[profile->count - 1].at);
     point->step = ramp_step_of(place_of(wide_sum(wide_of(at->at), lost))) + !last;
-    if (!profile->endless && point->step > end)
-        point->step = end;
+    if (!profile->endless)
+        point->step = (uint32_t)lower(point->step, end);
     point->speed = last ? 0 : wide_root_of((uint32_t)((at->speed2 + ROUNDING) >> (RAMP_SPEED2_BITS + 1)));
     return true;
 }
