@@ -120,9 +120,10 @@ static bool storable(struct rkm04_command command)
  * holds. Returns 0 or 1. */
 static int read_block(const struct slot *slot, unsigned block, unsigned offset, uint8_t *bytes, unsigned length)
 {
-    const struct rkm04_port *port = slot->port;
-    return port->flash_read(slot->context, block, offset, bytes, length) != 0 &&
-           port->flash_read(slot->context, block, offset, bytes, length) != 0;
+    for (unsigned tries = 2; tries > 0; tries--)
+        if (slot->port->flash_read(slot->context, block, offset, bytes, length) == 0)
+            return 0;
+    return 1;
 }
 
 /* Read the commands of a record, go on with the check value over them, and append them to `program` unless it is NULL.

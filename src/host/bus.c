@@ -181,7 +181,7 @@ static char *read_text(const char *path)
         wrong = "expected text without the character 0";
     if (file)
         fclose(file);
-    if (!wrong) {
+    if (text && !wrong) {
         text[length] = '\0';
         return text;
     }
