@@ -159,25 +159,38 @@ START_TEST(P7_R6_a_change_of_speed_on_the_final_ramp_adds_no_corner)
 END_TEST
 
 /* Every change up to S happens at once and adds two corners, before and behind it: of more than the table holds, the oldest are
- * forgotten. G+ begins at 3 ms; the speed is 200 + 10 * i behind the i-th change, at 100 + 70 * i ms. */
-START_TEST(P7_of_many_changes_of_speed_the_newest_corners_are_kept)
+ * forgotten. G+ begins at 3 ms with `speed`, a multiple of 10; it is first + by * i behind the i-th change, at 100 + 70 * i ms. */
+static void expect_newest_corners(unsigned speed, int first, int by)
 {
     enum { CHANGES = RKM04_BREAKS_MAX, KEPT = RKM04_BREAKS_MAX / 2 };
-    char text[20], wanted[40 * KEPT + 20];
-    unsigned tenths = 970; /* of a step: where the next change is */
-    rig_accept(&rig, '1', "S1000 V1000 G+");
+    char text[30], wanted[40 * KEPT + 20];
+    unsigned tenths = speed * 97 / 100; /* of a step: where the next change is */
+    sprintf(text, "S1000 V%u G+", speed);
+    rig_accept(&rig, '1', text);
     size_t length = (size_t)sprintf(wanted, " %u;[", RKM04_BREAKS_MAX);
     for (unsigned i = 0; i < CHANGES; i++) {
-        unsigned speed = 200 + 10 * i, step = tenths / 10 + 1;
+        unsigned before = speed, step = tenths / 10 + 1;
+        speed = (unsigned)(first + by * (int)i);
         sprintf(text, "V%u", speed);
         rig_accept_at(&rig, (100 + 70 * i) * MS - 500, text);
         if (i >= CHANGES - KEPT)
-            length += (size_t)sprintf(wanted + length, "(%u;%u),(%u;%u)%s", step, speed - 10, step, speed,
+            length += (size_t)sprintf(wanted + length, "(%u;%u),(%u;%u)%s", step, before, step, speed,
                                       i + 1 < CHANGES ? "," : "]");
-        tenths += 140 + 7 * i;
+        tenths += speed * 7 / 10;
     }
     rig_to(&rig, 10 * SECOND);
     ck_assert_str_eq(rig_ask(&rig, 6, 1), wanted);
+}
+
+START_TEST(P7_of_many_changes_to_more_speed_the_newest_corners_are_kept)
+{
+    expect_newest_corners(1000, 200, 10);
+}
+END_TEST
+
+START_TEST(P7_of_many_changes_to_less_speed_the_newest_corners_are_kept)
+{
+    expect_newest_corners(1000, 900, -10);
 }
 END_TEST
 
@@ -279,7 +292,8 @@ static Suite *prt_motion_suite(void)
     tcase_add_test(table, P7_points_that_a_stop_has_made_void_are_gone);
     tcase_add_test(table, P7_a_change_of_speed_adds_its_corners);
     tcase_add_test(table, P7_R6_a_change_of_speed_on_the_final_ramp_adds_no_corner);
-    tcase_add_test(table, P7_of_many_changes_of_speed_the_newest_corners_are_kept);
+    tcase_add_test(table, P7_of_many_changes_to_more_speed_the_newest_corners_are_kept);
+    tcase_add_test(table, P7_of_many_changes_to_less_speed_the_newest_corners_are_kept);
     suite_add_tcase(suite, table);
 
     TCase *progress = tcase_create("progress");
