@@ -51,7 +51,8 @@ static struct rkm04_place place_at(uint32_t step)
     return (struct rkm04_place){(uint64_t)step << 32, 0};
 }
 
-/* The change q / (4 * a * 2^34) in steps, with 96 places, cut off; *inexact: something was (what ends at all does so within 51). */
+/* The change q / (4 * a * 2^34) in steps, with 96 places, cut off; *inexact: something was. What ends at all does so within
+ * 51 places. */
 static struct wide way_of(uint64_t q, uint16_t acceleration, bool *inexact)
 {
     uint64_t divisor = (uint64_t)4 * acceleration << RAMP_SPEED2_BITS;
