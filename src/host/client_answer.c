@@ -230,6 +230,7 @@ enum exit_status client_show_raw(const struct client_answer *answer)
     char *hex = malloc(2 * answer->length + 1);
     if (hex == NULL)
         return client_print_json(NULL);
+    hex[0] = '\0'; /* of a message without bytes */
     for (size_t i = 0; i < answer->length; i++)
         sprintf(hex + 2 * i, "%02x", answer->bytes[i]);
     enum exit_status status = STATUS_WELL;

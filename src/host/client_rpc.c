@@ -211,6 +211,15 @@ static enum client_rpc_outcome fill(struct client_rpc *rpc, int timeout_ms)
     return CLIENT_RPC_RESULT;
 }
 
+/* What an object lacks of what an emulator sends; NULL: nothing. */
+static const char *lacks(const json_t *object, bool ours)
+{
+    const json_t *error = json_object_get(object, "error"), *result = json_object_get(object, "result");
+    if (json_is_string(json_object_get(object, "method")))
+        return json_is_object(json_object_get(object, "params")) ? NULL : "expected an object as params";
+    return !ours || json_is_object(error != NULL ? error : result) ? NULL : "expected an object as result or error";
+}
+
 /* Look at one object. Returns true if it is the answer to the last request, or an error to no request: *outcome and *json. */
 static bool take_line(struct client_rpc *rpc, const char *line, enum client_rpc_outcome *outcome, json_t **json, bool *event)
 {
@@ -220,12 +229,14 @@ static bool take_line(struct client_rpc *rpc, const char *line, enum client_rpc_
     const char *method = json_string_value(json_object_get(object, "method"));
     json_t *error = json_object_get(object, "error"), *result = json_object_get(object, "result");
     bool ours = json_is_integer(id) ? json_integer_value(id) == rpc->id : json_is_null(id) && error != NULL;
-    if (!json_is_object(object)) {
-        report(rpc, "%s sends no JSON-RPC: %s", rpc->path, wrong.text);
+    const char *lacking = object == NULL ? wrong.text : json_is_object(object) ? lacks(object, ours) : "expected an object";
+    if (lacking != NULL) {
+        report(rpc, "%s sends no JSON-RPC: %s", rpc->path, lacking);
         *outcome = CLIENT_RPC_LOST;
         ours = true;
     } else if (method != NULL) {
         *event = true;
+        ours = false;
         if (rpc->notified != NULL)
             rpc->notified(rpc->context, method, json_object_get(object, "params"));
     } else if (ours) {

@@ -62,7 +62,8 @@ static enum exit_status find_units(struct watching *w)
     if (w->job->unit == NULL)
         return STATUS_WELL;
     for (w->shown = 0; w->shown < json_array_size(w->units); w->shown++) {
-        if (strcmp(shown_unit(w), w->job->unit) == 0)
+        const char *name = shown_unit(w);
+        if (name != NULL && strcmp(name, w->job->unit) == 0)
             return STATUS_WELL;
     }
     return client_usage("there is no unit %s on the line: `rkmctl call units' names them", w->job->unit);

@@ -79,7 +79,7 @@ struct control_context {
     struct peer *peer;
     struct bus *bus;
     const struct rpc_request *request;
-    bool later; /* it is answered when it comes true, by control_answer() */
+    bool later; /* it has been answered by control_answer(), or is when it comes true */
     bool again; /* it cannot be done yet: CONTROL_LATER */
 };
 typedef json_t *control_method(struct control_context *context, struct refusal *refusal);

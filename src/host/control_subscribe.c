@@ -137,8 +137,12 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     subscription->watcher.context = subscription;
     peer->subscriptions = subscription;
     sim_watch(sim, &subscription->watcher);
+    /* Answered before the line looks again: no event comes before the number of its subscription is known. */
+    context->later = true;
+    control_answer(peer, context->request->id, json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription",
+                                                         (int)subscription->number));
     bus_changed(context->bus); /* it looks more often while somebody watches */
-    return json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription", (int)subscription->number);
+    return NULL;
 }
 
 static void end(struct subscription **at)

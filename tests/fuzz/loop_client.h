@@ -21,6 +21,7 @@ struct due {
     json_t *id;
     json_t *params;    /* NULL: the request is none */
     unsigned line;
+    bool doubtful;     /* several at a time have this id: nobody knows which of them is answered */
     struct due *next;
 };
 
@@ -42,7 +43,7 @@ struct client {
     char *in;          /* received, not yet a line */
     size_t in_length, in_room;
     struct due *first; /* dues, in the order of the requests */
-    bool silent_subscribe, silent_unsubscribe; /* without an id: nobody knows what came of it */
+    bool silent_subscribe; /* without an id, or one of several: nobody knows what came of it */
     struct subscribed subscription[CLIENT_SUBSCRIPTIONS];
     uint64_t told[CLIENT_LINES];     /* tick of a line before which no event may come any more */
     uint64_t answered[CLIENT_LINES]; /* tick of the latest answer, waits apart */
