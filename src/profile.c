@@ -199,7 +199,7 @@ static void plan_segment(struct rkm04_motion *motion, const struct state *state,
         top = ahead(state->at, peak - state->q, segment->acceleration);
     }
     struct rkm04_place fall = peak > leave ? behind(end, peak - leave, segment->acceleration) : end;
-    bool level = peak == limit && stretches(segment->acceleration, top, fall);
+    bool level = stretches(segment->acceleration, top, fall); /* at the limit: below it the two are the same place */
     if (level)
         add_break(profile, top, peak, 0);
     if (peak > leave)
