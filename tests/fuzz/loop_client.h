@@ -37,6 +37,7 @@ struct client {
     bool left;         /* it has ended its sending */
     bool hung_up;      /* the other end has closed the connection */
     bool crowded;      /* it may be one too many */
+    bool over;         /* the emulator ends: what was not read by then may be cut off */
     char *part;        /* of a line, sent */
     size_t part_length, part_room;
     bool skipping;     /* the rest of a line that is too long */
