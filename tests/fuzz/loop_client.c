@@ -320,7 +320,8 @@ bool client_take(struct client *client)
             take_lines(client);
         } else {
             client->hung_up = true;
-            FUZZ_CHECK(client->in_length == 0 || client->over, "half a line, then the end: %.*s", (int)client->in_length, client->in);
+            FUZZ_CHECK(client->in_length == 0 || client->over, "half a line, then the end: %.*s", (int)client->in_length,
+                       client->in);
         }
     }
     return some;
