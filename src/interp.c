@@ -76,7 +76,6 @@ static void take_fresh(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->motion.kind = RKM04_MOTION_NONE;
     motor->next = motor->fresh;
     motor->fresh = RKM04_NEVER;
-    motor->resume = false;
     motor->state = motor->hold_fresh ? RKM04_HELD : RKM04_READY;
     motor->held = RKM04_READY;
     motor->due = motion_free_from(unit, motor);

@@ -168,6 +168,43 @@ START_TEST(C6_X_on_the_ramp_of_a_hold_ends_the_C75_that_was_remembered)
 }
 END_TEST
 
+START_TEST(C6_X_fires_before_the_first_command_behind_a_fault)
+{
+    rig_accept(&rig, '1', "X04 E");
+    rig_input_at(&rig, 100 * MS, 4, true);
+    rig_to(&rig, 200 * MS);
+    expect_state(RKM04_FAULTY); /* without a command to execute X is not looked at */
+    rig_accept(&rig, '1', "T01");
+    rig_to(&rig, 300 * MS);
+    expect_state(RKM04_ENDED);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
+}
+END_TEST
+
+START_TEST(C1_a_C75_remembered_is_forgotten)
+{
+    rig_accept(&rig, '1', "F5000 R");
+    rig_accept_at(&rig, 1003 * MS, "K");
+    rig_accept_at(&rig, 1103 * MS, "C75");
+    rig_accept_at(&rig, 1105 * MS, "\\ E");
+    rig_to(&rig, 2 * SECOND);
+    expect_state(RKM04_FAULTY);
+    ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
+}
+END_TEST
+
+START_TEST(C3_a_C75_for_commands_that_wait_for_the_end_of_the_ramp_is_not_remembered_behind_them)
+{
+    rig_accept(&rig, '1', "F5000 R");
+    rig_accept_at(&rig, 1003 * MS, "K");
+    rig_accept_at(&rig, 1103 * MS, "E");
+    rig_accept_at(&rig, 1104 * MS, "C75");
+    rig_to(&rig, 2 * SECOND);
+    expect_state(RKM04_FAULTY);
+    ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
+}
+END_TEST
+
 START_TEST(K3_a_unit_without_programs_has_nothing_to_do)
 {
     ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
@@ -240,6 +277,9 @@ static Suite *interp_order_suite(void)
     tcase_add_test(slot, C4_a_change_that_is_due_in_the_slot_of_a_K_came_first);
     tcase_add_test(slot, C6_X_on_the_ramp_of_a_hold_ends_the_commands_that_were_to_follow_it);
     tcase_add_test(slot, C6_X_on_the_ramp_of_a_hold_ends_the_C75_that_was_remembered);
+    tcase_add_test(slot, C6_X_fires_before_the_first_command_behind_a_fault);
+    tcase_add_test(slot, C1_a_C75_remembered_is_forgotten);
+    tcase_add_test(slot, C3_a_C75_for_commands_that_wait_for_the_end_of_the_ramp_is_not_remembered_behind_them);
     tcase_add_test(slot, K3_a_unit_without_programs_has_nothing_to_do);
     suite_add_tcase(suite, slot);
 
