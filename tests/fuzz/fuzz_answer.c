@@ -15,8 +15,13 @@
 
 #define OUTPUT_MAX (1u << 20) /* bytes looked at */
 
-enum { JSON = 1, UNIT = 2, LINE = 4, LIMIT = 8, TERSE = 16 };
+enum { JSON = 1, UNIT = 2, LINE = 4, LIMIT = 8, HASTY = 16 };
 
+bool __wrap_client_rpc_open(struct client_rpc *rpc, const char *path);
+
+static struct fuzz answers; /* of the emulator */
+static bool hasty;          /* it has gone before it was asked */
+static int far_end = -1;    /* of the connection; -1: there is none */
 static FILE *nowhere, *page;
 static char output[OUTPUT_MAX + 1u];
 
@@ -67,16 +72,6 @@ static void check_json(size_t length)
 
 /* ---- An emulator ---------------------------------------------------------------------------------------------------- */
 
-/* Each piece is read by itself. */
-static int connect_to_emulator(struct client_rpc *rpc)
-{
-    int ends[2];
-    snprintf(rpc->path, sizeof rpc->path, "emulator");
-    FUZZ_CHECK(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) == 0, "%s", strerror(errno));
-    rpc->fd = ends[0];
-    return ends[1];
-}
-
 static void answer_with(struct fuzz *fuzz, int fd)
 {
     while (fuzz->left > 0) {
@@ -86,6 +81,35 @@ static void answer_with(struct fuzz *fuzz, int fd)
             break;
     }
     shutdown(fd, SHUT_WR);
+}
+
+/* Each piece is read by itself. */
+bool __wrap_client_rpc_open(struct client_rpc *rpc, const char *path)
+{
+    int ends[2];
+    snprintf(rpc->path, sizeof rpc->path, "%s", path);
+    FUZZ_CHECK(far_end < 0 && socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) == 0, "%s", strerror(errno));
+    rpc->fd = ends[0];
+    far_end = ends[1];
+    answer_with(&answers, far_end);
+    if (hasty)
+        shutdown(far_end, SHUT_RD); /* what is asked does not go out */
+    return true;
+}
+
+/* Nobody holds the connection any more. */
+static void check_hung_up(void)
+{
+    char request[1000];
+    ssize_t length;
+    if (far_end < 0)
+        return;
+    do
+        length = recv(far_end, request, sizeof request, MSG_DONTWAIT);
+    while (length > 0);
+    FUZZ_CHECK(length == 0 || errno != EAGAIN, "the connection is still open");
+    close(far_end);
+    far_end = -1;
 }
 
 static void ask_emulator(uint8_t which, struct fuzz *fuzz)
@@ -100,6 +124,7 @@ static void ask_emulator(uint8_t which, struct fuzz *fuzz)
     uint8_t options = fuzz_byte(fuzz);
     bool once = strcmp(words[0], "watch") == 0;
     struct client_job job = {
+        .path = "emulator",
         .unit = options & UNIT ? "1" : NULL,
         .line = options & LINE ? 1 : -1,
         .limit = options & LIMIT ? "1s" : NULL,
@@ -109,16 +134,12 @@ static void ask_emulator(uint8_t which, struct fuzz *fuzz)
     };
     while (job.count < 3 && words[1 + job.count])
         job.count++;
-    int far_end = connect_to_emulator(&job.rpc);
-    job.connected = true;
-    answer_with(fuzz, far_end);
-    if (options & TERSE)
-        close(far_end); /* it has gone before it was asked */
+    answers = *fuzz;
+    hasty = options & HASTY;
     open_page();
     enum exit_status status = client_control(&job, words[0]);
     size_t length = close_page();
-    if (!(options & TERSE))
-        close(far_end);
+    check_hung_up();
     FUZZ_CHECK(status <= STATUS_NO_ANSWER, "%d", (int)status);
     if (options & JSON)
         check_json(length);
