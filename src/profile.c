@@ -352,14 +352,20 @@ struct stop {
     uint32_t step;
 };
 
-/* What lies less than this above a whole number of steps counts as that number. Irrational ways shall (R5), rational ones
- * only as far as they were rounded up: not at all, or after a change of speed, whose place is kept with 2^-34 of speed2, by
- * a hundred at each; the next rational way above a whole number then is 4 000 000 units off. */
-static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint64_t unit)
+/* What lies less than this above a whole number of steps, in units of 1/(8e12 * acceleration) step, counts as that number.
+ * Irrational ways shall (R5: a millionth of a step), rational ones only as far as they were rounded up: not at all, or after a
+ * change of speed, whose place is kept with 2^-34 of speed2, by a hundred units of the acceleration there at each; the next
+ * rational way above a whole number then is 4 000 000 units off. */
+static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint16_t acceleration)
 {
     if (!motion->ramp.exact)
-        return unit / 1000000;
-    return motion->changed ? 100000 : 1;
+        return (uint64_t)4 * acceleration * (uint64_t)RAMP_STEP / 1000000;
+    if (!motion->changed)
+        return 1;
+    uint16_t least = acceleration;
+    for (unsigned i = 0; i < motion->segments; i++)
+        least = slower(least, motion->segment[i].acceleration);
+    return (uint64_t)100000 * acceleration / least;
 }
 
 /* Steps from stop->step to the end of the ramp at this acceleration, rounded up. */
@@ -368,7 +374,7 @@ static uint32_t steps_of_stop(const struct rkm04_motion *motion, const struct st
     const uint64_t unit = (uint64_t)4 * acceleration * (uint64_t)RAMP_STEP;
     struct wide way = wide_sum(stop->energy, (struct wide){0, stop->offset});
     uint64_t rest, steps = wide_divide(way, unit, &rest);
-    return (uint32_t)steps + (rest >= tolerance_of_stop(motion, unit));
+    return (uint32_t)steps + (rest >= tolerance_of_stop(motion, acceleration));
 }
 
 /* The last step of a stop from `state`, where 2e12 * position lies `y` behind the last whole step, and the break points of its

@@ -84,6 +84,19 @@ START_TEST(R5_C4_behind_a_change_at_any_speed_a_whole_way_adds_no_step)
 }
 END_TEST
 
+/* x' = 4350 + (221^2 - 110^2) / 120000 + 221 (0.999 - 111 / 60000) + (221^2 - 100^2) / 120000 = 4571, wherever at A1 the speed
+ * was changed to 110. */
+START_TEST(R5_C4_behind_a_change_in_a_slow_segment_a_whole_way_adds_no_step_in_a_fast_one)
+{
+    rig_accept(&rig, '1', "S100 A1 V130 F4350 Y V221 A60000 F1000000 Y R");
+    rig_accept_at(&rig, (10 + (uint64_t)_i) * MS, "V110");
+    rig_accept_at(&rig, (10 + 40999) * MS, "K");
+    rig_to(&rig, 60 * SECOND);
+    ck_assert_int_eq(rig_motor(&rig, 1).state, RKM04_HELD);
+    ck_assert_uint_eq(rig_motor(&rig, 1).steps, 4571);
+}
+END_TEST
+
 /* ---- Break points ------------------------------------------------------------------------------------------------------ */
 
 /* 100 steps/s; half a second after the begin x is 50, and there is no step left to do. */
@@ -155,6 +168,7 @@ static Suite *profile_suite(void)
     tcase_add_loop_test(stop, R5_an_irrational_way_adds_a_step_from_a_millionth_of_a_step_on, 0, COUNT(irrational));
     tcase_add_loop_test(stop, R5_a_rational_way_adds_a_step_however_little_is_left, 0, COUNT(rational));
     tcase_add_loop_test(stop, R5_C4_behind_a_change_at_any_speed_a_whole_way_adds_no_step, 1001, 1008);
+    tcase_add_loop_test(stop, R5_C4_behind_a_change_in_a_slow_segment_a_whole_way_adds_no_step_in_a_fast_one, 1001, 1008);
     suite_add_tcase(suite, stop);
     TCase *points = tcase_create("points");
     tcase_add_checked_fixture(points, setup, teardown);
