@@ -229,7 +229,7 @@ static void see(struct client *client, json_int_t number, uint64_t tick, const c
     if (!subscribed->there)
         return;
     FUZZ_CHECK(tick >= client->told[subscribed->line], "after %" PRIu64 ": %s", client->told[subscribed->line], text);
-    client->told[subscribed->line] = tick;
+    client->told[subscribed->line] = client->latest = tick;
 }
 
 static void take_event(struct client *client, const json_t *event, const char *text)
@@ -265,7 +265,7 @@ static void take_lost(struct client *client, const json_t *lost, const char *tex
     FUZZ_CHECK(json_is_integer(events) && json_integer_value(events) > 0, "%s", text);
     uint64_t tick = tick_of(params, "t_us", text);
     if (lines_there == 1)
-        FUZZ_CHECK(tick >= client->told[0] || client->silent_subscribe, "after %" PRIu64 ": %s", client->told[0], text);
+        FUZZ_CHECK(tick >= client->latest, "after an event of %" PRIu64 ": %s", client->latest, text);
 }
 
 static void take_line(struct client *client, const char *text, size_t length)

@@ -47,6 +47,7 @@ struct client {
     bool silent_subscribe; /* without an id, or one of several: nobody knows what came of it */
     struct subscribed subscription[CLIENT_SUBSCRIPTIONS];
     uint64_t told[CLIENT_LINES];     /* tick of a line before which no event may come any more */
+    uint64_t latest;                 /* tick of the latest event */
     uint64_t answered[CLIENT_LINES]; /* tick of the latest answer, waits apart */
     unsigned shutdowns, shutdowns_silent, shutdowns_answered; /* requests; of them, without an id; those obeyed */
     size_t received, events;   /* bytes; notifications in them */
