@@ -56,7 +56,8 @@ void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->start_speed = 100; /* U8 */
     motor->speed = 1000;
     motor->acceleration = 2000;
-    motor->count = 0; /* a direction comes with F, B or G */
+    motor->forward = true;
+    motor->count = 0;
     motor->segments = 0;
     motor->functions = 0;
     motor->keep = false;

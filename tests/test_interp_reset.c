@@ -130,8 +130,13 @@ END_TEST
 
 START_TEST(C1_the_direction_is_forward_again)
 {
+    ck_assert(rig.unit.motor[0].forward); /* U8; what `state` of the control socket shows */
     rig_accept(&rig, '1', "F10 D");
-    rig_accept_at(&rig, 10 * MS, "\\ F1000 R");
+    rig_to(&rig, 10 * MS);
+    ck_assert(!rig.unit.motor[0].forward);
+    rig_accept(&rig, '1', "\\");
+    ck_assert(rig.unit.motor[0].forward);
+    rig_accept(&rig, '1', "F1000 R");
     rig_to(&rig, 3 * SECOND);
     ck_assert_int_eq(rig_motor(&rig, 1).position, 1000);
 }
