@@ -66,6 +66,11 @@ struct rkm04_motor_state rig_motor(const struct rig *rig, unsigned motor)
     return state;
 }
 
+void rig_expect_state(const struct rig *rig, unsigned motor, enum rkm04_state state)
+{
+    ck_assert_str_eq(rkm04_state_name(rig_motor(rig, motor).state), rkm04_state_name(state));
+}
+
 const char *rig_ask(struct rig *rig, uint8_t message, unsigned motor)
 {
     static char text[10000];

@@ -44,6 +44,9 @@ void rig_accept_at(struct rig *rig, uint64_t tick, const char *text);
 
 struct rkm04_motor_state rig_motor(const struct rig *rig, unsigned motor);
 
+/* The motor is in this state; a failure names both. */
+void rig_expect_state(const struct rig *rig, unsigned motor, enum rkm04_state state);
+
 /* The program in memory as Get Command answers it; valid until the next call. */
 const char *rig_program(struct rig *rig, unsigned motor);
 

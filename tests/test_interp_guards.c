@@ -15,11 +15,6 @@ static void teardown(void)
     rig_free(&rig);
 }
 
-static void expect_state(enum rkm04_state state)
-{
-    ck_assert_str_eq(rkm04_state_name(rig_motor(&rig, 1).state), rkm04_state_name(state));
-}
-
 static void expect_steps(size_t steps)
 {
     ck_assert_uint_eq(recorder_steps(&rig.record, 1), steps);
@@ -173,7 +168,7 @@ START_TEST(C5_guards_act_on_every_kind_of_motion)
         rig_input_at(&rig, (begin[i] + 1000) * MS, 5, true);
         rig_to(&rig, 20 * SECOND);
         expect_steps(stop_steps(1000));
-        expect_state(RKM04_IDLE);
+        rig_expect_state(&rig, 1, RKM04_IDLE);
     }
 }
 END_TEST
@@ -247,7 +242,7 @@ START_TEST(C6_X_stops_a_motion_on_a_ramp_and_ends_the_program)
     rig_input_at(&rig, 1003 * MS, 4, true);
     rig_to(&rig, 10 * SECOND);
     rig_expect_motion_near(&rig, 1, 1, 3 * MS, 1453 * MS, stop_steps(1000), true);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rig_motor(&rig, 1).index, 0);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
 }
@@ -262,7 +257,7 @@ START_TEST(C6_X_ends_the_program_in_dwell_wait_and_block)
         rig_accept(&rig, '1', text[i]);
         rig_input_at(&rig, 100 * MS, 4, true);
         rig_to(&rig, 100 * MS + 1);
-        expect_state(RKM04_ENDED);
+        rig_expect_state(&rig, 1, RKM04_ENDED);
         rkm04_set_inputs(&rig.unit, 1);
         rig_accept(&rig, '1', "]");
         rig_to(&rig, 5 * SECOND);
@@ -276,7 +271,7 @@ START_TEST(C6_X_ends_the_program_between_commands)
     rig_accept(&rig, '1', "X04 U U U U T01");
     rig_input_at(&rig, 3001, 4, true); /* slot 4000 sees it before its U */
     rig_to(&rig, 100 * MS);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rig_ran(&rig, 3, 1), 3 * MS);
     ck_assert_uint_eq(rig_ran(&rig, 4, 1), RKM04_NEVER);
 }
@@ -288,7 +283,7 @@ START_TEST(C6_X_is_looked_at_from_the_slot_behind_its_own)
     rig_accept(&rig, '1', "T01 X04 T02");
     rig_to(&rig, 100 * MS);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 1);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 
@@ -299,7 +294,7 @@ START_TEST(C6_X_in_a_stop_ramp_of_a_guard_ends_the_program_behind_it)
     rig_input_at(&rig, 1204 * MS, 4, true);
     rig_to(&rig, 10 * SECOND);
     rig_expect_motion_near(&rig, 1, 1, 4 * MS, 1454 * MS, stop_steps(1000), true);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
 }
 END_TEST
@@ -313,7 +308,7 @@ START_TEST(C6_X_in_the_ramp_of_K_ends_the_program_behind_it)
     rig_accept_at(&rig, 3 * SECOND, "C75");
     rig_to(&rig, 10 * SECOND);
     expect_steps(stop_steps(1000));
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
 }
 END_TEST
@@ -326,7 +321,7 @@ START_TEST(C6_X_in_a_hold_ends_the_program)
     rig_accept_at(&rig, 4 * SECOND, "C75");
     rig_to(&rig, 20 * SECOND);
     expect_steps(stop_steps(1000));
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 
@@ -336,7 +331,7 @@ START_TEST(C6_K_and_X_in_one_slot_end_the_program)
     rig_accept_at(&rig, 100 * MS, "K");
     rig_input_at(&rig, 100 * MS, 4, true);
     rig_to(&rig, 200 * MS);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 
@@ -348,7 +343,7 @@ START_TEST(C6_X_wins_over_M_and_N)
     rkm04_set_inputs(&rig.unit, 0x18); /* 4 and 5 at 1, 6 at 0 */
     rig_to(&rig, 10 * SECOND);
     expect_steps(stop_steps(1000));
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
 }
 END_TEST
@@ -358,7 +353,7 @@ START_TEST(C6_U_does_not_cancel_X)
     rig_accept(&rig, '1', "X04 U W1000 T01");
     rig_input_at(&rig, 100 * MS, 4, true);
     rig_to(&rig, 2 * SECOND);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
 }
 END_TEST
@@ -369,12 +364,12 @@ START_TEST(C6_X_of_an_idle_motor_stays_armed)
     rig_input_at(&rig, 100 * MS, 4, true);
     rig_input_at(&rig, 200 * MS, 4, false);
     rig_to(&rig, 300 * MS);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
     rig_accept(&rig, '1', "T01 W1000 T02"); /* not fired: this runs */
     rig_input_at(&rig, 400 * MS, 4, true);  /* still armed: this ends it */
     rig_to(&rig, 3 * SECOND);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 1);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 
@@ -384,7 +379,7 @@ START_TEST(C6_X_fires_before_the_first_command_for_an_idle_motor)
     rig_input_at(&rig, 100 * MS, 4, true);
     rig_accept_at(&rig, 200 * MS, "T01");
     rig_to(&rig, 300 * MS);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
 }
 END_TEST
@@ -394,7 +389,7 @@ START_TEST(C6_X_last_in_the_text_with_its_input_at_1_leaves_the_motor_idle)
     rig_input_at(&rig, 0, 4, true);
     rig_accept(&rig, '1', "X04");
     rig_to(&rig, 100 * MS);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 
@@ -404,7 +399,7 @@ START_TEST(C6_X_has_fired_once_and_lets_new_commands_run)
     rig_input_at(&rig, 100 * MS, 4, true);
     rig_accept_at(&rig, 200 * MS, "T01 F1000 R"); /* the input is still 1 */
     rig_to(&rig, 5 * SECOND);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
     expect_steps(1000);
 }
 END_TEST
@@ -442,7 +437,7 @@ START_TEST(R5_the_input_of_a_limit_move_ends_it_on_the_way_to_the_last_step_of_a
     rig_accept_at(&rig, 100 * MS, "K");
     rig_input_at(&rig, 500 * MS, 6, true);
     rig_input_at(&rig, 550 * MS, 6, false);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_accept_at(&rig, 600 * MS, "C75");
     rig_to(&rig, 5 * SECOND);
     expect_steps(0);
@@ -466,7 +461,7 @@ START_TEST(R5_X_stops_a_limit_move_at_the_next_whole_step)
     rig_input_at(&rig, 501 * MS, 4, true);
     rig_to(&rig, 2 * SECOND);
     expect_steps(50);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 

@@ -15,11 +15,6 @@ static void teardown(void)
     rig_free(&rig);
 }
 
-static void expect_state(enum rkm04_state state)
-{
-    ck_assert_str_eq(rkm04_state_name(rig_motor(&rig, 1).state), rkm04_state_name(state));
-}
-
 /* The command behind T01 at the latest one slot after `slot`. */
 static void expect_output_about(uint64_t slot)
 {
@@ -38,7 +33,7 @@ static void hold_in_motion(const char *text)
     rig_accept_at(&rig, 1002 * MS, "K");
     rig_to(&rig, 2 * SECOND);
     rig_expect_motion_near(&rig, 1, 1, 2 * MS, HELD_AT, HELD_STEPS, true);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
 }
 
 
@@ -47,10 +42,10 @@ START_TEST(C3_blanks_and_comments_may_stand_around_a_lone_K_and_C75)
     rig_accept(&rig, '1', "F5000 R");
     rig_accept_at(&rig, 1002 * MS, " \r\n{ stop } K { now }\n");
     rig_to(&rig, 2 * SECOND);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_accept(&rig, '1', "{ on }\tC75 ");
     rig_to(&rig, 3 * SECOND);
-    expect_state(RKM04_MOVING);
+    rig_expect_state(&rig, 1, RKM04_MOVING);
     ck_assert_str_eq(rig_program(&rig, 1), "F5000 R");
 }
 END_TEST
@@ -76,7 +71,7 @@ START_TEST(C3_K_of_an_idle_motor_is_nothing)
     ck_assert_int_eq(rig_motor(&rig, 1).position, 1000);
     rig_accept(&rig, '1', "K");
     rig_to(&rig, 4 * SECOND);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 
@@ -86,11 +81,11 @@ START_TEST(C3_K_after_a_total_stop_and_at_a_fault_is_nothing)
     rig_accept(&rig, '1', "X04 U");
     rig_accept_at(&rig, 10 * MS, "K");
     rig_to(&rig, 20 * MS);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     rig_accept(&rig, '1', "J5");
     rig_accept_at(&rig, 30 * MS, "K");
     rig_to(&rig, 40 * MS);
-    expect_state(RKM04_FAULTY);
+    rig_expect_state(&rig, 1, RKM04_FAULTY);
     ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LABEL);
 }
 END_TEST
@@ -126,7 +121,7 @@ START_TEST(C3_between_commands_K_holds_before_the_next_one)
     rig_accept(&rig, '1', "U U T01 U");
     rig_accept_at(&rig, 2001, "K");
     rig_to(&rig, 100 * MS);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
     rig_accept_at(&rig, 100 * MS + 1, "C75");
     rig_to(&rig, 200 * MS);
@@ -140,7 +135,7 @@ START_TEST(C3_in_a_wait_K_holds_there)
     rig_accept_at(&rig, 50 * MS, "K");
     rig_input_at(&rig, 60 * MS, 3, true);
     rig_to(&rig, 100 * MS);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     ck_assert_uint_eq(rig_motor(&rig, 1).index, 1);
     rig_accept(&rig, '1', "C75"); /* the wait is looked at in this slot */
     rig_to(&rig, 200 * MS);
@@ -154,7 +149,7 @@ START_TEST(C3_a_wait_goes_on_waiting_after_a_hold)
     rig_accept_at(&rig, 50 * MS, "K");
     rig_accept_at(&rig, 60 * MS, "C75");
     rig_to(&rig, 100 * MS);
-    expect_state(RKM04_WAIT);
+    rig_expect_state(&rig, 1, RKM04_WAIT);
     rig_input_at(&rig, 100 * MS, 3, true);
     rig_to(&rig, 200 * MS);
     ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 101 * MS);
@@ -166,10 +161,10 @@ START_TEST(C3_an_open_block_goes_on_waiting_after_a_hold)
     rig_accept(&rig, '1', "[ T01");
     rig_accept_at(&rig, 50 * MS, "K");
     rig_to(&rig, 60 * MS);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_accept(&rig, '1', "C75");
     rig_to(&rig, 100 * MS);
-    expect_state(RKM04_BLOCK);
+    rig_expect_state(&rig, 1, RKM04_BLOCK);
     rig_accept(&rig, '1', "]");
     rig_to(&rig, 200 * MS);
     ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 101 * MS);
@@ -182,7 +177,7 @@ START_TEST(C3_in_a_dwell_the_remaining_slots_are_kept)
     rig_accept(&rig, '1', "W100 T01");
     rig_accept_at(&rig, 31 * MS, "K");
     rig_to(&rig, 500 * MS);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_accept(&rig, '1', "C75");
     rig_to(&rig, 1 * SECOND);
     ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 570 * MS);
@@ -247,7 +242,7 @@ START_TEST(C3_on_the_final_ramp_the_motion_runs_to_its_own_end_and_is_held_with_
     rig_accept_at(&rig, 5202 * MS, "K");
     rig_to(&rig, 10 * SECOND);
     rig_expect_motion(&rig, 1, 1, 2 * MS, 5407 * MS, 5000, true);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
     rig_accept(&rig, '1', "C75");
     rig_to(&rig, 11 * SECOND);
@@ -264,7 +259,7 @@ START_TEST(C3_in_a_stop_ramp_of_a_guard_the_hold_falls_behind_the_motion)
     rig_accept_at(&rig, 1203 * MS, "K");
     rig_to(&rig, 5 * SECOND);
     rig_expect_motion_near(&rig, 1, 1, 3 * MS, 1453 * MS, HELD_STEPS, true);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_accept(&rig, '1', "C75");
     rig_to(&rig, 10 * SECOND);
     ck_assert_uint_eq(recorder_steps(&rig.record, 1), HELD_STEPS); /* no rest */
@@ -279,7 +274,7 @@ START_TEST(C3_K_stops_a_limit_move_at_the_next_step_and_C75_goes_on_with_it)
     rig_accept_at(&rig, 500 * MS, "K"); /* x = 49.9 */
     rig_to(&rig, 1 * SECOND);
     ck_assert_uint_eq(recorder_steps(&rig.record, 1), 50);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_accept(&rig, '1', "C75");
     rig_to(&rig, 1500 * MS + 1);
     ck_assert_uint_eq(recorder_steps(&rig.record, 1), 100);
@@ -322,7 +317,7 @@ START_TEST(C3_a_K_after_it_cancels_the_remembered_C75)
     rig_accept_at(&rig, 1302 * MS, "K");
     rig_to(&rig, 20 * SECOND);
     ck_assert_uint_eq(rig_motions(&rig, 1), 1);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
 }
 END_TEST
 
@@ -345,7 +340,7 @@ START_TEST(C6_K_during_the_ramp_of_X_holds_nothing)
     rig_accept_at(&rig, 1203 * MS, "K");
     rig_accept_at(&rig, 3 * SECOND, "C75");
     rig_to(&rig, 4 * SECOND);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
 }
 END_TEST
@@ -365,7 +360,7 @@ START_TEST(C3_K_and_C75_in_one_slot_act_in_order_of_arrival)
     rig_accept_at(&rig, 1001 * MS + 1, "C75");
     rig_accept(&rig, '1', "K");
     rig_to(&rig, 20 * SECOND);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
 }
 END_TEST
 
@@ -382,7 +377,7 @@ START_TEST(C3_any_number_of_requests_in_one_slot_keep_their_meaning)
         rig_accept(&rig, '1', last_is_K ? "K" : "C75");
         rig_to(&rig, 10 * MS);
         if (last_is_K)
-            expect_state(RKM04_HELD);
+            rig_expect_state(&rig, 1, RKM04_HELD);
         else
             ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 3 * MS);
     }
@@ -410,7 +405,7 @@ START_TEST(C3_C4_a_change_of_speed_between_K_C75_and_a_second_K_is_dropped_by_it
     rig_accept(&rig, '1', "V300");
     rig_accept(&rig, '1', "K");
     rig_to(&rig, 3 * SECOND);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_expect_motion_near(&rig, 1, 1, 2 * MS, HELD_AT, HELD_STEPS, true);
     rig_accept(&rig, '1', "C75");
     rig_to(&rig, 20 * SECOND);
@@ -425,7 +420,7 @@ START_TEST(C3_K_behind_C75_in_the_slot_behind_the_last_command_holds_nothing)
     rig_accept_at(&rig, 1 * MS + 500, "C75");
     rig_accept(&rig, '1', "K");
     rig_to(&rig, 10 * MS);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
     rig_accept(&rig, '1', "T02");
     rig_to(&rig, 12 * MS);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 3);
@@ -450,7 +445,7 @@ START_TEST(C3_C75_during_the_ramp_of_a_guard_is_remembered_for_the_hold_behind_i
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 1);
     ck_assert_uint_eq(rig_motions(&rig, 1), 1);
     ck_assert_int_eq(rig_motor(&rig, 1).position, HELD_STEPS);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 
@@ -458,7 +453,7 @@ START_TEST(P9_held_behind_the_last_command_the_index_stays_at_it)
 {
     hold_in_the_ramp_of_a_guard("M01 F5000 R");
     rig_to(&rig, 3 * SECOND);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     ck_assert_uint_eq(rig_motor(&rig, 1).index, 3);
     rig_accept(&rig, '1', "T01"); /* new commands end the hold */
     rig_to(&rig, 3 * SECOND + 5 * MS);
@@ -471,7 +466,7 @@ START_TEST(C5_a_guard_that_has_become_true_in_a_hold_lets_the_rest_do_no_step)
     rig_accept(&rig, '1', "M01 F5000 R T01 F10 R");
     rig_accept_at(&rig, 1003 * MS, "K");
     rig_input_at(&rig, 2 * SECOND, 1, true);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_accept_at(&rig, 3 * SECOND, "C75");
     rig_to(&rig, 3 * SECOND + 2 * MS);
     expect_output_about(3 * SECOND);
@@ -486,14 +481,14 @@ START_TEST(R5_a_held_limit_move_whose_input_came_meanwhile_does_no_further_step)
     rig_accept(&rig, '1', ")03 T01");
     rig_accept_at(&rig, 500 * MS, "K");
     rig_to(&rig, 1 * SECOND);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     int32_t position = rig_motor(&rig, 1).position;
     rig_input_at(&rig, 1 * SECOND, 3, true);
     rig_accept_at(&rig, 2 * SECOND, "C75");
     rig_to(&rig, 3 * SECOND);
     expect_output_about(2 * SECOND);
     ck_assert_int_eq(rig_motor(&rig, 1).position, position);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 

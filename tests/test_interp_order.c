@@ -15,11 +15,6 @@ static void teardown(void)
     rig_free(&rig);
 }
 
-static void expect_state(enum rkm04_state state)
-{
-    ck_assert_str_eq(rkm04_state_name(rig_motor(&rig, 1).state), rkm04_state_name(state));
-}
-
 static void send_many(const char *text, unsigned count)
 {
     for (unsigned i = 0; i < count; i++)
@@ -62,7 +57,7 @@ START_TEST(K2_an_input_just_behind_a_slot_is_seen_in_the_next_one)
     rig_to(&rig, 1 * SECOND);
     ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_COMMAND, 4, 1));
     ck_assert_ptr_null(recorder_event(&rig.record, 1, RKM04_EVENT_COMMAND, 5, 1)); /* T01 */
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 
@@ -73,7 +68,7 @@ static void leave_loop_open(void)
 {
     rig_accept(&rig, '1', "L2 T01");
     rig_to(&rig, 100 * MS);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 
 START_TEST(C3_K_of_an_idle_motor_leaves_its_loops_to_the_commands_that_follow_in_the_same_slot)
@@ -86,7 +81,7 @@ START_TEST(C3_K_of_an_idle_motor_leaves_its_loops_to_the_commands_that_follow_in
     rig_to(&rig, 200 * MS);
     ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NONE);
     ck_assert_uint_eq(rig_outputs_became(&rig, 1, 2), 102 * MS); /* C01 in 100, E in 101 */
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 
@@ -103,7 +98,7 @@ START_TEST(C3_a_flood_of_requests_in_one_slot_harms_nobody)
     }
     send_many("K", 1000);
     rig_to(&rig, 10 * MS);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     send_many("K", 1000);
     send_many("C75", 1000);
     rig_to(&rig, 20 * MS);
@@ -151,7 +146,7 @@ static void stop_for_good(const char *on_the_ramp)
     rig_accept_at(&rig, 1103 * MS, on_the_ramp);
     rig_input_at(&rig, 1203 * MS, 4, true);
     rig_to(&rig, 10 * SECOND);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
     ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER); /* nothing is left to be done */
 }
@@ -173,10 +168,10 @@ START_TEST(C6_X_fires_before_the_first_command_behind_a_fault)
     rig_accept(&rig, '1', "X04 E");
     rig_input_at(&rig, 100 * MS, 4, true);
     rig_to(&rig, 200 * MS);
-    expect_state(RKM04_FAULTY); /* without a command to execute X is not looked at */
+    rig_expect_state(&rig, 1, RKM04_FAULTY); /* without a command to execute X is not looked at */
     rig_accept(&rig, '1', "T01");
     rig_to(&rig, 300 * MS);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
 }
 END_TEST
@@ -188,7 +183,7 @@ START_TEST(C1_a_C75_remembered_is_forgotten)
     rig_accept_at(&rig, 1103 * MS, "C75");
     rig_accept_at(&rig, 1105 * MS, "\\ E");
     rig_to(&rig, 2 * SECOND);
-    expect_state(RKM04_FAULTY);
+    rig_expect_state(&rig, 1, RKM04_FAULTY);
     ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
 }
 END_TEST
@@ -200,7 +195,7 @@ START_TEST(C3_a_C75_for_commands_that_wait_for_the_end_of_the_ramp_is_not_rememb
     rig_accept_at(&rig, 1103 * MS, "E");
     rig_accept_at(&rig, 1104 * MS, "C75");
     rig_to(&rig, 2 * SECOND);
-    expect_state(RKM04_FAULTY);
+    rig_expect_state(&rig, 1, RKM04_FAULTY);
     ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
 }
 END_TEST

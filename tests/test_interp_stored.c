@@ -15,11 +15,6 @@ static void teardown(void)
     rig_free(&rig);
 }
 
-static void expect_state(enum rkm04_state state)
-{
-    ck_assert_str_eq(rkm04_state_name(rig_motor(&rig, 1).state), rkm04_state_name(state));
-}
-
 
 START_TEST(C3_the_endless_motion_stopped_by_hand_makes_way_for_the_next_command)
 {
@@ -29,7 +24,7 @@ START_TEST(C3_the_endless_motion_stopped_by_hand_makes_way_for_the_next_command)
     rig_to(&rig, 20 * SECOND);
     rig_expect_motion_near(&rig, 1, 1, 1 * MS, 1451 * MS, 1045, true);
     rig_expect_motion(&rig, 1, 2, 5 * SECOND + 1 * MS, 5 * SECOND + 1 * MS + move_ticks(100, 1000, 2000, 1000), 1000, true);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 
@@ -77,7 +72,7 @@ START_TEST(C3_commands_stored_before_K_are_part_of_the_old_program)
     rig_accept_at(&rig, 1001 * MS + 1, "T02");
     rig_accept(&rig, '1', "K");
     rig_to(&rig, 3 * SECOND);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
     rig_accept(&rig, '1', "T03");
     rig_to(&rig, 20 * SECOND);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 4);
@@ -106,7 +101,7 @@ START_TEST(C3_C75_behind_new_commands_is_nothing)
     rig_to(&rig, 20 * SECOND);
     ck_assert_uint_eq(rig_motions(&rig, 1), 1);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 
@@ -225,7 +220,7 @@ START_TEST(C3_a_K_behind_new_commands_holds_before_them)
         rig_accept_at(&rig, 200 * MS + 1, "T02");
         rig_accept(&rig, '1', "K");
         rig_to(&rig, 5 * SECOND);
-        expect_state(RKM04_HELD);
+        rig_expect_state(&rig, 1, RKM04_HELD);
         ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
     }
 }
@@ -239,7 +234,7 @@ START_TEST(C3_a_K_behind_new_commands_during_the_ramp_holds_before_them)
     rig_accept_at(&rig, 1302 * MS, "K");
     rig_to(&rig, 20 * SECOND);
     ck_assert_uint_eq(rig_motions(&rig, 1), 1);
-    expect_state(RKM04_HELD);
+    rig_expect_state(&rig, 1, RKM04_HELD);
 }
 END_TEST
 
@@ -249,12 +244,12 @@ START_TEST(C3_new_commands_run_after_a_total_stop)
     rig_accept(&rig, '1', "X04 F5000 R T01");
     rig_input_at(&rig, 1003 * MS, 4, true);
     rig_to(&rig, 3 * SECOND);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
     rig_accept(&rig, '1', "T02");
     rig_to(&rig, 4 * SECOND);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 2);
     ck_assert_uint_eq(rig_outputs_became(&rig, 2, 1), 3 * SECOND);
-    expect_state(RKM04_IDLE);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 
@@ -278,7 +273,7 @@ START_TEST(C3_a_total_stop_cannot_be_resumed)
     rig_to(&rig, 10 * SECOND);
     ck_assert_uint_eq(rig_motions(&rig, 1), 1);
     ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
-    expect_state(RKM04_ENDED);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 
