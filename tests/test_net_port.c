@@ -192,6 +192,24 @@ START_TEST(bytes_wait_for_room_and_none_is_lost)
 }
 END_TEST
 
+START_TEST(when_all_that_waited_is_taken_at_once_the_rest_follows)
+{
+    uint8_t bytes[4 * NET_TO_LINE];
+    open_line(_i ? NET_RFC2217 : NET_RAW, "0");
+    line.room = 0;
+    memset(bytes, 'x', sizeof bytes);
+    int fd = attach_client();
+    send_all(fd, bytes, sizeof bytes);
+    AWAIT(!line.port.reading); /* all places are taken */
+    line.room = HEARD_MAX;
+    net_port_wake(&line.port);
+    AWAIT(line.heard_count == sizeof bytes);
+    ck_assert_mem_eq(line.heard, bytes, sizeof bytes);
+    close(fd);
+    close_line();
+}
+END_TEST
+
 START_TEST(what_a_client_has_written_reaches_the_units_after_it_has_gone)
 {
     open_line(NET_RAW, "0");
@@ -408,6 +426,7 @@ int main(void)
     tcase_add_test(clients, a_client_that_only_stops_sending_gets_its_answer);
     tcase_add_test(clients, a_client_that_stops_sending_gives_way_to_the_next);
     tcase_add_loop_test(clients, bytes_wait_for_room_and_none_is_lost, 0, 2);
+    tcase_add_loop_test(clients, when_all_that_waited_is_taken_at_once_the_rest_follows, 0, 2);
     tcase_add_test(clients, what_a_client_has_written_reaches_the_units_after_it_has_gone);
     tcase_add_loop_test(clients, a_client_that_does_not_read_loses_bytes_which_are_counted, 0, 2);
     tcase_add_loop_test(clients, a_client_that_is_torn_away_leaves_the_line_to_the_next, 0, 2);

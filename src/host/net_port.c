@@ -370,12 +370,10 @@ static void move(struct net_port *port)
     if (port->moving)
         return;
     port->moving = true;
-    bool on;
     do {
-        on = digest(port);
-        deliver(port);
+        deliver(port); /* before there is another look at what is in: it may be all that there was no room for */
         pump(port);
-    } while (on);
+    } while (digest(port));
     port->moving = false;
     set_reading(port);
 }
