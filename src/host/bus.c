@@ -142,9 +142,6 @@ size_t bus_room(const struct bus *bus)
 void bus_take(struct bus *bus, const uint8_t *bytes, size_t length, uint64_t tick)
 {
     bus->heard = uv_hrtime();
-    uint64_t present = bus_stepped(bus) ? sim_now(&bus->sim) : virtual_clock_tick(&bus->clock, bus->heard);
-    if (bus->taken < present)
-        bus->taken = present;
     if (bus->taken < tick)
         bus->taken = tick;
     sim_take(&bus->sim, bytes, length, bus->taken);

@@ -114,7 +114,14 @@ uint64_t bus_present(const struct bus *bus);
 /* Bytes that can be taken now. */
 size_t bus_room(const struct bus *bus);
 
-/* The master sends, at `tick` or as soon as it may: now, and after what it sent before. `length` <= bus_room(). */
+/* Before bytes are read, and before bus_room() is asked: the units catch up, as far as that does not take long. */
+void bus_expect(struct bus *bus);
+
+/* The tick at which bytes that are read now arrive: the one that the units have reached. Those that have too much to do for their
+ * clock hear what comes at once, not when they would have reached the present. */
+uint64_t bus_arrival(const struct bus *bus);
+
+/* The master sends, at `tick` (bus_arrival() or later) or as soon as it may: after what it sent before. `length` <= bus_room(). */
 void bus_take(struct bus *bus, const uint8_t *bytes, size_t length, uint64_t tick);
 
 /* Bring the units up to the present, send what is due, and sleep. */

@@ -74,11 +74,11 @@ static void take_heard(struct bus *bus, const struct line_heard *heard, size_t n
 static void take(struct bus *bus, const uint8_t *bytes, size_t length)
 {
     struct line_heard heard[LINE_EAR_MAX];
+    uint64_t tick = bus_arrival(bus);
     if (!strict(bus)) {
-        bus_take(bus, bytes, length, 0);
+        bus_take(bus, bytes, length, tick);
         return;
     }
-    uint64_t tick = bus_present(bus);
     for (size_t i = 0; i < length; i++)
         take_heard(bus, heard, line_ear_byte(&bus->ports.to_units, bytes[i], tick, heard));
     take_heard(bus, heard, line_ear_silence(&bus->ports.to_units, heard));
@@ -219,6 +219,9 @@ static void on_readable(uv_poll_t *handle, int status, int events)
     (void)events;
     if (line->watch)
         line_watch_follow(line->watch);
+    bus_expect(bus);
+    if (!bus->ports.reading)
+        return; /* there is no room any more, or the adapter has been unplugged */
     if (!read_line(bus)) {
         bus_log(bus, "%s is gone: %s; start again when it is back", bus->options->port ? bus->options->port : line->path,
                 errno ? strerror(errno) : "hung up");
@@ -251,8 +254,10 @@ void bus_ports_listen(struct bus *bus)
 
 /* ---- TCP ------------------------------------------------------------------------------------------------------------ */
 
+/* The units catch up first, which may fill the line with bytes of others. */
 static size_t net_room(void *context)
 {
+    bus_expect(context);
     return room(context);
 }
 

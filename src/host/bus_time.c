@@ -257,6 +257,18 @@ struct sim *bus_sim(struct bus *bus)
     return &bus->sim;
 }
 
+/* --clock max leaps when there is nothing to read, and its units may be far behind the real time that counts until then. */
+void bus_expect(struct bus *bus)
+{
+    if (!bus->busy && !bus->clock.runs_ahead)
+        bus_catch_up(bus);
+}
+
+uint64_t bus_arrival(const struct bus *bus)
+{
+    return bus->clock.runs_ahead ? bus_present(bus) : sim_now(&bus->sim);
+}
+
 /* What a command does may take time along: a snapshot that is restored may be of a later tick. */
 void bus_changed(struct bus *bus)
 {

@@ -70,6 +70,18 @@ test_time_cannot_be_advanced_while_it_goes_by_itself() {
     holds "$complained" stepped "the message"
 }
 
+# Sixteen times four motors that begin a motion every few ms are too much for ten thousand times real time.
+test_units_that_cannot_follow_a_fast_clock_answer_all_the_same() {
+    serve bus --node 1-16 --clock x10000
+    local node
+    for node in {1..16}; do
+        exits 0 ctl bus -n "$node" -m 0 set 'S2000 V2000 @1 F9 R J1'
+    done
+    exits 0 ctl bus -n 1 version
+    exits 0 ctrl clock real
+    exits 0 ctl bus -n 16 version
+}
+
 test_the_clock_can_be_changed_while_the_units_run() {
     serve bus --clock stepped
     exits 0 ctl bus set 'F5000 R'
