@@ -35,6 +35,7 @@ programs are lost), `power` (off and on again). A step is an object; which one i
 import json
 import os
 import re
+import time
 
 NEEDS = {"inputs", "outputs", "time", "flash", "power"}
 MOTION = re.compile(r"(?<!\d)H|[RG)(]")  # the H of I01H2 is none
@@ -245,17 +246,27 @@ class Run:
             raise Mismatch("Version", shown(text_bytes(text)), shown(got))
 
     def do_frame(self, hexadecimal, step):
-        what, answer = f"the bytes {hexadecimal}", step["answer"]
-        self.line.say(bytes.fromhex(hexadecimal))
+        what, answer, data = f"the bytes {hexadecimal}", step["answer"], bytes.fromhex(hexadecimal)
+        before = self.target.bytes_passed()
+        self.line.say(data)
         if answer is None:
             self.quiet(what)
             return
         if not answer:
+            self.arrive(what, before, len(data))
             return
         wanted = bytes.fromhex(answer)
         got = self.line.hear(lambda heard: len(heard) >= len(wanted), self.line.timeout)
         if got != wanted:
             raise Mismatch(what, wanted.hex(" "), got.hex(" ") or "silence")
+
+    def arrive(self, what, before, length):
+        """Nothing answers: wait until so many bytes have been on the line, if the target can tell."""
+        end = time.monotonic() + self.line.timeout
+        while before is not None and (passed := self.target.bytes_passed() - before) < length:
+            if time.monotonic() > end:
+                raise Mismatch(what, f"{length} bytes on the line", f"{passed}")
+            time.sleep(0.001)
 
     def position(self, motor):
         field = self.get(4, motor, f"Get Position of motor {motor}")

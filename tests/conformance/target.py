@@ -93,6 +93,10 @@ class Real:
     def power(self):
         self.hand("switch the unit off and on again")
 
+    @staticmethod
+    def bytes_passed():
+        return None
+
     def close(self):
         pass
 
@@ -158,6 +162,10 @@ class Stepped:
 
     def outputs(self):
         return self.state()["do"]
+
+    def bytes_passed(self):
+        """How many bytes have been on the line; None: that is not known. Where time has a way of its own, it may overtake them."""
+        return self.state()["line"]["bytes"]
 
     def events(self, kind, motor=None):
         """(time since the start, value) of each event of that kind."""
@@ -249,6 +257,10 @@ class InProcess:
 
     def outputs(self):
         return int(self.call("outputs")[0])
+
+    @staticmethod
+    def bytes_passed():
+        return None  # they have passed when write() returns
 
     def events(self, kind, motor=0):
         return [(tick - self.start_us, value) for name, number, tick, value in self.seen if (name, number) == (kind, motor)]

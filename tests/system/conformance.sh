@@ -66,6 +66,33 @@ test_units_with_other_addresses_and_over_tcp() {
     holds "$(last_line)" " passed, 0 failed, 0 skipped" "the summary"
 }
 
+# A device server that passes bytes on a while later, by a thread of each direction. Says its port.
+late_bridge() {
+    "$python" - "$1" <<'END_OF_BRIDGE'
+import socket, sys, threading, time
+
+def pass_on(source, sink):
+    while data := source.recv(4096):
+        time.sleep(0.05)
+        sink.sendall(data)
+    sink.shutdown(socket.SHUT_WR)
+
+listener = socket.create_server(("127.0.0.1", 0))
+print(listener.getsockname()[1], flush=True)
+client, unit = listener.accept()[0], socket.create_connection(("127.0.0.1", int(sys.argv[1])))
+threading.Thread(target=pass_on, args=(unit, client), daemon=True).start()
+pass_on(client, unit)
+END_OF_BRIDGE
+}
+
+test_time_does_not_pass_before_what_was_said_is_there() {
+    serve bus --tcp 127.0.0.1:0 --control "$folder/socket" --framing plain
+    start bridge late_bridge "$(sed -n 's/^READY .*"tcp":"[^"]*:\([0-9]*\)".*/\1/p' "$folder/bus.out")"
+    soon "the bridge is there" test -s "$folder/bridge.out"
+    exits 0 "$python" "$kit" --port "tcp:127.0.0.1:$(<"$folder/bridge.out")" --control "$folder/socket" --framing plain --only L2
+    holds "$(last_line)" " passed, 0 failed, 0 skipped" "the summary"
+}
+
 test_what_differs_is_told_with_clause_expectation_and_observation() {
     serve bus --version-text 'other' --clock stepped
     conforms 1 --has control --only M5.3.1 --junit "$folder/report.xml"
