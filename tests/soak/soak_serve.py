@@ -28,6 +28,8 @@ from control_client import Client, Refused  # noqa: E402
 
 UNITS = 16
 PATIENCE = 60  # s until something counts as never coming
+# Freed memory goes back to the system at once: glibc would keep as much as the longest queue of a client took, twice.
+HONEST_MEMORY = {"ASAN_OPTIONS": "quarantine_size_mb=1", "MALLOC_MMAP_THRESHOLD_": "131072", "MALLOC_TRIM_THRESHOLD_": "131072"}
 RESIDENT_SLACK = 16 << 20  # bytes: as the journal for snapshots to files may hold
 PLAIN = ["drop", "flip", "duplicate", "insert", "no_answer", "wrong_fcs", "echo"]  # faults that need no parameter
 PROGRAMS = [b"\\S50 V900 A3000 F90 R B40 R", b"V3000 F300 R", b"L5 T03 W2 C03 W3 E", b"G-", b"K", b"C75", b"V700", b"[F10 R",
@@ -73,15 +75,16 @@ class Wrong(Exception):
 
 
 class Line:
-    """A host on the pty or over TCP."""
+    """A host on the pty, over TCP or by RFC 2217."""
 
-    def __init__(self, soak, pty=False):
-        if pty or soak.dice.random() < 0.5:
+    def __init__(self, soak, way="pty"):
+        self.way = way
+        if way == "pty":
             self.fd = os.open(soak.link, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
             tty.setraw(self.fd, termios.TCSANOW)
             self.socket = None
         else:
-            self.socket = socket.create_connection(("127.0.0.1", soak.port), timeout=PATIENCE)
+            self.socket = socket.create_connection(("127.0.0.1", soak.port[way]), timeout=PATIENCE)
             self.socket.setblocking(False)
             self.fd = self.socket.fileno()
 
@@ -133,14 +136,14 @@ class Soak:
         self.acts = {}
         self.lines, self.clients, self.traces = [], [], []
         self.process = subprocess.Popen(
-            [os.environ["RKM04"], "serve", "--node", "1-16", "--link", self.link, "--tcp", "127.0.0.1:0", "--clock", self.clock,
-             "--control", self.link + ".control", "--flash", os.path.join(self.folder, "unit%n.flash")],
+            [os.environ["RKM04"], "serve", "--node", "1-16", "--link", self.link, "--tcp", "127.0.0.1:0",
+             "--rfc2217", "127.0.0.1:0", "--clock", self.clock, "--control", self.link + ".control", "--flash", os.path.join(self.folder, "unit%n.flash")],
             cwd=self.folder, stdout=subprocess.PIPE, stderr=self.errors, text=True,
-            env={**os.environ, "ASAN_OPTIONS": "quarantine_size_mb=1"})
+            env={**os.environ, **HONEST_MEMORY})
         ready = self.process.stdout.readline()
         if not ready.startswith("READY "):
             raise Wrong(f"not ready: {ready!r}")
-        self.port = int(json.loads(ready[6:])["tcp"].rsplit(":", 1)[1])
+        self.port = {way: int(json.loads(ready[6:])[way].rsplit(":", 1)[1]) for way in ("tcp", "rfc2217")}
         self.control = Client(self.link + ".control")
         for name in ("a", "b", "c", "begin"):
             self.control.call("snapshot", name=name)
@@ -166,7 +169,7 @@ class Soak:
     def attach(self):
         if len(self.lines) < 8 and os.path.exists(self.link):
             try:
-                self.lines.append(Line(self))
+                self.lines.append(Line(self, self.dice.choice(["pty", "pty", "tcp", "rfc2217"])))
             except (OSError, termios.error):
                 pass  # unplugged meanwhile
 
@@ -196,6 +199,14 @@ class Soak:
                 message = bytes([self.dice.randrange(1, 9), self.dice.randrange(48, 53)])
             data = frame(self.dice.randrange(0, 17), message)
             line.write(data if self.dice.random() < 0.9 else data[:len(data) // 2])
+
+    def telnet(self):
+        """Commands of RFC 2217, whole or not, known or not: settings, break, purge, suspend."""
+        line = self.one_of([line for line in self.lines if line.way == "rfc2217"])
+        if line:
+            command = bytes([0xFF, 0xFA, 0x2C, self.dice.randrange(16)]) + self.dice.randbytes(self.dice.randrange(5))
+            line.write(self.dice.choice([command + b"\xff\xf0"] * 6 + [command, b"\xff\xf3", b"\xff\xfd\x03"]) *
+                       self.dice.choice([1, 1, 500]))
 
     def listen(self):
         for line in self.lines:
@@ -296,7 +307,7 @@ class Soak:
 
     def chaos(self, ticks):
         acts = ([self.attach] * 3 + [self.detach] * 2 + [self.garbage] * 2 + [self.flood] + [self.request] * 10 +
-                [self.listen] * 8 + [self.fault] * 2 +
+                [self.telnet] * 2 + [self.listen] * 8 + [self.fault] * 2 +
                 [self.client] * 3 + [self.client_leaves] * 2 + [self.trace] + [self.trace_ends] * 2 +
                 [self.hands] * 2 + [self.snapshot] + [self.clocks])
         end = self.now() + ticks
@@ -321,9 +332,9 @@ class Soak:
         while self.now() < end or not os.path.exists(self.link):
             time.sleep(0.01)
         passed, begin = None, time.monotonic()  # floods that stand in sockets and ptys take their time
-        while passed != (passed := self.state(1)["line"]["bytes"]):
+        while passed != (passed := self.state(1)["line"]["bytes"]) or self.files() != self.files_begin:
             if time.monotonic() > begin + 5 * PATIENCE:
-                raise Wrong("the line does not come to rest")
+                raise Wrong(f"the line does not come to rest: {passed} bytes, {self.files()} files of {self.files_begin}")
             self.control.call("wait", until={"t": self.now() + 3000000})
         self.control.call("restore", name="begin")
         for name in "abc":  # they keep what had come in before them
@@ -344,7 +355,7 @@ class Soak:
         """Units answer, obey and count."""
         if self.control.call("fault.list")["faults"]:
             raise Wrong("there are faults left")
-        line = Line(self, pty=True)
+        line = Line(self)
         motions = {}
         try:
             for unit in range(1, UNITS + 1):
