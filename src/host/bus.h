@@ -121,7 +121,7 @@ void bus_expect(struct bus *bus);
  * clock hear what comes at once, not when they would have reached the present. */
 uint64_t bus_arrival(const struct bus *bus);
 
-/* The master sends, at `tick` (bus_arrival() or later) or as soon as it may: after what it sent before. `length` <= bus_room(). */
+/* The master sends, at `tick` (bus_arrival() or later) or when what it sent before is out. `length` <= bus_room(). */
 void bus_take(struct bus *bus, const uint8_t *bytes, size_t length, uint64_t tick);
 
 /* Bring the units up to the present, send what is due, and sleep. */
