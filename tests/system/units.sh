@@ -140,7 +140,7 @@ collide() {
 }
 
 test_a_request_into_an_answer_spoils_both() {
-    serve bus --node 1,2
+    serve bus --node 1,2 --clock x0.05 # the answer takes half a second: time enough, however busy the machine is
     exec 3<>"$folder/bus"
     # Get Position of all motors of unit 1, then, while its 52 bytes go out, Version of unit 2.
     say_bytes 3 "$(frame 01 00 04 30)"
