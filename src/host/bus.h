@@ -63,6 +63,7 @@ struct bus {
     struct bus_waiter *advancing; /* of them, the one for whom the clock is moved; NULL: none */
     bool running;         /* time has begun */
     bool busy;            /* within bus_catch_up() */
+    bool behind;          /* bus_catch_up() had no time for all that there is to do up to the tick of the clock */
     int timer_fd;
     uv_poll_t timer;
 
@@ -108,7 +109,8 @@ bool bus_set_clock(struct bus *bus, const char *text, struct refusal *refusal);
 
 /* ---- For the ports ---------------------------------------------------------------------------------------------------- */
 
-/* The present tick, for the log; the units may be behind it while nobody looks. */
+/* The present tick, for the log and for bytes that arrive now. The units may be behind it while nobody looks; when they have too
+ * much to do for their clock, it is the one they have reached: they hear what comes at once. */
 uint64_t bus_present(const struct bus *bus);
 
 /* Bytes that can be taken now. */
@@ -117,11 +119,7 @@ size_t bus_room(const struct bus *bus);
 /* Before bytes are read, and before bus_room() is asked: the units catch up, as far as that does not take long. */
 void bus_expect(struct bus *bus);
 
-/* The tick at which bytes that are read now arrive: the one that the units have reached. Those that have too much to do for their
- * clock hear what comes at once, not when they would have reached the present. */
-uint64_t bus_arrival(const struct bus *bus);
-
-/* The master sends, at `tick` (bus_arrival() or later) or when what it sent before is out. `length` <= bus_room(). */
+/* The master sends, at `tick` (bus_present() or later) or when what it sent before is out. `length` <= bus_room(). */
 void bus_take(struct bus *bus, const uint8_t *bytes, size_t length, uint64_t tick);
 
 /* Bring the units up to the present, send what is due, and sleep. */

@@ -74,7 +74,7 @@ static void take_heard(struct bus *bus, const struct line_heard *heard, size_t n
 static void take(struct bus *bus, const uint8_t *bytes, size_t length)
 {
     struct line_heard heard[LINE_EAR_MAX];
-    uint64_t tick = bus_arrival(bus);
+    uint64_t tick = bus_present(bus);
     if (!strict(bus)) {
         bus_take(bus, bytes, length, tick);
         return;

@@ -25,7 +25,9 @@ bool bus_stepped(const struct bus *bus)
 
 uint64_t bus_present(const struct bus *bus)
 {
-    return !bus->running ? 0 : bus_stepped(bus) ? sim_now(&bus->sim) : virtual_clock_tick(&bus->clock, uv_hrtime());
+    if (!bus->running)
+        return 0;
+    return bus_stepped(bus) || bus->behind ? sim_now(&bus->sim) : virtual_clock_tick(&bus->clock, uv_hrtime());
 }
 
 /* ---- Who waits ------------------------------------------------------------------------------------------------------ */
@@ -219,6 +221,7 @@ void bus_catch_up(struct bus *bus)
         }
         now = uv_hrtime();
     } while (now - start < STINT && (sim_now(&bus->sim) < tick || leap_to(bus, now) != RKM04_NEVER));
+    bus->behind = sim_now(&bus->sim) < tick;
     if (segment_idle(&bus->sim.segment))
         bus_ports_silence(bus);
     bus_ports_listen(bus);
@@ -257,26 +260,21 @@ struct sim *bus_sim(struct bus *bus)
     return &bus->sim;
 }
 
-/* --clock max leaps when there is nothing to read, and its units may be far behind the real time that counts until then. */
+/* --clock max leaps when there is nothing to read. */
 void bus_expect(struct bus *bus)
 {
     if (!bus->busy && !bus->clock.runs_ahead)
         bus_catch_up(bus);
 }
 
-uint64_t bus_arrival(const struct bus *bus)
-{
-    return bus->clock.runs_ahead ? bus_present(bus) : sim_now(&bus->sim);
-}
-
 /* What a command does may take time along: a snapshot that is restored may be of a later tick. */
 void bus_changed(struct bus *bus)
 {
-    uint64_t reached = sim_now(&bus->sim);
+    uint64_t reached = sim_now(&bus->sim), now = uv_hrtime();
     if (bus_stepped(bus) && bus->goal < reached)
         bus->goal = reached;
-    if (!bus_stepped(bus) && bus_present(bus) < reached)
-        virtual_clock_leap(&bus->clock, uv_hrtime(), reached);
+    if (!bus_stepped(bus) && virtual_clock_tick(&bus->clock, now) < reached)
+        virtual_clock_leap(&bus->clock, now, reached);
     if (!bus->busy)
         bus_catch_up(bus);
 }

@@ -389,7 +389,7 @@ class Soak:
         most, rounds, last = first, 0, first
         while self.now() < begin + ticks:
             rounds += 1
-            self.chaos(max(ticks // 24, 10000000))
+            self.chaos(min(max(ticks // 24, 10000000), 3600000000))
             self.put_back()
             self.check()
             self.soon("open files", files, self.files)
