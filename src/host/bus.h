@@ -64,6 +64,8 @@ struct bus {
     bool running;         /* time has begun */
     bool busy;            /* within bus_catch_up() */
     bool behind;          /* bus_catch_up() had no time for all that there is to do up to the tick of the clock */
+    uint64_t behind_since; /* ns */
+    bool behind_told;     /* of this clock */
     int timer_fd;
     uv_poll_t timer;
 

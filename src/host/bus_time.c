@@ -13,6 +13,7 @@
 #define REST (100u * NS_PER_MS)  /* longest sleep while motors or programs run */
 #define REST_WATCHED (10u * NS_PER_MS) /* while somebody watches what they do */
 #define LATE (500u * NS_PER_MS)  /* so much behind, and the process was stopped */
+#define LONG_BEHIND NS_PER_SECOND /* without having caught up once, and it is told */
 #define STINT (5u * NS_PER_MS)   /* longest time without a look at the line and at signals */
 #define STEP 100000u             /* ticks that the units are advanced at once while they are at work */
 #define LEAP 10000u              /* ticks: shortest leap of --clock max; less would cost more than it shows */
@@ -206,6 +207,18 @@ static void look_if_late(struct bus *bus, uint64_t now)
                                      : "the units catch up (--late catch-up)");
 }
 
+/* Whoever has chosen the clock should know that it is too fast. */
+static void note_behind(struct bus *bus, uint64_t now, bool behind)
+{
+    if (behind && !bus->behind)
+        bus->behind_since = now;
+    bus->behind = behind;
+    if (behind && !bus->behind_told && !bus_stepped(bus) && now - bus->behind_since > LONG_BEHIND) {
+        bus_log(bus, "behind clock %s for a second: the units go as fast as this machine can", bus->clock_text);
+        bus->behind_told = true;
+    }
+}
+
 void bus_catch_up(struct bus *bus)
 {
     uint64_t start = uv_hrtime(), now = start, tick;
@@ -221,7 +234,7 @@ void bus_catch_up(struct bus *bus)
         }
         now = uv_hrtime();
     } while (now - start < STINT && (sim_now(&bus->sim) < tick || leap_to(bus, now) != RKM04_NEVER));
-    bus->behind = sim_now(&bus->sim) < tick;
+    note_behind(bus, now, sim_now(&bus->sim) < tick);
     if (segment_idle(&bus->sim.segment))
         bus_ports_silence(bus);
     bus_ports_listen(bus);
@@ -291,6 +304,7 @@ bool bus_set_clock(struct bus *bus, const char *text, struct refusal *refusal)
         return false;
     }
     bus_sim(bus);
+    bus->behind = bus->behind_told = false;
     sim_set_timed(&bus->sim, bus->options->baud != 0 && !bus->ports.line.is_wire && !clock.stands);
     bus->goal = sim_now(&bus->sim);
     bus->clock = clock;

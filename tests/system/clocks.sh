@@ -78,6 +78,7 @@ test_units_that_cannot_follow_a_fast_clock_answer_all_the_same() {
         exits 0 ctl bus -n "$node" -m 0 set 'S2000 V2000 @1 F9 R J1'
     done
     exits 0 ctl bus -n 1 version
+    soon "it is told" grep -q 'behind clock x10000 for a second' "$folder/bus.err"
     exits 0 ctrl clock real
     exits 0 ctl bus -n 16 version
 }
