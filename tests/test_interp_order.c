@@ -176,27 +176,27 @@ START_TEST(C6_X_fires_before_the_first_command_behind_a_fault)
 }
 END_TEST
 
-START_TEST(C1_a_C75_remembered_is_forgotten)
+/* "F5000 R", K one second later, and two messages on the ramp to the hold, of which E is a fault when the motor stands. */
+static void fault_for_good(const char *first, const char *second)
 {
     rig_accept(&rig, '1', "F5000 R");
     rig_accept_at(&rig, 1003 * MS, "K");
-    rig_accept_at(&rig, 1103 * MS, "C75");
-    rig_accept_at(&rig, 1105 * MS, "\\ E");
+    rig_accept_at(&rig, 1103 * MS, first);
+    rig_accept_at(&rig, 1105 * MS, second);
     rig_to(&rig, 2 * SECOND);
     rig_expect_state(&rig, 1, RKM04_FAULTY);
     ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
+}
+
+START_TEST(C1_a_C75_remembered_is_forgotten)
+{
+    fault_for_good("C75", "\\ E");
 }
 END_TEST
 
 START_TEST(C3_a_C75_for_commands_that_wait_for_the_end_of_the_ramp_is_not_remembered_behind_them)
 {
-    rig_accept(&rig, '1', "F5000 R");
-    rig_accept_at(&rig, 1003 * MS, "K");
-    rig_accept_at(&rig, 1103 * MS, "E");
-    rig_accept_at(&rig, 1104 * MS, "C75");
-    rig_to(&rig, 2 * SECOND);
-    rig_expect_state(&rig, 1, RKM04_FAULTY);
-    ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
+    fault_for_good("E", "C75");
 }
 END_TEST
 

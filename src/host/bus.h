@@ -63,8 +63,7 @@ struct bus {
     struct bus_waiter *advancing; /* of them, the one for whom the clock is moved; NULL: none */
     bool running;         /* time has begun */
     bool busy;            /* within bus_catch_up() */
-    bool behind;          /* bus_catch_up() had no time for all that there is to do up to the tick of the clock */
-    uint64_t behind_since; /* ns */
+    uint64_t behind;      /* ns since when bus_catch_up() has not got as far as the clock; 0: it has */
     bool behind_told;     /* of this clock */
     int timer_fd;
     uv_poll_t timer;

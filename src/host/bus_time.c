@@ -28,7 +28,7 @@ uint64_t bus_present(const struct bus *bus)
 {
     if (!bus->running)
         return 0;
-    return bus_stepped(bus) || bus->behind ? sim_now(&bus->sim) : virtual_clock_tick(&bus->clock, uv_hrtime());
+    return bus_stepped(bus) || bus->behind > 0 ? sim_now(&bus->sim) : virtual_clock_tick(&bus->clock, uv_hrtime());
 }
 
 /* ---- Who waits ------------------------------------------------------------------------------------------------------ */
@@ -210,10 +210,9 @@ static void look_if_late(struct bus *bus, uint64_t now)
 /* Whoever has chosen the clock should know that it is too fast. */
 static void note_behind(struct bus *bus, uint64_t now, bool behind)
 {
-    if (behind && !bus->behind)
-        bus->behind_since = now;
-    bus->behind = behind;
-    if (behind && !bus->behind_told && !bus_stepped(bus) && now - bus->behind_since > LONG_BEHIND) {
+    if (!behind || bus->behind == 0)
+        bus->behind = behind ? now : 0;
+    if (behind && !bus->behind_told && !bus_stepped(bus) && now - bus->behind > LONG_BEHIND) {
         bus_log(bus, "behind clock %s for a second: the units go as fast as this machine can", bus->clock_text);
         bus->behind_told = true;
     }
@@ -304,7 +303,8 @@ bool bus_set_clock(struct bus *bus, const char *text, struct refusal *refusal)
         return false;
     }
     bus_sim(bus);
-    bus->behind = bus->behind_told = false;
+    bus->behind = 0;
+    bus->behind_told = false;
     sim_set_timed(&bus->sim, bus->options->baud != 0 && !bus->ports.line.is_wire && !clock.stands);
     bus->goal = sim_now(&bus->sim);
     bus->clock = clock;

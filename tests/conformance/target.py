@@ -164,7 +164,7 @@ class Stepped:
         return self.state()["do"]
 
     def bytes_passed(self):
-        """How many bytes have been on the line; None: that is not known. Where time has a way of its own, it may overtake them."""
+        """How many bytes have been on the line; None: nobody can tell. Time comes another way here, and could overtake them."""
         return self.state()["line"]["bytes"]
 
     def events(self, kind, motor=None):

@@ -28,6 +28,7 @@ from control_client import Client, Refused  # noqa: E402
 
 UNITS = 16
 PATIENCE = 60  # s until something counts as never coming
+ROUND_MIN, ROUND_MAX = 10000000, 3600000000  # ticks
 # Freed memory goes back to the system at once: glibc would keep as much as the longest queue of a client took, twice.
 HONEST_MEMORY = {"ASAN_OPTIONS": "quarantine_size_mb=1", "MALLOC_MMAP_THRESHOLD_": "131072", "MALLOC_TRIM_THRESHOLD_": "131072"}
 RESIDENT_SLACK = 16 << 20  # bytes: as the journal for snapshots to files may hold
@@ -137,7 +138,8 @@ class Soak:
         self.lines, self.clients, self.traces = [], [], []
         self.process = subprocess.Popen(
             [os.environ["RKM04"], "serve", "--node", "1-16", "--link", self.link, "--tcp", "127.0.0.1:0",
-             "--rfc2217", "127.0.0.1:0", "--clock", self.clock, "--control", self.link + ".control", "--flash", os.path.join(self.folder, "unit%n.flash")],
+             "--rfc2217", "127.0.0.1:0", "--clock", self.clock, "--control", self.link + ".control",
+             "--flash", os.path.join(self.folder, "unit%n.flash")],
             cwd=self.folder, stdout=subprocess.PIPE, stderr=self.errors, text=True,
             env={**os.environ, **HONEST_MEMORY})
         ready = self.process.stdout.readline()
@@ -389,7 +391,7 @@ class Soak:
         most, rounds, last = first, 0, first
         while self.now() < begin + ticks:
             rounds += 1
-            self.chaos(min(max(ticks // 24, 10000000), 3600000000))
+            self.chaos(min(max(ticks // 24, ROUND_MIN), ROUND_MAX))
             self.put_back()
             self.check()
             self.soon("open files", files, self.files)
