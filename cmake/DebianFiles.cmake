@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Run by CPack between installing into the package's folder and packing it: what Debian wants otherwise than `cmake --install`
 # puts it in place. Manual pages and changelogs are compressed, the library has no debug symbols.
 set(share ${CPACK_TEMPORARY_DIRECTORY}/usr/share)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Hardening of what runs beside other programs (docs/SECURITY.md): every optimised build has it, but not one with sanitizers,
 # which look for the same and more. tests/system/security.sh looks whether it is in the programs.
 option(RKM04_HARDEN "Harden optimised builds: PIE, RELRO, stack protector, fortified library calls" ON)

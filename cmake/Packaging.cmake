@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The Debian package (docs/INSTALL.md) and what else a system wants beside programs and library: units of systemd, documents.
 #
 # It is one package: the library is static and small, nothing on the system loads it, and who writes a test bench with it wants

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* commands.h: every command of the unit (manual chapter 7, specification section 5). The only place to add one.
  *
  * COMMAND_TABLE(ROW) expands ROW(character, name, form, ranges...) for each. parse.c makes from it what may be written,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "crc16.h"
 
 /* Eight steps of the bitwise form at once: the polynomial has few enough taps to do without a table. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* crc16.h: the FCS-16 of RFC 1662 appendix C: reflected polynomial 8408, start FFFF, sent inverted and low byte first (L1). */
 #ifndef RKM04_SRC_CRC16_H
 #define RKM04_SRC_CRC16_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "crc32.h"
 
 uint32_t crc32_update(uint32_t crc, const uint8_t *data, size_t length)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* crc32.h: the check value of flash records: CRC-32 of ISO-HDLC (reflected, polynomial EDB88320; "123456789" gives CBF43926). */
 #ifndef RKM04_SRC_CRC32_H
 #define RKM04_SRC_CRC32_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* execute.h: what each command does (section 5). Part of the interpreter; acts at unit->now, which is a slot. */
 #ifndef RKM04_SRC_EXECUTE_H
 #define RKM04_SRC_EXECUTE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* interp.h: the interpreter of one motor (section 5, K2, K4). */
 #ifndef RKM04_SRC_INTERP_H
 #define RKM04_SRC_INTERP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* link.c: the table of framings. A new framing adds its file and its row here. */
 #include <rkm04/link.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* link_hdlc.c: octet-stuffed frames like those of RFC 1662 (L1).
  *
  *     7E  DNode SNode message… FCS-low FCS-high  7E        7D x stands for x ^ 20, in everything between the flags

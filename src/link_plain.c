@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* link_plain.c: the manual's own "length, data" notation with the node before it, for use by hand or over TCP (L2).
  *
  *     DNode, length high byte, length low byte, message…

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* motion.h: the life of a motor's motion: begin, pulses, stop, hold, rest, end (C5, C12, C13, section 6). All act at
  * unit->now, which is a slot. */
 #ifndef RKM04_SRC_MOTION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* parse.c: program text -> commands, and commands -> canonical text (specification section 5, P8).
  *
  * What a command looks like stands in commands.h; how each form of operand is read, checked and written stands in `forms`.

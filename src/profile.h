@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* profile.h: the one planner: from a present state (place, speed) to a goal, under the limits of the segments, into break
  * points (R3 to R6, P7). Places count from the begin of the motion. */
 #ifndef RKM04_SRC_PROFILE_H

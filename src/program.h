@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* program.h: the tape of a motor: 700 commands in a ring, and where its labels are (C2, C8, C9, C10).
  *
  * A command's number counts from 0 since the last reset and never comes again; its place is number % 700 + 1. */

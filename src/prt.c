@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "prt.h"
 
 #include "interp.h"

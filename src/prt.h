@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* prt.h: the PRT messages: request -> action -> answer (section 3). Knows messages 1-7 and 255, no syntax of programs. */
 #ifndef RKM04_SRC_PRT_H
 #define RKM04_SRC_PRT_H

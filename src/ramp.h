@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* ramp.h: break points -> the tick of every pulse. Whole numbers only, no I/O; knows nothing but break points (R1, R2).
  *
  *   speed                    A leg lies between two break points. On it, with y = 2e12 * (position - next pulse) and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* report.h: telling the port what happened. Callbacks that the port does not have are passed over. */
 #ifndef RKM04_SRC_REPORT_H
 #define RKM04_SRC_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* store.h: the flash slots of the four motors (U5, P6; bytes: docs/SPEC.md, "Flash"). */
 #ifndef RKM04_SRC_STORE_H
 #define RKM04_SRC_STORE_H

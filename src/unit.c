@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include <rkm04/unit.h>
 
 #include "interp.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "wide.h"
 
 uint64_t wide_divide(struct wide number, uint64_t divisor, uint64_t *rest)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wide.h: the few operations on 128-bit numbers that planning a motion needs, the same on every machine. */
 #ifndef RKM04_SRC_WIDE_H
 #define RKM04_SRC_WIDE_H

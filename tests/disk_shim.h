@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* disk_shim.h: the disk under a flash image, which loses its power or is full. It stands between flash_file.c and the system
  * (linked with --wrap) and knows what a machine that loses its power may lose: whatever was not synced. */
 #ifndef RKM04_TESTS_DISK_SHIM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fault_rig.h: a line with faults, and a master that keeps all it hears, for tests. */
 #ifndef RKM04_TESTS_FAULT_RIG_H
 #define RKM04_TESTS_FAULT_RIG_H

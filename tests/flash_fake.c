@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "flash_fake.h"
 
 #include <string.h>

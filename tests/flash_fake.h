@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* flash_fake.h: a flash in memory that knows the rules of real ones and breaks on demand, for tests.
  *
  * RKM04_FLASH_BLOCKS blocks of RKM04_FLASH_BLOCK_SIZE bytes. An erased byte reads FF. Programming works on units of 8 bytes,

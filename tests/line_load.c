@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* line_load.c: a full line at its hardest: sixteen units with four motors each at 16 000 steps/s, polled as fast as 19200 baud
  * allow, for more than ten minutes of virtual time. No step and no answer is lost, and every answer is right to the step.
  * One case alone: CK_RUN_CASE=load ./line_load */

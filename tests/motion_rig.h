@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* motion_rig.h: one motor under test against the reference: its pulses as bare ticks, so that 16 000 000 of them fit.
  *
  * A rig can be branched: `save = *rig; …; *rig = save;` takes everything back, the unit included (its state is plain data). */

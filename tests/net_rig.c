@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "net_rig.h"
 
 #include <arpa/inet.h>

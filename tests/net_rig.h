@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* net_rig.h: a line over TCP as its owner and its clients see it, with real sockets on the loopback. */
 #ifndef RKM04_TESTS_NET_RIG_H
 #define RKM04_TESTS_NET_RIG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* plant_rig.h: a line of one unit with a plant, for tests: what moves, what is told. */
 #ifndef RKM04_TESTS_PLANT_RIG_H
 #define RKM04_TESTS_PLANT_RIG_H

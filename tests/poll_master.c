@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* poll_master: a master that starts the same motion on all motors of all units of a line and then asks every unit for its
  * positions, one after the other, as fast as it gets answers, until all have arrived.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "power_rig.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* power_rig.h: a unit whose power is cut in the middle of a store, and what it finds when the power is back.
  *
  *     power_prepare(&sequence);                         // old programs in flash, new ones in memory

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* recorder.h: a port that remembers all that a unit does, for tests. */
 #ifndef RKM04_TESTS_RECORDER_H
 #define RKM04_TESTS_RECORDER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* reference.h: an independent opinion on when the pulses of a motion are due (R1-R6), for tests.
  *
  * Single motions from rest are decided exactly in whole numbers. Everything else is a track: legs of constant acceleration

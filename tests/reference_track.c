@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* reference_track.c: motions as legs of constant acceleration, in numbers of REF_BITS bits (R4-R6, P7). */
 #include "reference.h"
 

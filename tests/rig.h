@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rig.h: one unit on a test bench: recorder, flash, short calls, and the closed forms of specification section 6 to compare with.
  *
  *     static struct rig rig;

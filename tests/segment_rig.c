@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "segment_rig.h"
 
 #include <string.h>

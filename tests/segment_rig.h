@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* segment_rig.h: one RS485 line with a master that keeps all it hears, for tests. */
 #ifndef RKM04_TESTS_SEGMENT_RIG_H
 #define RKM04_TESTS_SEGMENT_RIG_H

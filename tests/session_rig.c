@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "session_rig.h"
 
 #include <inttypes.h>

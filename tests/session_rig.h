@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* session_rig.h: a line that lives through random sessions (requests, programs, inputs, faults, power) and takes down all that
  * can be seen of it, for tests of snapshots and records. */
 #ifndef RKM04_TESTS_SESSION_RIG_H

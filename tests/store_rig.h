@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* store_rig.h: four slots on a flash that breaks on demand, and programs to store there. */
 #ifndef RKM04_TESTS_STORE_RIG_H
 #define RKM04_TESTS_STORE_RIG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* story.h: random programs with random inputs, texts and frames, run at different paces, for K3: time may be cut into any
  * pieces. A failure names the seed of its story. */
 #ifndef RKM04_TESTS_STORY_H

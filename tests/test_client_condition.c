@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_client_condition.c: conditions as one types them into a shell, and the JSON they mean.
  * One test alone: CK_RUN_CASE=several ./test_client_condition */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_client_cut.c: how rkmctl cuts a program that does not fit one message (specification L4, C1-C4, C9).
  * One case alone: CK_RUN_CASE=pieces ./test_client_cut */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_client_panel.c: the front panel in a terminal of any size.
  * One test alone: CK_RUN_CASE=sizes ./test_client_panel */
 #include <check.h>

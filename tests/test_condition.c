@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_condition.c: conditions to wait for: what they read, when they hold, what they say. One case alone:
  * CK_RUN_CASE=CASE ./test_condition */
 #include <check.h>

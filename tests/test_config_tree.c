@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_config_tree.c: configuration files: what is read, and how errors are reported.
  * One test case alone: CK_RUN_CASE=reading ./test_config_tree */
 #include <check.h>

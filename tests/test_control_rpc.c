@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_control_rpc.c: requests of the control socket, line by line.
  * One test case alone: CK_RUN_CASE=requests ./test_control_rpc */
 #include <check.h>

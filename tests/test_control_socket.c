@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_control_socket.c: the file of the control socket: whose it is, and what is never touched.
  * One test case alone: CK_RUN_CASE=socket ./test_control_socket */
 #include <check.h>

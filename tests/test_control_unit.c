@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_control_unit.c: what the control socket does to a unit and shows of it, on a line without a socket: state, di.set, reset,
  * power, switch. One test case alone: CK_RUN_CASE=state ./test_control_unit */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a pulse costs a microcontroller: the basic blocks of the core that are passed, counted by the compiler (-O0, so that they
  * are those of the source). They are the same on every run and machine; time is not. The limits are a fiftieth above what was
  * counted: with a bad guess of the next interval (ramp.c) the pulses stay exact to the tick, and only here it shows. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_coverage.c: what a client has exercised (coverage.h). One test alone: CK_RUN_CASE=coverage ./test_coverage */
 #include <check.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_exec_program.c: the arguments [M=]FILE of `rkm04 exec`. One test alone: CK_RUN_CASE=arguments ./test_exec_program */
 #include <check.h>
 #include <stdio.h>

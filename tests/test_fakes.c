@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_fakes.c: what the other tests lean on: the flash that breaks on demand and the recording port. */
 #include <check.h>
 #include <stdio.h>

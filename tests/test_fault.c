@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_fault.c: when a fault on demand acts, and what can be said about it. One case alone: CK_RUN_CASE=CASE ./test_fault */
 #include <stdio.h>
 #include <stdlib.h>

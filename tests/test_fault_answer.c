@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_fault_answer.c: what a host sees of faults of answers. One case alone: CK_RUN_CASE=CASE ./test_fault_answer */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_fault_flash.c: flash that fails, power that goes in the middle of an operation, inputs that are stuck. One case alone:
  * CK_RUN_CASE=CASE ./test_fault_flash */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_fault_line.c: what a host sees of faults of bytes, of the line and of the adapter. One case alone:
  * CK_RUN_CASE=CASE ./test_fault_line */
 #include <stdio.h>

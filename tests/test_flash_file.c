@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_flash_file.c: the flash image of the emulator when its process is killed, the machine loses its power, or the disk is
  * full (U5, P6). RKM04_TEST_LONG=1 makes more of it. One case alone: CK_RUN_CASE=CASE ./test_flash_file */
 #include <check.h>

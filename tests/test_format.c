@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_format.c: canonical text (P8), valid commands, and the reader on random texts.
  *
  * One case alone: CK_RUN_CASE=canonical ./test_format */

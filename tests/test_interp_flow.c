@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_flow.c: time, the tape, loops, calls, jumps and blocks: K2, K4, C2, C7, C8, C9 of the specification. */
 #include <check.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_functions.c: simulation, outputs of compound motions, G, H, Y, the LED: C11, C12, C13, E1, U6, R7, R8. */
 #include <check.h>
 

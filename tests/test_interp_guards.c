@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_guards.c: the guards M, N, U, the total stop X and limit moves: C5, C6, R5 of the specification. */
 #include <check.h>
 

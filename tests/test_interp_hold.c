@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_hold.c: K and C75, C3 of the specification. */
 #include <check.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_memory.c: the program memory as a ring, T40, flash and power-up: C10, U5, U8 of the specification. */
 #include <check.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_order.c: what meets in one slot: K, C75, V, new commands and inputs (K2, C3, C4, C6); what is told of it. */
 #include <check.h>
 

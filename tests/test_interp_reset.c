@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_reset.c: the reset of a motor, C1 of the specification. */
 #include <check.h>
 #include <string.h>

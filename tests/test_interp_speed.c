@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_speed.c: the stand-alone V, C4 of the specification: when it is a change of speed and when a command. */
 #include <check.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_interp_stored.c: commands that arrive in a hold, after a total stop or at a fault, C3 of the specification. */
 #include <check.h>
 

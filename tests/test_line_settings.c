@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_line_settings.c: the client's settings, and what is heard between ends that do not agree (U7).
  * One test alone: CK_RUN_CASE=ear ./test_line_settings */
 #include <asm/termbits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_link.c: the framings, L1 and L2 of the specification. One test alone: CK_RUN_CASE=hdlc ./test_link */
 #include <check.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Changes of speed on the run at every slot (C4, R6, R4): every pulse within a tick, the number of steps exact. */
 #include <stdio.h>
 #include <stdlib.h>

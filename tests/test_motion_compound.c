@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Compound motions (R4, P7, C12): every pulse within a tick of the reference, the number of steps exact. RKM04_TEST_SEED and
  * RKM04_TEST_SCALE give other and more random motions. */
 #include <math.h>

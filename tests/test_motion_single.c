@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Single motions from rest, every pulse to the tick (R1, R2, R3, R7, R8). RKM04_TEST_SEED and RKM04_TEST_SCALE give other
  * and more random motions; RKM04_TEST_LONG=1 adds those of minutes. */
 #include <stdlib.h>

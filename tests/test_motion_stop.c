@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Stops by K, M, N, X at every slot (R5, C3, C5, C6, P7): the number of steps exact, the pulses within a tick. A whole number of
  * steps is a knife edge; the searches below find stops on both sides of it, at distances down to 10^-8 of a step and less. */
 #include <math.h>

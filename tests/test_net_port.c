@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_net_port.c: a line over TCP, with real sockets on the loopback. One test alone: CK_RUN_CASE=clients ./test_net_port */
 #include <arpa/inet.h>
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_notify.c: how the emulator says that it is ready (sd_notify(3), --ready-fd).
  * One case alone: CK_RUN_CASE=manager ./test_notify */
 #include <check.h>

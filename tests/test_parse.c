@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_parse.c: reading the command language, section 5 of the specification.
  *
  * One case alone: CK_RUN_CASE=numbers ./test_parse */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_plant.c: what the motors move, and what its switches do to the inputs.
  * One test case alone: CK_RUN_CASE=motors ./test_plant */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_plant_command.c: plant.get and plant.set. One test case alone: CK_RUN_CASE=commands ./test_plant_command */
 #include <check.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_plant_read.c: plant files: what is refused, and with which words.
  * One test case alone: CK_RUN_CASE=files ./test_plant_read */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_plant_stall.c: which pulses a rotor follows. One test case alone: CK_RUN_CASE=limits ./test_plant_stall */
 #include <check.h>
 #include <stdlib.h>

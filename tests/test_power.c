@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_power.c: the power goes at every operation of every kind of store (U5, P6). Prints how many cuts were made.
  * RKM04_TEST_LONG=1 makes more of them. One case alone: CK_RUN_CASE=CASE ./test_power */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Knife edges of the planner: where a step more or less hangs on the last places (R5, P7). The motions were searched for among
  * some 10^11. test_motion_stop and test_motion_change judge many more by a reference. */
 #include <check.h>

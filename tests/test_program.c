@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_program.c: the program memory, C2, C8, C9 and C10 of the specification. One case alone: CK_RUN_CASE=ring ./test_program */
 #include <check.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_program_text.c: program texts as people write them. One test alone: CK_RUN_CASE=texts ./test_program_text */
 #include <check.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_prt.c: the messages and their answers, P1-P6 and P8 of the specification, without framing. */
 #include <check.h>
 #include <stdio.h>

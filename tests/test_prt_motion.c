@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_prt_motion.c: what Get Tabul Run and Get Pozic Run answer, P7 and P9 of the specification. */
 #include <check.h>
 #include <stdio.h>

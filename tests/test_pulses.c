@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The queue between a unit that runs ahead and the interrupt that plays it (src/port/common/pulses.c). */
 #include <check.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_record.c: records of sessions, and replays that compare.
  * One case alone: CK_RUN_CASE=CASE ./test_record */
 #include <stdlib.h>

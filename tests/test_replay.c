@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_replay.c: files that are no records, or damaged: every one gets a clear answer, in bounded time.
  * One case alone: CK_RUN_CASE=CASE ./test_replay */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_rfc2217.c: a serial port over telnet, RFC 2217. One test alone: CK_RUN_CASE=rfc2217 ./test_rfc2217 */
 #include <check.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_scenario.c: scenarios: what their steps do, how they fail, and what is no scenario. One case alone:
  * CK_RUN_CASE=CASE ./test_scenario */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_segment.c: a master and several units on one pair of wires (U4, U7, K4, P10, L1-L3). One case alone:
  * CK_RUN_CASE=CASE ./test_segment */
 #include <stdlib.h>

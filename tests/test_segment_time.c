@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_segment_time.c: a line without time (--baud 0), one in the framing plain (L2), how time may be cut (K3), and a full load.
  * One case alone: CK_RUN_CASE=CASE ./test_segment_time */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_serve_names.c: lists of addresses, and the names that are made of patterns (U4). One case alone:
  * CK_RUN_CASE=CASE ./test_serve_names */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_sim.c: a line with everything around it in virtual time. One test alone: CK_RUN_CASE=NAME ./test_sim */
 #include <check.h>
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_snapshot.c: coming back to a snapshot: what follows is what followed then, only later.
  * One case alone: CK_RUN_CASE=CASE ./test_snapshot */
 #include <stdlib.h>

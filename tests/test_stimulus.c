@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_stimulus.c: times and stimulus files of `rkm04 exec`. One test alone: CK_RUN_CASE=times ./test_stimulus */
 #include <check.h>
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_store.c: the flash slots, U5 and P6 of the specification. One case alone: CK_RUN_CASE=power ./test_store */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_store_record.c: the bytes of a record in flash (docs/SPEC.md, "Flash") and which of them are trusted, U5. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_trace.c: CSV traces of a line. One test alone: CK_RUN_CASE=order ./test_trace */
 #include <check.h>
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_trace_jsonl.c: traces as JSON lines, read with the library that clients use. One test alone:
  * CK_RUN_CASE=lines ./test_trace_jsonl */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_trace_vcd.c: traces as value change dumps. One test alone: CK_RUN_CASE=signals ./test_trace_vcd */
 #include <check.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_unit_line.c: the unit on its line, in both framings: addresses, silence, answers byte by byte, requests that come too
  * early: L1-L4, P10, U4 of the specification. */
 #include <check.h>

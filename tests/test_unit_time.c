@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_unit_time.c: time may be cut into any pieces: K3 of the specification.
  *
  * Random programs with random inputs, texts and frames run tick by tick, millisecond by millisecond, in random leaps and from

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_virtual_clock.c: --clock real|xN|max. One test alone: CK_RUN_CASE=clock ./test_virtual_clock */
 #include <check.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_wire.c: two wires, bit by bit (U7). Times are parts, twelfths of a tick. One case alone: CK_RUN_CASE=CASE ./test_wire */
 #include <stdlib.h>
 #include <string.h>

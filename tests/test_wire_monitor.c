@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_wire_monitor.c: what passes on the wires, in words: whole messages, and why something was dropped, refused or ignored
  * (L1, L2, P1-P10). One case alone: CK_RUN_CASE=CASE ./test_wire_monitor */
 #include <stdlib.h>

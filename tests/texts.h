@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* texts.h: the commands of section 5 of the specification, written down once more, and ways to read texts, for tests.
  *
  * The tables are on purpose not made from src/commands.h. */

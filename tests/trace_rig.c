@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "trace_rig.h"
 
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* trace_rig.h: a line whose trace goes to memory. */
 #ifndef TRACE_RIG_H
 #define TRACE_RIG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wire_rig.h: a line whose messages are taken down in words, for tests. */
 #ifndef RKM04_TESTS_WIRE_RIG_H
 #define RKM04_TESTS_WIRE_RIG_H

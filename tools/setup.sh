@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # tools/setup.sh: what has to be installed. Sourced by tools/run and tools/test; needs nothing but bash.
 #
 #   setup_packages run|test|quick    install the Debian packages that are missing, or say which ones are needed elsewhere

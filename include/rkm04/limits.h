@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rkm04/limits.h: the fixed figures of an RKM04 and the compile-time figures of a port.
  *
  * A port may set RKM04_MESSAGE_MAX before it includes any header of the core; library and user must agree on it. */

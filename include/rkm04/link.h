@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rkm04/link.h: framings, bytes on the line <-> addressed messages (specification section 4).
  *
  * A framing is one const record; the unit and a master use the same one. Adding a framing takes one file and one row in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rkm04/motion.h: what a motion is made of (specification section 6): its segments, its break points and the state of the
  * pulse generator. Types only: they are parts of struct rkm04_unit and are handled by profile.c and ramp.c.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rkm04/text.h: the command language, text <-> commands (manual chapters 6 and 7, specification section 5).
  *
  * A reader takes a text apart command by command without storing anything:

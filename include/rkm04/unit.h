@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rkm04/unit.h: one virtual RKM04, the unit for four stepper motors.
  *
  * Purpose: a firmware-faithful RKM04 as plain data. Bytes of the line and inputs come in, time comes in as an argument,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bus.h: one line with its units and the ways in for clients, driven by the event loop.
  *
  *     bus_ports --bus_take--> sim (units, two wires, virtual time) --> bus_ports

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bus_coverage.h"
 
 void bus_coverage_message(struct coverage *coverage, const struct wire_message *message)

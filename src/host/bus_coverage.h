@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bus_coverage.h: what of the messages on a line counts for the coverage of the protocol. */
 #ifndef RKM04_HOST_BUS_COVERAGE_H
 #define RKM04_HOST_BUS_COVERAGE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bus_files.h"
 
 #include <errno.h>

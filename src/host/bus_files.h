@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bus_files.h: what is written down about a line: traces, logs of the wires, a record. */
 #ifndef RKM04_HOST_BUS_FILES_H
 #define RKM04_HOST_BUS_FILES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bus_ports.h: the ways in for clients of a line: a pty of its own or a serial device, TCP, RFC 2217; and what they have set
  * their ports to. All who are there stand at the same two wires: each gets what the units say. */
 #ifndef RKM04_HOST_BUS_PORTS_H

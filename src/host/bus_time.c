@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bus_time.c: how a line follows its clock: catches up, sleeps, waits, steps. */
 #include <errno.h>
 #include <inttypes.h>

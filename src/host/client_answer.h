@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* client_answer.h: the unit's answers (specification section 3), for people or as JSON on stdout. */
 #ifndef RKM04_HOST_CLIENT_ANSWER_H
 #define RKM04_HOST_CLIENT_ANSWER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* client_condition.h: what to wait for, as one types it into a shell, turned into the JSON of docs/CONTROL.md.
  *
  *     m1.position>=5000   m2.true<=0     m1.steps>10       numbers: also index, commands; = != < <= > >=

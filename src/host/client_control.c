@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "client_control.h"
 
 #include <err.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Commands about what is around the units: plant, fault. */
 #include <err.h>
 #include <stdio.h>

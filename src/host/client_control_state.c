@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Commands about what there is: state, di. */
 #include <err.h>
 #include <stdio.h>

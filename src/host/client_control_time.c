@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Commands about time and what happens in it: wait, advance, events, trace. */
 #include <err.h>
 #include <errno.h>

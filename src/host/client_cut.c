@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "client_cut.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "client_panel.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "client_port.h"
 
 #include <err.h>

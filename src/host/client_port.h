@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* client_port.h: the way to the unit's line: a serial device, a pseudo terminal or tcp:HOST:PORT. */
 #ifndef RKM04_HOST_CLIENT_PORT_H
 #define RKM04_HOST_CLIENT_PORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "client_request.h"
 
 #include <err.h>

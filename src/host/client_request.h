@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* client_request.h: the commands of rkmctl that are one request to a unit on the line (manual 5.3). */
 #ifndef RKM04_HOST_CLIENT_REQUEST_H
 #define RKM04_HOST_CLIENT_REQUEST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "client_rpc.h"
 
 #include <err.h>

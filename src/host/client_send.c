@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "client_send.h"
 
 #include <err.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* client_terminal.h: what is known of the terminal before it is taken over. */
 #ifndef RKM04_HOST_CLIENT_TERMINAL_H
 #define RKM04_HOST_CLIENT_TERMINAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* client_usage.h: what to say to wrong usage. */
 #ifndef RKM04_HOST_CLIENT_USAGE_H
 #define RKM04_HOST_CLIENT_USAGE_H

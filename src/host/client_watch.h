@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* client_watch.h: `rkmctl watch`: the front panel of a unit, live in the terminal, or once as text. */
 #ifndef RKM04_HOST_CLIENT_WATCH_H
 #define RKM04_HOST_CLIENT_WATCH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* control_inside.h: what the parts of the control socket share. */
 #ifndef RKM04_HOST_CONTROL_INSIDE_H
 #define RKM04_HOST_CONTROL_INSIDE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What clients can ask for: the methods that have to do with this process and its clocks. Everything else is a command of the
  * line (src/sim/command.c). */
 #include <stdlib.h>

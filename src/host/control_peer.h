@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* control_peer.h: a client of the control socket: its lines, what waits to be read by it, and the limits of both. Knows nothing
  * of what the lines say.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* control_socket.h: a Unix stream socket that listens under a path, for its owner alone.
  *
  * Beside it lies PATH.lock, locked as long as the emulator runs; it says which socket is ours. Nothing else is ever removed, and

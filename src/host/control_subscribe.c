@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* subscribe and unsubscribe: what happens on a line, as notifications. */
 #include <stdio.h>
 #include <stdlib.h>

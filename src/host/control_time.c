@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wait and advance: answers that come when something has come true.
  *
  * An `advance` of a client that subscribes is done in slices, and goes on only when the client has read what it led to: nothing

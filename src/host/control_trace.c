@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* trace.start and trace.stop: files begun and ended while the emulator runs. */
 #include <stdlib.h>
 #include <string.h>

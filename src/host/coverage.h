@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* coverage.h: what a client has exercised out of all that there is: messages, motors, commands, flags, faults. Pure but for
  * coverage_write().
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The report of coverage.h: for people, as JSON, and into files. */
 #include "coverage.h"
 

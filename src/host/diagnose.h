@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* diagnose.h: what is wrong with a program text, for people: FILE:LINE:COLUMN: error: what was expected. */
 #ifndef RKM04_HOST_DIAGNOSE_H
 #define RKM04_HOST_DIAGNOSE_H

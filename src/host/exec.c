@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* `rkm04 exec`: programs in virtual time. Its options, texts and exit status; the run itself is exec_run.c. */
 #include <argp.h>
 #include <errno.h>

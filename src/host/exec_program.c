@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exec_program.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exec_program.h: the arguments [M=]FILE of `rkm04 exec`, and the texts they name. */
 #ifndef RKM04_HOST_EXEC_PROGRAM_H
 #define RKM04_HOST_EXEC_PROGRAM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exec_report.h"
 
 #include <errno.h>

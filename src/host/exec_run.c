@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exec_run.h"
 
 #include <signal.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "flash_file.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* flash_file.h: the unit's flash as an image file, which survives.
  *
  * The image is the blocks of the flash one after the other, RKM04_FLASH_BLOCKS x RKM04_FLASH_BLOCK_SIZE bytes, and nothing

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The emulator's own pty. It holds one slave descriptor itself, so the master never reports a hang-up (which would make
  * poll() return at once, for ever) and the settings stay within reach; who comes and goes is told by inotify.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "line_settings.h"
 
 #include <asm/termbits.h> /* not <termios.h>: the kernel's own structure has speeds of any number */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* line_settings.h: speed and form of characters a client has opened the line with, and what is heard where the two ends do
  * not agree (U7).
  *

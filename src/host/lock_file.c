@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lock_file.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* log.h: what the emulator tells on stderr. */
 #ifndef RKM04_HOST_LOG_H
 #define RKM04_HOST_LOG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rkm04: the virtual RKM04. This file chooses the sub-command. */
 #include <argp.h>
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A line over TCP.
  *
  *     client --on_read--> in --digest--> to_line --deliver--> bytes()

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* notify.h: telling whoever started the emulator that it is ready: the service manager over the socket $NOTIFY_SOCKET (the
  * protocol of sd_notify(3), which is documented and stable; the library would bring more than it saves), a parent process over
  * a file descriptor that it has passed on (--ready-fd). The caller ignores SIGPIPE. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* program_text.h: program texts as people write them, read from files. */
 #ifndef RKM04_HOST_PROGRAM_TEXT_H
 #define RKM04_HOST_PROGRAM_TEXT_H

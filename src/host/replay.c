@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* `rkm04 replay`: a record, again in virtual time. */
 #include <argp.h>
 #include <errno.h>

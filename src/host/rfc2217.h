@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rfc2217.h: a serial port over telnet (RFC 2217, 854), the access server's side: what the bytes of a client mean, and what is
  * answered. Pure: bytes in, bytes out.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rkmctl: the client. Sends one request to a unit, real or virtual, and shows the answer; or asks the emulator itself, on its
  * control socket, what no unit can be asked. This file is its command line. */
 #include <argp.h>

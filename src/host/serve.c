@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* rkm04 serve: lines with their units (bus.c) in one event loop, from the options to the exit status. */
 #include <errno.h>
 #include <inttypes.h>

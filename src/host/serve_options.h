@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* serve_options.h: the options of `rkm04 serve`. */
 #ifndef RKM04_HOST_SERVE_OPTIONS_H
 #define RKM04_HOST_SERVE_OPTIONS_H

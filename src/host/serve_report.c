@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "serve_report.h"
 
 #include <errno.h>

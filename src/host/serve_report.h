@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* serve_report.h: what `rkm04 serve` tells at its beginning and end. */
 #ifndef RKM04_HOST_SERVE_REPORT_H
 #define RKM04_HOST_SERVE_REPORT_H

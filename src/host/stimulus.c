@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stimulus.h"
 
 #include <stdlib.h>

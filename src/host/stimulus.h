@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* stimulus.h: what comes to a unit from outside in a run of `rkm04 exec`, a line each:
  *
  *     TIME di NN 0|1        input DI 01..08

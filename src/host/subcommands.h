@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* subcommands.h: the sub-commands of rkm04 and what its exit status says. */
 #ifndef RKM04_HOST_SUBCOMMANDS_H
 #define RKM04_HOST_SUBCOMMANDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* `rkm04 test`: scenarios in virtual time. Its options and exit status; a scenario itself is src/sim/scenario.c. */
 #include <argp.h>
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "test_case.h"
 
 #include <errno.h>

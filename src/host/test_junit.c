@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* JUnit XML. There is no standard; this is what Jenkins, GitLab and the publishers of GitHub read. */
 #include <inttypes.h>
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_report.h: what `rkm04 test` tells: a line a scenario for people, JSON for programs, JUnit XML for CI servers. */
 #ifndef RKM04_HOST_TEST_REPORT_H
 #define RKM04_HOST_TEST_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "virtual_clock.h"
 
 #include <string.h>

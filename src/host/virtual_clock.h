@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* virtual_clock.h: the monotonic time of the machine (ns) <-> the virtual time of the unit (ticks of 1 us). Pure arithmetic. */
 #ifndef RKM04_HOST_VIRTUAL_CLOCK_H
 #define RKM04_HOST_VIRTUAL_CLOCK_H

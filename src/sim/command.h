@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* command.h: what can be done to a line and asked of it from outside, at the present tick, by name and JSON parameters. The
  * control socket, scenarios and replays all go this way; docs/CONTROL.md describes each method.
  *

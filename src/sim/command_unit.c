@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What hands do to a unit, and what there is to be seen of it. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "condition.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* condition.h: something to wait for, from JSON: control methods `wait` and `advance`, and scenarios.
  *
  *     {"unit": 3, "motor": 1, "position": 5000}          the counter is there; or ">=": {"position": {">=": 5000}}

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Conditions from JSON. */
 #include <limits.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* condition_term.h: what a condition is made of. Inside: condition_read.c builds it, condition.c asks it. */
 #ifndef RKM04_SIM_CONDITION_TERM_H
 #define RKM04_SIM_CONDITION_TERM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "config_tree.h"
 
 #include <errno.h>

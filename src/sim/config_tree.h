@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* config_tree.h: configuration files, plants and scenarios: YAML, read by libyaml, which keeps line and column of everything.
  * Scalars are text; who reads them says what they are to be, so `01` is an input and `no` a word. Anchors, aliases and tags are
  * refused, and so are keys given twice. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* event_json.h: an event of a line (watch.h) as members of a JSON object, for traces and for clients of the control socket:
  *
  *     "t_us":14000,"kind":"step","unit":"3","motor":1,"value":1

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fault.h: faults on demand. Each has an optional unit, count, probability (seeded) and window of time. All of it is plain data
  * and virtual time: the same faults at the same ticks do the same. docs/FAULTS.md describes every kind.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Faults of the flash: operations that fail, and the power that goes in the middle of one. */
 #include "sim.h"
 

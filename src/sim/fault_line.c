@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Faults of bytes and answers: what the hooks of the segment do on a line with faults. */
 #include <stdio.h>
 

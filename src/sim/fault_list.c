@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fault.list: what faults there are, and how often each has acted. */
 #include "command.h"
 

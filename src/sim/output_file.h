@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* output_file.h: files that a line writes while it runs. */
 #ifndef RKM04_SIM_OUTPUT_FILE_H
 #define RKM04_SIM_OUTPUT_FILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* plant.h: what the motors of a unit move: a true mechanical position a motor, which follows the pulses, end stops, and switches
  * that drive inputs. Off unless configured; it never changes what the firmware does, only what happens at its pins.
  * docs/PLANT.md describes the files and the model.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* plant_command.c: plant.get and plant.set. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* plant_configure.c: the plants of a line from one text. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "plant_model.h"
 
 static json_t *hold_json(enum plant_hold hold)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* plant_read.c: plants as they stand in a file: docs/PLANT.md. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* plant_stall.c: which pulses a rotor can follow.
  *
  * Up to the speed `start` it follows anything. Above it, its speed may change only as fast as the motor has torque for; if it is

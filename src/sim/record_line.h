@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* record_line.h: the lines of a record about what came in (docs/RECORD.md), each written by a function of its own. */
 #ifndef RKM04_SIM_RECORD_LINE_H
 #define RKM04_SIM_RECORD_LINE_H

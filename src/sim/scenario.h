@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* scenario.h: a scenario: what is done to a line of units and what must come of it, from a text file, in virtual time.
  * docs/SCENARIOS.md describes the file. */
 #ifndef RKM04_SIM_SCENARIO_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "scenario_bytes.h"
 
 #include <stdlib.h>

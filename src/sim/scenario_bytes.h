@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* scenario_bytes.h: bytes as people write them in scenarios: pairs of hexadecimal digits and texts in double quotes, '04 "1"'.
  * In what is expected, `..` is any byte and `*` at the end any rest. */
 #ifndef RKM04_SIM_SCENARIO_BYTES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The steps of a scenario. */
 #include <inttypes.h>
 #include <stdlib.h>

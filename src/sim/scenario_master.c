@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the master of a scenario sends, and what it makes of the answers. */
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* scenario_parts.h: what a scenario is made of. Inside: scenario_read.c and scenario_step.c build it, scenario_run.c and
  * scenario_do.c do it. */
 #ifndef RKM04_SIM_SCENARIO_PARTS_H

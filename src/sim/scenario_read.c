@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scenarios from texts. */
 #include <stdlib.h>
 #include <string.h>

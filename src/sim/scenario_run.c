@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scenario runs: time, stimuli, what must hold always. */
 #include <inttypes.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* scenario_running.h: a scenario while it runs. Inside: scenario_run.c has time and stimuli, scenario_do.c the steps,
  * scenario_master.c what the master sends and hears. */
 #ifndef RKM04_SIM_SCENARIO_RUNNING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Steps and stimuli of a scenario. */
 #include <limits.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "segment.h"
 
 static uint64_t earlier(uint64_t a, uint64_t b)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* segment.h: one RS485 line in virtual time: a master and up to sixteen units on one pair of wires. Pure: no file, no clock.
  *
  *     static struct segment segment;                              // large, zero-initialised

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* sim.h: a line with its units and everything around them, in virtual time: inputs, the plant that the motors move, flash,
  * faults on demand, and everybody who watches. No file, no clock, no event loop: `rkm04 serve` drives it by the clock,
  * `rkm04 test` and `rkm04 replay` as fast as it goes.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* snapshot.h: the line as it stands, to come back to: units, bytes under way, inputs, flash, plant, faults.
  *
  * Coming back does not turn the line's time back: ticks go on, and everything that has a time is moved along, so that what

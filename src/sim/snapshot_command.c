@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The commands snapshot and restore. */
 #include <errno.h>
 #include <stdlib.h>

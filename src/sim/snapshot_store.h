@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* snapshot_store.h: the named snapshots of a sim, and what commands and records have to know of one another. Inside. */
 #ifndef RKM04_SIM_SNAPSHOT_STORE_H
 #define RKM04_SIM_SNAPSHOT_STORE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "state_json.h"
 
 static json_t *motor_json(const struct rkm04_unit *unit, unsigned motor)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* state_json.h: the state of a unit as JSON. */
 #ifndef RKM04_HOST_STATE_JSON_H
 #define RKM04_HOST_STATE_JSON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* tally.h: what goes out of a line, in a form that can be compared: every byte that reaches the master, and of all else, for each
  * motor and each unit, a digest at the end of every span of time in which something happened. It does not depend on how time was
  * cut into pieces. */

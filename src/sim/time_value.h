@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* time_value.h: times as people write them, "250us", "1500ms", "2.5s", to the tick of 1 us. */
 #ifndef RKM04_HOST_TIME_VALUE_H
 #define RKM04_HOST_TIME_VALUE_H

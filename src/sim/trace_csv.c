@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Rows `t_us,source,event,value`. With several units on the line the source has the unit's name in front: `3.m1`. */
 #include "digits.h"
 #include "trace_writer.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One JSON object a line: `begin` with what there is, every event as in event_json.h, `end`. */
 #include <stdlib.h>
 

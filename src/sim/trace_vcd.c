@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Value change dump (IEEE 1364) for GTKWave and PulseView, 1 us. Every signal has a name of its own, as some readers drop the
  * scopes, and what people want to see in PulseView is a single bit, as it reads nothing else.
  *

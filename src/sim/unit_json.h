@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* unit_json.h: everything that can be seen of a unit, as JSON: what state_json() gives, and more (docs/CONTROL.md, `state`). */
 #ifndef RKM04_SIM_UNIT_JSON_H
 #define RKM04_SIM_UNIT_JSON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a motor waits for, in words. */
 #include <inttypes.h>
 #include <stdio.h>

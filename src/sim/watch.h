@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* watch.h: what happens on a line, for everybody who wants to know: traces, logs, clients of the control socket, recorders.
  *
  * Happenings are gathered as they come, put in the order of time (K2 within a tick), and handed to the watchers when nothing

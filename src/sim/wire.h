@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wire.h: two wires of RS485 at 19200 baud 8N1 (U7), bit by bit: what each station hears of what all of them send. Pure: no
  * file, no clock.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wire_file.h: a file that takes down what passes on the wires: FILE.log for people, FILE.pcapng for Wireshark. The name chooses
  * the format. docs/WIRE.md describes both. */
 #ifndef RKM04_SIM_WIRE_FILE_H

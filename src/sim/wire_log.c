@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wire_log.c: a line of text for every frame, or what was dropped of one. */
 #include "wire_format.h"
 #include "wire_words.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wire_monitor.h: listens to the two wires and takes the messages out of the bytes, whole ones and what was dropped, with the
  * reason. */
 #ifndef RKM04_SIM_WIRE_MONITOR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "wire_text.h"
 
 static const char hex[] = "0123456789ABCDEF";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "wire_words.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bench.c: what the core costs. Prints one JSON object a line; every time is CPU time, the median of some runs.
  *
  *     bench [--quick] [--repeat N] [NAME]...

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bench_control: what the control socket costs.
  *
  *     bench_control RKM04 [SECONDS [CALLS]]

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bench_files: what the files cost that `rkm04 serve` writes, --trace and --wire.
  *
  *     bench_files [SECONDS [FORMAT…]]

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # check_output.sh BENCH: every benchmark runs, and each line it prints is one flat JSON object with positive figures.
 set -u
 bench=${1:?usage: check_output.sh BENCH}

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # instructions.sh: instructions of the core, counted by callgrind: the same on every run, whatever the machine does besides.
 # One JSON object a line. Needs valgrind. CC and CFLAGS (-O2) may be set.
 #

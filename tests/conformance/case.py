@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """case.py: the cases of the conformance kit, as data in *.json, and how each of their steps is done and judged.
 
 A file is a list of cases:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* in_process.c: a unit and nothing around it, for the conformance kit (--port in:PROGRAM): the core called directly, without
  * emulator, line or clock. A request a line on standard input, its answer a line that begins with `=` on standard output, the
  * events of an advance in lines before it:

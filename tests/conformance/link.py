@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """link.py: a serial line to a unit: the port, the two framings, requests and answers as bytes."""
 import select
 import socket

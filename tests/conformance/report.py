@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """report.py: what came of the cases, as text for people and as JUnit for machines."""
 import collections
 import time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """target.py: what stands around the unit under test: its time, its inputs, its power; with a control socket or a hand."""
 import json
 import os

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* digest.h: the same pulses on every machine. Sessions with a unit, the manual's and random ones, and a digest of each: over
  * every pulse, direction, output and event with its tick, every byte of every answer, every byte that comes to stand in flash,
  * and what can be seen of the unit at the end.

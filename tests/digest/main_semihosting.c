@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* main_semihosting.c: the digest on a bare Cortex-M under an emulator or debugger that offers semihosting. */
 #include "digest.h"
 

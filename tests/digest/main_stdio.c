@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* main_stdio.c: the digest on a machine with a C library. */
 #include <stdio.h>
 

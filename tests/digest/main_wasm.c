@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* main_wasm.c: the digest in WebAssembly, without a C library; run_wasm.mjs runs it. */
 #include "digest.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* manual.c: the manual's example programs and messages, with their inputs in a state in which something happens; and motions at
  * the limits. Which text counts where the manual disagrees with itself: docs/SPEC.md. */
 #include "digest.h"

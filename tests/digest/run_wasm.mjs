@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // run_wasm.mjs: run a WebAssembly module of main_wasm.c and print its lines.
 import { readFileSync } from 'node:fs';
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* stories.c: random sessions. The number of a story makes it, the same on every machine: programs of every command, most of
  * them sensible, and in the middle of them inputs, questions, K, C75, changes of speed, new programs, stores and power cuts.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz.h: what the fuzz targets share: choices made from the bytes of an input, and a way to fail.
  *
  * A target is one file fuzz_NAME.c with LLVMFuzzerTestOneInput(). tools/fuzz builds it with libFuzzer and looks for inputs that

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_answer.c: rkmctl and what comes back to it. Either a command to an emulator (client_control*.c), which gets any bytes in
  * any pieces (cut at `~`) and then the end of the connection (client_rpc.c); or any message shown as the answer of a unit
  * (client_answer.c). Whatever comes: an exit status of those there are, with --json nothing but JSON, and of a unit nothing that

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_flash.c: flash images at power-up (U5). Bytes of records come from the input; header, check value and generation are
  * put right unless the input says otherwise, so that it gets as far as the commands. A slot holds a whole program of valid
  * commands or none; the unit runs; what it stores then is there after the next power-up, and it never breaks the other slots. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_link.c: both framings: any bytes at any times (L1, L2). What is received comes out of a frame made of it again; a frame
  * that was damaged on the way is dropped or well formed. First byte: 1 plain, 2 times are in the input, 4 a frame is made of
  * the input, 8 a small buffer. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_loop.c: the event loop of `rkm04 serve` with its control socket: real lines (bus*.c), real sockets (control*.c, libuv),
  * time and files of loop_machine.c, so that the same bytes do the same again. Clients send any bytes in any pieces, stop reading,
  * leave in the middle, hang up; each checks what it gets (loop_client.c). When nothing is left to do, nothing is due, and nobody

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_message.c: the message handler (section 3): messages bare, in frames, damaged, for others, broadcast, and any bytes on
  * the line, with time between them. An answer has the number of its request, comes whole out of its frame, and comes only to
  * whom it is due. First byte: 1 plain, 2 slow changes of speed, the rest n: each n-th operation of the flash fails. Then

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_parse.c: any bytes as a program text (section 5). Reading always gets on; what is read is valid; its canonical text,
  * with blanks, without, and with comments, is read as the same commands (P8). */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_plant.c: any text as a plant of one unit or three. Refused with a reason; or it is taken, and the units run with it,
  * report their state, and take the same text again or say why not. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_record.c: any bytes as a record: wrong with a reason, or a replay that comes to an end. A record that is the same once
  * is the same again. */
 #include <string.h>

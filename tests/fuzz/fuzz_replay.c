@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_replay.c: runs a fuzz target on the files given, and on all files of the folders given. No file at all is a failure. */
 #include <dirent.h>
 #include <stdbool.h>

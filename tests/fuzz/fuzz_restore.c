@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_restore.c: any bytes as the file that `restore` reads: refused with a reason, and nothing but what flash shows is
  * changed; or the line is as it was, and goes on. The file is one in memory. */
 #include <string.h>

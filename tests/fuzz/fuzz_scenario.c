@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_scenario.c: any text as a scenario: refused with a reason, or it runs to an end. The files that it names are a plant
  * and a program. What a failure says is complete. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fuzz_stimulus.c: any bytes as a stimulus file of `rkm04 exec`: refused with as many lines as there are errors, or entries in
  * the order of time. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "loop_client.h"
 
 #include <errno.h>

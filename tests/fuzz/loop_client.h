@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* loop_client.h: a client of the control socket, and what it may expect of it (docs/CONTROL.md): each request with an id is
  * answered once, in its turn but for `wait`; each line that is none gets one error; events are of a subscription that there is,
  * of the kinds asked for, and in the order of time with the answers; the connection stays until the client has ended its

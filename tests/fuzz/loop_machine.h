@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* loop_machine.h: the machine under the event loop of `rkm04 serve`, as far as it could make a run depend on the moment: its
  * time, which goes on when the caller says so and a little with every look at it; its timers, which are due by that time; its
  * files, which all lie in one temporary folder whatever their names; and the log, which nobody reads.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* oracle.h: what must hold of the pulses of any unit, whatever its programs, inputs and messages are: a port that looks at
  * them as they come, and aborts. */
 #ifndef RKM04_TESTS_FUZZ_ORACLE_H

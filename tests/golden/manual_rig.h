@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* manual_rig.h: what the tests of the manual's example programs share: one unit, and its motions accounted for one by one. */
 #ifndef RKM04_TESTS_MANUAL_RIG_H
 #define RKM04_TESTS_MANUAL_RIG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_examples.c: the example programs of the manual's chapter 9, with their inputs in each state the text describes.
  *
  * Times: a text at tick 0 begins in slot 1000, a command takes a slot, the command behind a motion is executed in the first slot

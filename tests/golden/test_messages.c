@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_messages.c: every message example of the manual's section 5.3, byte for byte: as a bare message, in an hdlc frame and in
  * a plain one. The frames are written out, check sums and all, so that nothing of the product vouches for itself. */
 #include <check.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_programs.c: the example programs of the manual's sections 4.6 and 7 (parameters, jumps, compound motion), run as
  * printed; where print, prose and figure differ, section 7 of the specification says what counts.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* test_programs_stops.c: the example programs of the manual's section 7 that stop, wait, guard or limit, run as printed; where
  * print, prose and figure differ, section 7 of the specification says what counts. Times: see test_programs.c. */
 #include <check.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs a story on the core and on the reference, and finds the first difference."""
 
 import subprocess

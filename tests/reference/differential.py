@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """differential.py: the core against the reference interpreter, on random stories (docs/TESTING.md)."""
 
 import argparse

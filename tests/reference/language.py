@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The command language of the RKM04: text to commands and back (docs/SPEC.md, section 5)."""
 
 INPUTS = range(1, 9)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Motions of the RKM04 by closed forms (docs/SPEC.md, section 6).
 
 A motion is a list of legs. On a leg the square of the speed is a linear function of the place, which makes everything a closed

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One motor of the RKM04: its tape and its interpreter (docs/SPEC.md, sections 2, 5 and 6)."""
 
 import language

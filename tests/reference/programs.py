@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Random stories. A number of a story, with the seed, makes it: the same on every machine."""
 
 import math

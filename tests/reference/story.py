@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Stories: what a unit is told and asked, and when. A line each:
 
     latency MS                how long a change of speed takes (C4); first, 0 if missing

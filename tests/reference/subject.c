@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* subject: runs stories of the differential test on the core and tells what happened.
  *
  * Standard input, a line each: `i TICK MASK` inputs, `m TICK HEX` a message, `q LATENCY` a new unit (speed change latency in

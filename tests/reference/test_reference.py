@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """The reference itself, against figures that the manual and the specification print, and the differential test's own ability to
 find a difference and to make it small."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A reference RKM04: four motors, time, inputs and messages (docs/SPEC.md, sections 1 to 3). It is written to be read and
 compared with the specification, not to be fast. Times are ticks of 1 us."""
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* chaos.c: everything goes wrong at once, nothing of it is foreseen; then the line is as before. */
 #include "soak.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* job.h: random programs whose outcome is known: a model that counts (steps, outputs, variables) and knows nothing of slots,
  * ramps and ticks runs them beforehand. */
 #ifndef RKM04_TESTS_SOAK_JOB_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* soak: days of virtual time of random host traffic against sixteen units, in one process.
  *
  *     soak --days DAYS [--seed SEED] [--quiet]

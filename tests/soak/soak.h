@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* soak.h: sixteen units on a line in virtual time, a master that knows what every answer and every counter has to be, and
  * everything around them that goes wrong. */
 #ifndef RKM04_TESTS_SOAK_SOAK_H

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """soak_serve.py: hours of a real `rkm04 serve` in accelerated time, under everything that hosts, tests and hands do to it.
 
     RKM04=… soak_serve.py [--hours HOURS] [--speed N] [--seed SEED] [--quiet]

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Other ways to a unit: a serial device that exists already (--port), and TCP through socat.
 
 . "$(dirname "$0")/lib.sh"

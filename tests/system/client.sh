@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # rkmctl against a real unit: long programs, refusals, silence, broadcast, machine-readable answers.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Clocks: the same session whatever the clock does, stepped time, changes at run time, a process that was stopped.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The conformance kit on units that conform, with and without a control socket, and on some that do not.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The container file. Where no engine runs the image cannot be built; so its text is checked, by hadolint where that is installed,
 # and what the container would start is started here.
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The control socket: every example of docs/CONTROL.md, and clients that behave badly.
 . "${0%/*}/lib.sh"
 

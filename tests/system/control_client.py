@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """control_client.py: a client of the control socket, as small as can be, for the system tests."""
 import json
 import select

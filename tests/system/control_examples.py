@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """control_examples.py: executes the examples of docs/CONTROL.md and compares the answers.
 
     RKM04=… RKMCTL=… control_examples.py CONTROL.md [HEADING | --write]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """control_robust.py: clients of the control socket that behave badly, and what others see of that.
 
     RKM04=… RKMCTL=… control_robust.py [CASE]"""

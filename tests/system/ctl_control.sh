@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # rkmctl --control against a real emulator: what it shows, what it changes, how it waits, what it says to wrong usage.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # rkmctl watch in a terminal: what the panel shows, on which terminals and sizes, and how it leaves them.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # rkm04 exec: programs in virtual time, several motors, what comes from outside, the end of a run and its exit status.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # rkm04 exec: wrong texts, files and options, each with its place and what was expected; nothing is run then.
 
 . "$(dirname "$0")/lib.sh"

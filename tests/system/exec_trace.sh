@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # rkm04 exec --trace: every row of small programs, to the byte.
 
 . "$(dirname "$0")/lib.sh"

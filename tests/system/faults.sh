@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Faults on demand, as a host sees them that knows nothing of them: byte by byte on the pty and over TCP.
 
 . "$(dirname "$0")/lib.sh"

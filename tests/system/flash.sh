@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # What flash keeps: a stored program is there after a restart and starts by itself (U5, P6).
 
 . "$(dirname "$0")/lib.sh"

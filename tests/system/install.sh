@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # What `cmake --install` puts in place is enough for a program of somebody else.
 # BUILD: the build folder; CC: the compiler; SANITIZE: its options if the library was built with sanitizers.
 

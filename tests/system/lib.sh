@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # lib.sh: what the system tests share. Real processes, one temporary folder a case, no fixed ports or paths, and no waiting
 # but for a condition with a time limit.
 #

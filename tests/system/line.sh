@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The line as clients meet it: their settings, several ways in, the end when nobody is there, coverage, load.
 
 . "$(dirname "$0")/lib.sh"

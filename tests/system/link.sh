@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The link and the flash image belong to one unit: a stale link of a killed unit is replaced, anything else is refused.
 
 . "$(dirname "$0")/lib.sh"

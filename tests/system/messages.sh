@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The message examples of the manual's chapter 5.3, byte for byte over the unit's own pty, in both framings (L1, L2).
 # The port is opened like a file, without any setting of the line: it must be raw from the start.
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Host software with node-serialport on the pty. Where node does not know it, npm installs it into the build folder, once.
 
 . "$(dirname "$0")/lib.sh"

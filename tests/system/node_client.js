@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Host software with node-serialport, as node.sh runs it: node_client.js WHAT PATH. An exception is a failed test.
 "use strict";
 const assert = require("assert");

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Wrong options: exit status 2 and a message that names what was expected; --help and --version: 0, on stdout.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # 19200 baud, 10 bits a byte, in both directions (U7, --baud).
 
 . "$(dirname "$0")/lib.sh"

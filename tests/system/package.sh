@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The Debian package: built by CPack, installed by dpkg into a folder of its own, used, and removed again.
 # CC: the compiler. It needs root, as dpkg does, and Debian's tools; it is skipped where they are not.
 

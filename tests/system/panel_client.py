@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The front panel in a terminal of its own, as ctl_panel.sh runs it:
 
     panel_client.py ROWS COLUMNS PROGRAM ARGUMENT... -- STEP...

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # rkm04 serve --plant: counter and true position side by side, what is wrong with a plant file, what happens to a plant in
 # traces, records and snapshots.
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The emulator is killed in each of its writes to the flash image, or the disk is full: a slot holds its old or its new program
 # (U5, P6). power_shim.c kills. RKM04_TEST_LONG=1 kills at every call in three ways, also while a full memory is stored.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* power_shim.c, for LD_PRELOAD: kills the process in one of its calls that write or sync a flash image (pwrite, fdatasync): in
  * the call of number $SHIM_KILL_AT, after the first $SHIM_DONE percent of the bytes if it is a write. The file $SHIM_LOG gets a
  * line for every call before. */

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The unit's own pty: what a client meets who opens, closes and opens it again, and what is left when the unit ends.
 
 . "$(dirname "$0")/lib.sh"

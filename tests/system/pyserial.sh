@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Host software with pyserial (python3-serial) on each way to the line: pty, socket:// (raw TCP), rfc2217://.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Host software with pyserial, as pyserial.sh runs it: pyserial_client.py WHAT URL. An exception is a failed test."""
 import sys
 import time

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The firmware for Arm's MPS2 board under QEMU: an RKM04 on a serial port. QEMU puts the board's UART on a pty and logs what is
 # written to the pins, since it has nothing there.
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The firmware for QEMU's RISC-V machine: the template of a port with its places filled in. The machine has no pins; `pins' of the
 # firmware stands for them, and QEMU's monitor shows it.
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # replay.sh: records of `rkm04 serve' and what `rkm04 replay' makes of them.
 . "$(dirname "$0")/lib.sh"
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # rkm04 test: scenarios from files, what is said about them, exit status, records that can be repeated.
 
 . "$(dirname "$0")/lib.sh"

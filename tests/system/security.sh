@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # What other users of the machine can do to an emulator, and what its programs are built with (docs/SECURITY.md).
 # The cases with another user need root: they take the user `nobody` for him.
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The client side of ser2net's library (gensiot of gensio-bin) against --rfc2217.
 
 . "$(dirname "$0")/lib.sh"

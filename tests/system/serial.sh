@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # A serial device with RS485 (--port, --rts). There is none on a test machine: serial_shim.c makes a pty look like one.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* serial_shim.c, for LD_PRELOAD: makes a pty look like an RS485 device. What is asked of the driver goes to the file $SHIM_LOG, a
  * word a line; without $SHIM_RS485 the driver has no RS485 mode. */
 #include <dlfcn.h>

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # tools/setup.sh: which packages are installed, and when the package manager is left alone. The package manager here is a
 # stand-in that writes down how it was called.
 

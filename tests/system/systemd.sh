@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The units for systemd: understood by systemd, and what they start is what they promise. No service manager is needed: systemd's
 # own checker reads the units, and a socket takes the part of the manager.
 # BUILD: the build folder.

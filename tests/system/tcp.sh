@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The line over TCP: where it listens, who gets in, what is left when somebody ends.
 
 . "$(dirname "$0")/lib.sh"

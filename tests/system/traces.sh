@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # --trace FILE.vcd, .csv, .jsonl of rkm04 exec and rkm04 serve: one run in every format says the same, read by programs that
 # others wrote: GTKWave's vcd2fst and fst2vcd, sigrok-cli (the library of PulseView), Python's JSON.
 

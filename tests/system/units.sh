@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Several units on one line: each has its own address, state and flash; all hear everything (U4, L1, L3).
 
 . "$(dirname "$0")/lib.sh"

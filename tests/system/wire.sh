@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # --wire FILE.log: what passes on the wires, for people, while it passes.
 
 . "$(dirname "$0")/lib.sh"

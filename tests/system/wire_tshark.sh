@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # --wire FILE.pcapng: what stock Wireshark makes of it.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* For cppcheck, which does not read the headers of libraries: macros of jansson that look like no C without their definition. */
 #define json_array_foreach(array, index, value) \
     for (index = 0; index < json_array_size(array) && (value = json_array_get(array, index)); index++)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* flash.h: for boards without flash that a program may write: memory that behaves like it. The blocks lie in the section .blocks,
  * which has to be where a reset leaves it alone. They keep the rules of the real thing: a core that broke them would be found
  * out here. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "pulses.h"
 
 #include <rkm04/limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* pulses.h: for ports whose pulses are to be exact: the unit runs ahead of the clock, and what it wants done at which tick waits
  * here until a timer's interrupt does it, whatever the main loop is busy with. Knows no board: it calls the struct pulse_pins.
  *

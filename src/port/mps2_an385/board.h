@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* board.h: clock, pins and LEDs of the board. */
 #ifndef BOARD_H
 #define BOARD_H

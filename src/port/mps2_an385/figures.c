@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* figures.c: what the firmware costs, counted. Runs under QEMU with -icount shift=10: each instruction takes 1024 ns of the
  * board's time, so that its clock of 25 MHz counts 25.6 for each. Reports by semihosting, one figure a line: name, number.
  * See tools/port-figures, which builds and runs it. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* loop.h: the main loop. It keeps the unit ahead of the clock; what the unit wants done at which tick waits in pulses.c, and the
  * timer's interrupt does it. Motions are planned here: no pulse waits for that. */
 #ifndef LOOP_H

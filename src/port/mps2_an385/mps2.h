@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* mps2.h: the registers used of Arm's MPS2 board with image AN385 (Cortex-M3, 25 MHz); QEMU calls it mps2-an385. */
 #ifndef MPS2_H
 #define MPS2_H

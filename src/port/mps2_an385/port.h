@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* port.h: what the unit asks of this board. */
 #ifndef PORT_H
 #define PORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* start.c: what happens before main: the vectors, and memory as C expects it. */
 #include <stdint.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* uart.h: the serial line: bytes in and out by interrupt, RS485 driver on while there is something to say. */
 #ifndef UART_H
 #define UART_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* port.c: an RKM04 on QEMU's RISC-V machine "virt": the template with its places filled in, and nothing more. Pulses are sent
  * from the main loop, so they come late by what else it does; see mps2_an385 for pulses exact to the tick.
  *

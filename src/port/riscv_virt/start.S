@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* start.S: what happens before main. QEMU's virt machine begins at the start of its RAM. No interrupt is ever taken: WFI wakes
  * for what is enabled in mie, and the main loop looks by itself. */
     .section .start, "ax"

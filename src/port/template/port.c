@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* port.c: template of a port to a board. Copy the folder, fill in what says BOARD, and it is a unit.
  *
  * Build the core (the sources in src/) and this file with the same RKM04_MESSAGE_MAX; -DRKM04_MESSAGE_MAX=1024 makes a unit

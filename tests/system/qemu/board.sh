@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # board.sh: what the tests of boards under QEMU share. Sourced after lib.sh. QEMU puts the board's UART on a pty.
 
 tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
