@@ -148,7 +148,7 @@ bool interp_change_speed(const struct rkm04_unit *unit, struct rkm04_motor *moto
     if (!motor->motion.moving)
         return false;
     if (motor->change_speed == 0) {
-        motor->change_due = unit->now + (uint64_t)unit->config.speed_change_latency * 1000;
+        motor->change_due = unit->now + (uint64_t)unit->config.readings.speed_change * 1000;
         motor->change_after = motor->pendings;
     }
     motor->change_speed = speed;

@@ -69,7 +69,7 @@ static const struct rkm04_port deaf_port = {.direction = on_direction, .outputs 
 
 void motion_start(struct motion_rig *rig, uint16_t speed_change_latency)
 {
-    const struct rkm04_config config = {.node = 1, .speed_change_latency = speed_change_latency};
+    const struct rkm04_config config = {.node = 1, .readings.speed_change = speed_change_latency};
     if (!ticks)
         ticks = malloc(MOTION_ROOM * sizeof *ticks);
     ck_assert_ptr_nonnull(ticks);

@@ -242,7 +242,7 @@ void run_begin(struct run *run, const struct story *story)
     run->wired = 0;
     run->next = 0;
     run->dice = story->seed + 77;
-    rkm04_init(&run->unit, &(struct rkm04_config){.node = 1, .speed_change_latency = story->latency}, &recorder_port,
+    rkm04_init(&run->unit, &(struct rkm04_config){.node = 1, .readings.speed_change = story->latency}, &recorder_port,
                &run->record);
 }
 

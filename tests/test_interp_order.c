@@ -116,7 +116,7 @@ END_TEST
  * K. The rest runs at the speed in force at the hold. */
 static void change_and_hold(const char *before)
 {
-    const struct rkm04_config config = {.node = 1, .speed_change_latency = LATENCY};
+    const struct rkm04_config config = {.node = 1, .readings.speed_change = LATENCY};
     rig_power_up(&rig, &config);
     rig_accept(&rig, '1', "F5000 R");
     rig_to(&rig, 1000 * MS);

@@ -254,7 +254,7 @@ END_TEST
 
 START_TEST(C1_a_pending_change_of_speed_is_dropped)
 {
-    rig_power_up(&rig, &(struct rkm04_config){.node = 1, .speed_change_latency = 500});
+    rig_power_up(&rig, &(struct rkm04_config){.node = 1, .readings.speed_change = 500});
     rig_accept(&rig, '1', "F5000 R");
     rig_accept_at(&rig, 1 * SECOND, "V300");
     rig_accept_at(&rig, 1100 * MS, "\\");

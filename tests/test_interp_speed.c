@@ -18,7 +18,7 @@ static void teardown(void)
 
 static void with_latency(uint16_t latency)
 {
-    rig_power_up(&rig, &(struct rkm04_config){.node = 1, .speed_change_latency = latency});
+    rig_power_up(&rig, &(struct rkm04_config){.node = 1, .readings.speed_change = latency});
 }
 
 static uint32_t speed_at(uint64_t tick)

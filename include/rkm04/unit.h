@@ -22,6 +22,7 @@
 #include <rkm04/limits.h>
 #include <rkm04/link.h>
 #include <rkm04/motion.h>
+#include <rkm04/readings.h>
 #include <rkm04/text.h>
 
 /* ---- Errors ------------------------------------------------------------------------------------------------------- */
@@ -82,7 +83,7 @@ struct rkm04_port {
 
 struct rkm04_config {
     uint8_t node;                        /* DNode 1..16, switch S1 (U4) */
-    uint16_t speed_change_latency;       /* ms, 0..2000: how long C4 takes */
+    struct rkm04_readings readings;      /* all 0: as specified */
     const struct rkm04_framing *framing; /* NULL: rkm04_hdlc */
     const char *version_text;            /* up to 255 characters, must stay valid; NULL: RKM04_VERSION_TEXT */
 };

@@ -313,7 +313,7 @@ static error_t read_unit_option(int key, char *text, struct argp_state *state)
             argp_error(state, "--node: `%s' is wrong: expected " NODE_LIST_EXPECTED, text);
         return 0;
     case KEY_LATENCY:
-        options->config.speed_change_latency =
+        options->config.readings.speed_change =
             (uint16_t)number("speed-change-latency", text, 0, LATENCY_MAX, " of ms", state);
         return 0;
     case KEY_FRAMING:

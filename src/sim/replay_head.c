@@ -114,7 +114,7 @@ static bool read_settings(struct replay *replay, struct sim_config *config)
                 read_seed(replay, &config->seed) && replay_flag(replay, "outputs", false, &replay->outputs);
     if (!well)
         return false;
-    config->unit.speed_change_latency = (uint16_t)latency;
+    config->unit.readings.speed_change = (uint16_t)latency;
     config->unit.version_text = replay->version_text;
     config->turnaround = (uint32_t)turnaround;
     return true;

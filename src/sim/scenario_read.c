@@ -60,7 +60,7 @@ static bool read_line(struct scenario *scenario, const struct config_node *root)
     if (latency % 1000 != 0)
         well = config_error(config_get(root, "speed_change_latency"), "expected speed_change_latency in whole ms");
     config->turnaround = (uint32_t)turnaround;
-    config->unit.speed_change_latency = (uint16_t)(latency / 1000);
+    config->unit.readings.speed_change = (uint16_t)(latency / 1000);
     return well;
 }
 

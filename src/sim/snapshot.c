@@ -158,7 +158,7 @@ const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapsh
         const struct rkm04_config *here = &a->unit[at].unit.config, *there = &b->unit[at].unit.config;
         if (framing_of(here) != framing_of(there))
             return "the framing";
-        if (here->speed_change_latency != there->speed_change_latency)
+        if (here->readings.speed_change != there->readings.speed_change)
             return "the speed change latency";
         if (strcmp(text_of(here), text_of(there)) != 0)
             return "the version text";

@@ -99,7 +99,7 @@ static const struct rkm04_port without_pulses = {
 void session_begin(const struct session *session)
 {
     config = (struct rkm04_config){
-        .node = session->node, .speed_change_latency = session->latency, .framing = session->framing};
+        .node = session->node, .readings.speed_change = session->latency, .framing = session->framing};
     port = session->quiet ? &without_pulses : &with_pulses;
     for (unsigned block = 0; block < RKM04_FLASH_BLOCKS; block++)
         on_flash_erase(NULL, block);

@@ -200,7 +200,7 @@ static void tell(struct fuzz *fuzz)
     story.count = 0;
     story.time = story.leaps = 0;
     story.used = 0;
-    story.config = (struct rkm04_config){.node = 1, .speed_change_latency = mode & 1 ? 40 : 0};
+    story.config = (struct rkm04_config){.node = 1, .readings.speed_change = mode & 1 ? 40 : 0};
     story.cut = mode >> 1 & 3;
     story.snapshot = fuzz_byte(fuzz) % 32;
     dice = mode + 77u;

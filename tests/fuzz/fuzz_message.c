@@ -199,7 +199,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct fuzz fuzz = {data, size};
     uint8_t mode = fuzz_byte(&fuzz);
     struct rkm04_config config = {.node = NODE, .framing = mode & 1 ? &rkm04_plain : &rkm04_hdlc,
-                                  .speed_change_latency = mode & 2 ? 700 : 0};
+                                  .readings.speed_change = mode & 2 ? 700 : 0};
     failing = mode >> 2;
     operations = 0;
     memset(flash, 0xff, sizeof flash);

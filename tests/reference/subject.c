@@ -94,7 +94,7 @@ int main(void)
         uint64_t number = strtoull(line + 1, &rest, 10);
 
         if (line[0] == 'q') {
-            config.speed_change_latency = (uint16_t)number;
+            config.readings.speed_change = (uint16_t)number;
             rkm04_init(&unit, &config, &port, NULL);
             continue;
         }
