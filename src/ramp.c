@@ -35,6 +35,9 @@ static inline bool below(struct rkm04_fixed a, struct rkm04_fixed b)
 /* What cutting off may have lost: always added, so that a pulse due exactly at a tick is never a tick late. */
 static const struct rkm04_fixed ROUND_UP = {0, 4}, LAST_PLACE = {0, 1};
 
+/* What LAST_PLACE in w would add to y in 2^40 ticks: a level leg gets it at once, so that its speed stays a whole number. */
+static const struct rkm04_fixed LEVEL_ROUND_UP = {0, UINT64_C(1) << 40};
+
 /* ---- Instants ----------------------------------------------------------------------------------------------------- */
 
 static struct rkm04_instant later(struct rkm04_instant a, uint64_t ticks, struct wide places)
@@ -116,7 +119,10 @@ static void reckon_from_start(struct rkm04_ramp *ramp, struct rkm04_instant star
         struct wide gone = wide_difference((struct wide){0, 0}, (struct wide){start.high, start.low});
         uint64_t rise = (uint32_t)ramp->slope;
         y = sum(sum(y, times(sum(w, scaled(rise, gone)), gone)), ROUND_UP);
-        w = sum(sum(w, scaled(2 * rise, gone)), LAST_PLACE);
+        if (rise > 0)
+            w = sum(sum(w, scaled(2 * rise, gone)), LAST_PLACE);
+        else
+            y = sum(y, LEVEL_ROUND_UP);
     }
     ramp->y = y;
     ramp->w = w;

@@ -106,14 +106,19 @@ static struct result measure(struct result (*run)(const void *), const void *wit
 
 static const char constant_program[] = "\\ S100 V16000 A20000 F1000000 R";
 static const char ramp_program[] = "\\ S100 V16000 A20000 L80 F12500 R E"; /* at 12 500 steps V is not quite reached */
+/* Speeds and accelerations of which none is a multiple of another: ramps end within a tick, intervals are no whole ticks. */
+static const char *const mixed_program[RKM04_MOTORS] = {
+    "\\ S100 V16000 A20000 F1000000 R", "\\ S137 V13337 A9001 F1000000 R", "\\ S211 V9871 A30011 F1000000 R",
+    "\\ S2000 V7123 A4999 F1000000 R"};
+static const char *const quick_mixed_program[RKM04_MOTORS] = {
+    "\\ S100 V16000 A20000 F30000 R", "\\ S137 V13337 A9001 F30000 R", "\\ S211 V9871 A30011 F30000 R",
+    "\\ S2000 V7123 A4999 F30000 R"};
 static const char quick_constant_program[] = "\\ S100 V16000 A20000 F20000 R";
 static const char quick_ramp_program[] = "\\ S100 V16000 A20000 L2 F12500 R E";
 
-/* All four motors run a text to its end, a second at a time. */
-static struct result run_text(const void *text)
+/* To the end of all programs, a second at a time. */
+static struct result run_to_end(void)
 {
-    power_up();
-    set('0', text);
     double from = now_ns();
     do {
         rkm04_advance(&unit, SECOND);
@@ -121,9 +126,24 @@ static struct result run_text(const void *text)
     return (struct result){now_ns() - from, rkm04_now(&unit), sink.count};
 }
 
-static void print_pulses(const char *name, const char *text)
+static struct result run_text(const void *text)
 {
-    struct result r = measure(run_text, text);
+    power_up();
+    set('0', text);
+    return run_to_end();
+}
+
+static struct result run_texts(const void *texts)
+{
+    power_up();
+    for (unsigned i = 0; i < RKM04_MOTORS; i++)
+        set((char)('1' + i), ((const char *const *)texts)[i]);
+    return run_to_end();
+}
+
+static void print_pulses(const char *name, struct result (*run)(const void *), const void *with)
+{
+    struct result r = measure(run, with);
     if (r.count == 0)
         fail("no pulses came");
     printf("{\"bench\":\"%s\",\"motors\":%d,\"pulses\":%" PRIu64 ",\"ns_per_pulse\":%.2f,\"simulated_s\":%.3f,"
@@ -133,12 +153,17 @@ static void print_pulses(const char *name, const char *text)
 
 static void bench_constant(void)
 {
-    print_pulses("constant", quick ? quick_constant_program : constant_program);
+    print_pulses("constant", run_text, quick ? quick_constant_program : constant_program);
 }
 
 static void bench_ramp(void)
 {
-    print_pulses("ramp", quick ? quick_ramp_program : ramp_program);
+    print_pulses("ramp", run_text, quick ? quick_ramp_program : ramp_program);
+}
+
+static void bench_mixed(void)
+{
+    print_pulses("mixed", run_texts, quick ? quick_mixed_program : mixed_program);
 }
 
 /* Not to the end but at full speed all the while: what "four motors at 16 000 steps/s" cost. */
@@ -317,6 +342,7 @@ static const struct {
 } benches[] = {
     {"constant", bench_constant, "four motors, 1 000 000 steps each, 16 000 steps/s: a pulse"},
     {"ramp", bench_ramp, "four motors, 80 triangular moves of 12 500 steps each: a pulse"},
+    {"mixed", bench_mixed, "four motors, 1 000 000 steps each, speeds and accelerations that do not fit together: a pulse"},
     {"cruise", bench_cruise, "four motors at 16 000 steps/s for a minute"},
     {"idle_slot", bench_idle_slot, "four idle motors, advanced slot by slot"},
     {"wait_slot", bench_wait_slot, "four motors in a wait, advanced slot by slot"},

@@ -24,7 +24,7 @@ count() {
         END { print total - sink }')
 }
 
-for name in constant ramp exec; do
+for name in constant ramp mixed exec; do
     count "$name"
     pulses=$(sed 's/.*"pulses":\([0-9]*\).*/\1/' <<<"$line")
     awk -v name="$name" -v pulses="$pulses" -v instructions="$instructions" 'BEGIN {
