@@ -87,13 +87,29 @@ setup_packages() {
     }
 }
 
-# Build a preset; the compiler's talk is shown if it fails.
+# Hand the output of a build on as progress: one line that changes on a terminal, otherwise a line for each quarter.
+show_progress() {
+    local line percent shown=-1
+    while IFS= read -r line; do
+        [[ $line =~ ^\[\ *([0-9]+)%\] ]] || continue
+        percent=${BASH_REMATCH[1]}
+        if [[ -t 2 ]]; then
+            printf '\r%s: building: %3d %%' "${0##*/}" "$percent" >&2
+        elif ((percent / 25 > shown)); then
+            shown=$((percent / 25))
+            say "building: $percent %"
+        fi
+    done
+    [[ -t 2 ]] && printf '\r\033[K' >&2
+}
+
+# Build a preset with its progress; the compiler's output is shown if it fails.
 build_preset() {
     local log status
     log=$(mktemp) || exit 1
     say "building ($1)"
-    { cmake --preset "$1" && cmake --build --preset "$1" -j "$(nproc)"; } >"$log" 2>&1 </dev/null
-    status=$?
+    { cmake --preset "$1" && cmake --build --preset "$1" -j "$(nproc)"; } 2>&1 </dev/null | tee "$log" | show_progress
+    status=${PIPESTATUS[0]}
     if ((status != 0)); then
         cat "$log" >&2
         say "the build failed"

@@ -35,6 +35,16 @@ void bus_log(const struct bus *bus, const char *format, ...)
     va_end(list);
 }
 
+void bus_log_detail(const struct bus *bus, const char *format, ...)
+{
+    va_list list;
+    if (!bus->options->verbose)
+        return;
+    va_start(list, format);
+    say(bus, bus_present(bus), format, list);
+    va_end(list);
+}
+
 void bus_say(const struct bus *bus, uint64_t tick, const char *format, ...)
 {
     va_list list;
@@ -200,9 +210,7 @@ static bool configure_plant(struct bus *bus)
 /* For snapshots to files, which only clients of a control socket can ask for. */
 static bool keep_journal(struct bus *bus)
 {
-    const struct serve_options *options = bus->options;
-    bool wanted = !options->no_control && (options->control || options->pty);
-    if (!wanted || snapshots_keep_journal(&bus->sim))
+    if (bus->options->no_control || snapshots_keep_journal(&bus->sim))
         return true;
     log_error("out of memory");
     return false;

@@ -130,6 +130,9 @@ void bus_catch_up(struct bus *bus);
 /* One line in the log, at the present; with the number of the line if there are several. */
 void bus_log(const struct bus *bus, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* The same with --verbose only: what happens at every call of a client. */
+void bus_log_detail(const struct bus *bus, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 /* ---- Between bus.c and bus_time.c ------------------------------------------------------------------------------------- */
 
 bool bus_time_begin(struct bus *bus, uv_loop_t *loop);

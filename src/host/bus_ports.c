@@ -173,13 +173,13 @@ static void on_news(void *context, enum line_news news)
     uint64_t dropped = ports->line.dropped - ports->told;
     switch (news) {
     case LINE_DETACHED:
-        bus_log(bus, "the client has closed the line");
+        bus_log_detail(bus, "the client has closed the line");
         break;
     case LINE_ATTACHED:
         if (dropped > 0)
             bus_log(bus, "a client has opened the line; %" PRIu64 " bytes for nobody were dropped before", dropped);
         else
-            bus_log(bus, "a client has opened the line");
+            bus_log_detail(bus, "a client has opened the line");
         ports->told = ports->line.dropped;
         ports->known = line_settings_unit;
         break;
@@ -296,10 +296,10 @@ static void net_told(void *context, enum net_news news, const char *peer)
     struct bus *bus = context;
     switch (news) {
     case NET_DETACHED:
-        bus_log(bus, "the client %s has closed the line", peer);
+        bus_log_detail(bus, "the client %s has closed the line", peer);
         break;
     case NET_ATTACHED:
-        bus_log(bus, "the client %s has opened the line", peer);
+        bus_log_detail(bus, "the client %s has opened the line", peer);
         bus->ports.known = bus->ports.net = line_settings_unit;
         break;
     case NET_REFUSED:

@@ -11,10 +11,10 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include "client_port.h"
+#include "socket_address.h"
 
 #define LINE_MAX_BYTES (64u << 20) /* longest object believed to be an answer */
 #define ROOM_FIRST 65536u
@@ -94,19 +94,28 @@ static bool is_foreign(const struct client_rpc *rpc)
     return getsockopt(rpc->fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0 || (peer.uid != geteuid() && peer.uid != 0);
 }
 
+/* Connect to rpc->path. Returns false and errno if that does not work; rpc->fd is left to the caller. */
+static bool connect_to(struct client_rpc *rpc)
+{
+    struct sockaddr_un address;
+    int folder;
+    bool connected = socket_address_find(rpc->path, &address, &folder) &&
+                     (rpc->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) >= 0 &&
+                     connect(rpc->fd, (const struct sockaddr *)&address, sizeof address) == 0;
+    int error = errno;
+    if (folder >= 0)
+        close(folder);
+    errno = error;
+    return connected;
+}
+
 bool client_rpc_open(struct client_rpc *rpc, const char *path)
 {
     const char *chosen = path != NULL ? path : getenv("RKM04_CONTROL");
-    struct sockaddr_un address = {.sun_family = AF_UNIX};
     if (!client_rpc_path(path, rpc->path))
         return false;
-    if (strlen(rpc->path) >= sizeof address.sun_path) {
-        warnx("%s: the path of a socket has at most %zu characters", rpc->path, sizeof address.sun_path - 1);
-        return false;
-    }
-    strcpy(address.sun_path, rpc->path);
-    rpc->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    bool connected = rpc->fd >= 0 && connect(rpc->fd, (const struct sockaddr *)&address, sizeof address) == 0;
+    rpc->fd = -1;
+    bool connected = connect_to(rpc);
     int error = errno;
     if (connected && ((chosen != NULL && chosen[0] != '\0') || !is_foreign(rpc)))
         return true;

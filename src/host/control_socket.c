@@ -2,19 +2,16 @@
 #include "control_socket.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include "lock_file.h"
 #include "log.h"
+#include "socket_address.h"
 
 #define RECORD "rkm04 process %ld, control socket %ju:%ju" /* in the lock file: whose it is; device and number of the file */
-#define NAME_SURE 80u /* characters of a name that fit behind /proc/self/fd/N */
 
 /* Say in the lock file which socket is ours. */
 static bool write_record(struct control_socket *control)
@@ -103,26 +100,6 @@ static bool bind_private(struct control_socket *control, const struct sockaddr_u
     return bound && write_record(control);
 }
 
-/* The address of a path. The system takes 107 characters; a longer path is named through its folder, which stays open as
- * *folder (-1: not needed). Returns false if that does not do either. */
-static bool find_address(const char *path, struct sockaddr_un *address, int *folder)
-{
-    size_t room = sizeof address->sun_path, length = strlen(path);
-    *folder = -1;
-    *address = (struct sockaddr_un){.sun_family = AF_UNIX};
-    if (length > 0 && length < room) {
-        memcpy(address->sun_path, path, length + 1);
-        return true;
-    }
-    const char *slash = strrchr(path, '/');
-    if (!slash || slash == path || length >= PATH_MAX)
-        return false;
-    char name[PATH_MAX];
-    snprintf(name, sizeof name, "%.*s", (int)(slash - path), path);
-    *folder = open(name, O_PATH | O_DIRECTORY | O_CLOEXEC);
-    return *folder >= 0 && snprintf(address->sun_path, room, "/proc/self/fd/%d%s", *folder, slash) < (int)room;
-}
-
 static bool make(struct control_socket *control, const struct sockaddr_un *address)
 {
     if (!claim(control, address))
@@ -142,14 +119,14 @@ bool control_socket_open(struct control_socket *control, const char *path)
     struct sockaddr_un address;
     int folder;
     *control = (struct control_socket){.lock = -1, .fd = -1};
-    bool well = find_address(path, &address, &folder) &&
+    bool well = socket_address_find(path, &address, &folder) &&
                 snprintf(control->path, sizeof control->path, "%s", path) < (int)sizeof control->path &&
                 snprintf(control->lock_path, sizeof control->lock_path, "%s.lock", path) < (int)sizeof control->lock_path;
     if (well)
         well = make(control, &address);
     else
         log_error("--control: cannot use %.100s: expected the path of a socket, its name (behind the last /) at most %u "
-                  "characters long, in a folder that is there", path[0] ? path : "an empty path", NAME_SURE);
+                  "characters long, in a folder that is there", path[0] ? path : "an empty path", SOCKET_NAME_SURE);
     if (folder >= 0)
         close(folder);
     return well;

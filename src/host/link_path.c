@@ -30,29 +30,35 @@ static bool private_folder(const char *path)
     return (found.st_mode & 077) == 0 || chmod(path, 0700) == 0;
 }
 
-static bool default_path(char path[PATH_MAX], unsigned number)
+/* The folder of default names. Returns false if there is none (reported). */
+static bool default_folder(char folder[PATH_MAX])
 {
-    char folder[PATH_MAX - 24];
     const char *base = getenv("XDG_RUNTIME_DIR");
-    if (base && base[0] == '/' && snprintf(folder, sizeof folder, "%s/rkm04", base) < (int)sizeof folder &&
-        private_folder(folder)) {
-        snprintf(path, PATH_MAX, "%s/bus%u", folder, number);
+    if (base && base[0] == '/' && snprintf(folder, PATH_MAX, "%s/rkm04", base) < PATH_MAX && private_folder(folder))
         return true;
-    }
     base = getenv("TMPDIR");
     if (!base || base[0] != '/')
         base = "/tmp";
-    if (snprintf(folder, sizeof folder, "%s/rkm04-%lu", base, (unsigned long)geteuid()) >= (int)sizeof folder) {
-        log_error("the name of the temporary directory is too long: set TMPDIR, or give --link PATH");
+    if (snprintf(folder, PATH_MAX, "%s/rkm04-%lu", base, (unsigned long)geteuid()) >= PATH_MAX) {
+        log_error("the name of the temporary directory is too long: set TMPDIR, or give --link PATH or --control PATH");
         return false;
     }
-    if (!private_folder(folder)) {
-        log_error("cannot use the folder %s: %s; give --link PATH", folder,
-                  errno == EPERM ? "it is not a folder of yours" : strerror(errno));
+    if (private_folder(folder))
+        return true;
+    log_error("cannot use the folder %s: %s; give --link PATH or --control PATH", folder,
+              errno == EPERM ? "it is not a folder of yours" : strerror(errno));
+    return false;
+}
+
+bool link_path_default(char path[PATH_MAX], const char *name)
+{
+    char folder[PATH_MAX];
+    if (!default_folder(folder))
         return false;
-    }
-    snprintf(path, PATH_MAX, "%s/bus%u", folder, number);
-    return true;
+    if (snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX)
+        return true;
+    log_error("the path of the folder %s is too long: give --link PATH or --control PATH", folder);
+    return false;
 }
 
 /* ---- The lock ------------------------------------------------------------------------------------------------------- */
@@ -91,9 +97,10 @@ static bool clear_stale(const struct link_path *link, const char *target)
 
 bool link_path_claim(struct link_path *link, const char *path, unsigned number)
 {
-    char record[LOCK_RECORD_MAX], target[64];
+    char record[LOCK_RECORD_MAX], target[64], name[16];
     *link = (struct link_path){.lock = -1};
-    if (!path && !default_path(link->path, number))
+    snprintf(name, sizeof name, "bus%u", number);
+    if (!path && !link_path_default(link->path, name))
         return false;
     if (path && snprintf(link->path, sizeof link->path, "%s", path) >= (int)sizeof link->path) {
         log_error("--link: the path is too long");

@@ -14,6 +14,10 @@ struct link_path {
     int lock;        /* -1: not ours */
 };
 
+/* Make the path of `name` in the folder of default names: $XDG_RUNTIME_DIR/rkm04, else rkm04-UID under the temporary directory;
+ * the folder is made for its owner alone. Failures are reported. Returns false if there is no such folder. */
+bool link_path_default(char path[PATH_MAX], const char *name);
+
 /* Take the name `path` (NULL: the default, $XDG_RUNTIME_DIR/rkm04/busNUMBER or a private folder under the temporary directory),
  * and remove a stale link of our own there. Whatever else stands there is left alone, and refused. Failures are reported.
  * Returns false if the name cannot be had. */

@@ -2,6 +2,7 @@
 /* rkm04 serve: lines with their units (bus.c) in one event loop, from the options to the exit status. */
 #include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +32,6 @@ struct serve {
     struct line_watch watch;
     struct coverage coverage;
     struct control *control; /* NULL: none */
-    char *control_path;
     enum exit_status status;
 
     uv_loop_t loop;
@@ -168,19 +168,35 @@ static bool start_buses(struct serve *serve)
     return true;
 }
 
-/* Beside the link of the first line, unless told otherwise. Without a link there is none unless asked for. */
+/* The default path of the control socket: beside the link of the first bus; without one a name made of where the bus is, in the
+ * folder of default links. Returns false if there is none (reported). */
+static bool default_control(const struct serve *serve, char path[PATH_MAX])
+{
+    const struct bus_ports *ports = &serve->bus[0]->ports;
+    const char *port = serve->options.port, *slash = port ? strrchr(port, '/') : NULL;
+    char name[NAME_MAX];
+    if (serve->options.pty) {
+        if (snprintf(path, PATH_MAX, "%s.control", ports->link.path) < PATH_MAX)
+            return true;
+        log_error("the path of the link is too long for a control socket beside it");
+        return false;
+    }
+    const char *kind = port ? "" : ports->tcp ? "tcp-" : "rfc2217-";
+    const char *where = slash ? slash + 1 : port ? port : ports->tcp ? ports->tcp->address : ports->rfc2217->address;
+    snprintf(name, sizeof name, "%s%.200s.control", kind, where);
+    return link_path_default(path, name);
+}
+
 static bool start_control(struct serve *serve)
 {
     const struct serve_options *options = &serve->options;
     const struct control_calls control_calls = {.shutdown = on_shutdown, .presence = on_presence, .context = serve};
-    if (options->no_control || (!options->control && !options->pty))
+    char path[PATH_MAX];
+    if (options->no_control)
         return true;
-    if (!options->control && asprintf(&serve->control_path, "%s.control", serve->bus[0]->ports.link.path) < 0) {
-        log_error("out of memory");
-        return false;
-    }
-    serve->control = control_open(&serve->loop, options->control ? options->control : serve->control_path, serve->bus,
-                                  options->lines, &control_calls);
+    if (options->control || default_control(serve, path))
+        serve->control = control_open(&serve->loop, options->control ? options->control : path, serve->bus, options->lines,
+                                      &control_calls);
     if (!serve->control && !options->control)
         log_error("going on without a control socket; --control PATH names another place for it");
     return serve->control || !options->control;
@@ -236,7 +252,6 @@ static void end(struct serve *serve)
     uv_run(&serve->loop, UV_RUN_DEFAULT);
     uv_loop_close(&serve->loop);
     control_free(serve->control);
-    free(serve->control_path);
     for (unsigned i = 0; i < serve->options.lines; i++)
         if (serve->bus[i])
             bus_free(serve->bus[i]);

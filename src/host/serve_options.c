@@ -24,6 +24,7 @@ enum key {
     KEY_NODE = 'n',
     KEY_LINK = 'l',
     KEY_PORT = 'p',
+    KEY_VERBOSE = 'v',
     KEY_FRAMING = 256,
     KEY_FLASH,
     KEY_BAUD,
@@ -93,7 +94,7 @@ static const struct argp_option table[] = {
     {NULL, 0, NULL, 0, "From a test:", 4},
     {"control", KEY_CONTROL, "PATH", 0,
      "Unix socket through which a test sees and changes everything (JSON-RPC; rkmctl --control); default: the link's name and "
-     ".control", 0},
+     ".control; without a link, a name made of the device or address, in the folder of default links", 0},
     {"no-control", KEY_NO_CONTROL, NULL, 0, "No control socket", 0},
     {"plant", KEY_PLANT, "FILE", 0, "What the motors move: true positions, end stops, switches that drive inputs", 0},
     {"trace", KEY_TRACE, "FILE", 0,
@@ -103,6 +104,7 @@ static const struct argp_option table[] = {
     {"record", KEY_RECORD, "FILE", 0, "Record all that comes in, so that `rkm04 replay FILE' does it again", 0},
     {"seed", KEY_SEED, "N", 0, "Of faults on demand that have a probability; default 1", 0},
     {NULL, 0, NULL, 0, "Begin, end and report:", 5},
+    {"verbose", KEY_VERBOSE, NULL, 0, "Also log each client that opens or closes the bus", 0},
     {"ready-fd", KEY_READY_FD, "FD", 0, "Write the READY line to this file descriptor, too, and close it", 0},
     {"exit-when-idle", KEY_EXIT_WHEN_IDLE, "SECONDS", OPTION_ARG_OPTIONAL,
      "End when nobody has had the line open for so many seconds of real time, 0 to 86400; default 10. With --port: when "
@@ -420,6 +422,9 @@ static error_t read_option(int key, char *text, struct argp_state *state)
     case KEY_EXIT_WHEN_IDLE:
         options->exit_when_idle = true;
         options->idle_seconds = text ? number("exit-when-idle", text, 0, IDLE_MAX, " of seconds", state) : IDLE_DEFAULT;
+        return 0;
+    case KEY_VERBOSE:
+        options->verbose = true;
         return 0;
     case KEY_COVERAGE:
         options->coverage = read_path("coverage", text, state);

@@ -39,8 +39,9 @@ struct serve_options {
     const char *plant;          /* file; NULL: none */
     const char *trace[SERVE_FILES_MAX], *wire[SERVE_FILES_MAX]; /* patterns; NULL: no more */
     const char *record;         /* pattern; NULL: none */
-    const char *control;        /* socket; NULL: beside the link */
+    const char *control;        /* socket; NULL: the default */
     bool no_control;
+    bool verbose;
     int ready_fd;               /* -1: none */
 };
 

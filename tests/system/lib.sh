@@ -78,7 +78,7 @@ status_of() {
 serve() {
     local name=$1
     shift
-    start "$name" "$RKM04" serve --link "$folder/$name" "$@"
+    start "$name" "$RKM04" serve --link "$folder/$name" --verbose "$@"
     soon "unit $name is ready" ready "$name"
 }
 
@@ -132,6 +132,8 @@ run_case() {
     processes=()
     folder=$(mktemp -d) || exit 1
     trap leave EXIT
+    export XDG_RUNTIME_DIR=$folder/runtime # default links and control sockets are in it
+    mkdir "$XDG_RUNTIME_DIR"
     "$1"
 }
 

@@ -8,7 +8,7 @@ version="01.02,06.03.2009"
 
 # serve_tcp OPTIONS...: a unit that is reached over TCP alone; $address is where.
 serve_tcp() {
-    start bus "$RKM04" serve "$@"
+    start bus "$RKM04" serve --verbose "$@"
     soon "the unit is ready" ready bus
     address=$(sed -n 's/^READY .*"\(tcp\|rfc2217\)":"\([^"]*\)".*/\2/p' "$folder/bus.out")
 }

@@ -1,0 +1,141 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# What somebody sees who starts a unit for the first time: hints that work, a control socket in every mode, a log that is quiet.
+
+. "$(dirname "$0")/lib.sh"
+tools=$(cd "$(dirname "$0")/../../tools" && pwd)
+
+# A copy of the tools whose build is the programs under test, started by tools/run with what it needs already there.
+prepare_run() {
+    mkdir -p "$folder/top/tools" "$folder/top/build/release" "$folder/bin"
+    cp "$tools/run" "$tools/setup.sh" "$folder/top/tools"
+    ln -s "$RKM04" "$RKMCTL" "$folder/top/build/release"
+    {
+        echo '#!/bin/sh'
+        # shellcheck disable=SC2016
+        echo 'case $1 in --build) for i in 1 30 60 100; do printf "[%3d%%] Building\n" $i; done;; esac'
+    } >"$folder/bin/cmake"
+    chmod +x "$folder/bin/cmake"
+}
+
+# run_tool OPTIONS...: tools/run; what is typed comes from the descriptor 8.
+run_tool() {
+    mkfifo "$folder/typed"
+    PATH=$folder/bin:$PATH "$folder/top/tools/run" "$@" >"$folder/run.out" 2>"$folder/run.err" <"$folder/typed" &
+    started=$!
+    processes+=("$started")
+    exec 8>"$folder/typed"
+    soon "there are hints" shown 1
+}
+
+shown() {
+    [[ $(grep -c '^Ctrl-C ends' "$folder/run.out") == "$1" ]]
+}
+
+# Every command among the hints, but the panel, works as it is printed.
+follow_hints() {
+    local commands line
+    mapfile -t commands < <(grep '^  .*rkmctl ' "$folder/run.out")
+    ((${#commands[@]} >= 1)) || fail "no command in the hints"
+    for line in "${commands[@]}"; do
+        [[ $line == *' watch' ]] && line+=' --once'
+        exits 0 bash -c "$line"
+    done
+    grep -q OTHER_END "$folder/run.out" && fail "a word to be replaced"
+    return 0
+}
+
+test_the_hints_of_a_unit_on_a_pty_work_as_printed() {
+    prepare_run
+    run_tool --link "$folder/a bus"
+    follow_hints
+    grep -q ' version$' "$folder/run.out" || fail "no request to the unit"
+}
+
+test_the_hints_of_a_unit_on_TCP_work_as_printed() {
+    prepare_run
+    run_tool --tcp 127.0.0.1:0 --node 3 --framing plain
+    follow_hints
+    grep -q ' -p tcp:127.0.0.1:[0-9]* -n 3 --framing plain version$' "$folder/run.out" || fail "no address of the unit"
+}
+
+test_the_hints_of_a_unit_on_RFC_2217_or_a_device_name_what_works() {
+    local device port
+    prepare_run
+    run_tool --rfc2217 127.0.0.1:0
+    follow_hints
+    grep -q 'rfc2217://127.0.0.1:[0-9]' "$folder/run.out" || fail "no address"
+    kill -TERM "$started"
+    status_of "$started"
+    rm "$folder/typed"
+    start bridge socat "PTY,raw,echo=0,link=$folder/near" "PTY,raw,echo=0,link=$folder/far"
+    soon "the device is there" test -e "$folder/far"
+    run_tool --port "$folder/far"
+    follow_hints
+    grep -q "The units are on $folder/far" "$folder/run.out" || fail "no device"
+}
+
+test_Enter_shows_the_hints_again_and_nothing_is_left_at_the_end() {
+    prepare_run
+    run_tool
+    echo >&8
+    soon "the hints are there again" shown 2
+    kill -TERM "$started"
+    status_of "$started"
+    same 0 "$status" "exit status"
+    soon "no process reads the terminal any more" nobody_reads
+    grep -q 'building: 100 %' "$folder/run.err" || fail "no progress of the build"
+}
+
+# Nobody has the pipe open that stands for the terminal.
+nobody_reads() {
+    ! (echo >&8) 2>/dev/null
+}
+
+test_every_way_to_start_has_a_control_socket_of_its_own() {
+    local way control found=' '
+    start bridge socat "PTY,raw,echo=0,link=$folder/near" "PTY,raw,echo=0,link=$folder/far"
+    soon "the device is there" test -e "$folder/far"
+    for way in '' '--tcp 0' '--tcp 0' '--rfc2217 0' "--port $folder/far"; do
+        # shellcheck disable=SC2086
+        start unit "$RKM04" serve $way
+        soon "the unit is ready" ready unit
+        control=$(sed -n 's/^READY .*"control":"\([^"]*\)".*/\1/p' "$folder/unit.out")
+        [[ $control == "$XDG_RUNTIME_DIR"/* ]] || fail "serve $way: control socket '$control'"
+        [[ $found == *" $control "* ]] && fail "serve $way: two have $control"
+        found+="$control "
+        exits 0 "$RKMCTL" -c "$control" state
+    done
+}
+
+test_a_path_of_any_length_in_READY_is_taken_by_the_client() {
+    local long
+    long=$folder/$(printf 'x%.0s' {1..90})/$(printf 'y%.0s' {1..90})
+    mkdir -p "$long"
+    serve bus --control "$long/control"
+    exits 0 "$RKMCTL" -c "$long/control" state
+    exits 1 "$RKMCTL" -c "$long/other" state
+    holds "$complained" "$long/other" "the message names the path"
+    start other "$RKM04" serve --link "$long/bus"
+    soon "the unit is ready" ready other
+    exits 0 "$RKMCTL" -c "$long/bus.control" state
+}
+
+test_clients_that_come_and_go_are_logged_with_verbose_only() {
+    local address
+    start bus "$RKM04" serve --link "$folder/bus" --tcp 127.0.0.1:0
+    soon "the unit is ready" ready bus
+    address=$(sed -n 's/^READY .*"tcp":"\([^"]*\)".*/\1/p' "$folder/bus.out")
+    exits 0 ctl bus version
+    exits 0 "$RKMCTL" -p "tcp:$address" version
+    kill -TERM "$started"
+    status_of "$started"
+    grep 'client' "$folder/bus.err" && fail "a client in the log"
+    start bus "$RKM04" serve --link "$folder/bus" --verbose
+    soon "the unit is ready" ready bus
+    exits 0 ctl bus version
+    soon "both are in the log" grep -q 'client has closed' "$folder/bus.err"
+    grep -q 'client has opened' "$folder/bus.err" || fail "no client in the log"
+}
+
+run_cases "$@"
