@@ -125,14 +125,14 @@ leave() {
     for process in ${processes[@]+"${processes[@]}"}; do
         wait "$process" 2>/dev/null
     done
-    rm -rf "$folder"
+    rm -rf "$folder" "$folder.runtime"
 }
 
 run_case() {
     processes=()
     folder=$(mktemp -d) || exit 1
     trap leave EXIT
-    export XDG_RUNTIME_DIR=$folder/runtime # default links and control sockets are in it
+    export XDG_RUNTIME_DIR=$folder.runtime # default links and control sockets are in it
     mkdir "$XDG_RUNTIME_DIR"
     "$1"
 }
