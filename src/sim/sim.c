@@ -322,12 +322,15 @@ static uint64_t slot_after(const struct sim *sim, unsigned number, uint64_t tick
 }
 
 /* The end of the next leap on the way to `tick`: where a fault begins or ends, and with pulses to be told of, the slot after
- * something happens; a switch that bounces in a slot is seen in it. */
+ * something happens; a switch that bounces in a slot is seen in it. Where a byte may take a unit's power (FAULT_POWER), the
+ * leap ends with it: when the power comes back is not known before. */
 static uint64_t leap_end(const struct sim *sim, uint64_t tick)
 {
-    uint64_t now = sim_now(sim), end = earlier(tick, faults_next(sim)), bounce = plants_next(sim);
-    uint64_t event = earlier(segment_next_event(&sim->segment), sim_due(sim));
+    uint64_t now = sim_now(sim), end = earlier(tick, faults_next(sim)), bounce = plants_next(sim), due = sim_due(sim);
+    uint64_t event = earlier(segment_next_event(&sim->segment), due);
     event = event > now ? event : now;
+    if ((sim->faults.kinds >> FAULT_POWER & 1u) != 0)
+        end = earlier(end, due > now ? due : now);
     for (unsigned number = 1; number <= sim->segment.units; number++) {
         if (!sim->unit[number - 1u].port.step)
             continue;
@@ -343,9 +346,9 @@ void sim_advance(struct sim *sim, uint64_t tick)
 {
     do {
         segment_advance(&sim->segment, leap_end(sim, tick));
+        take_changes(sim); /* they were before the faults that begin or end now */
         if (faults_next(sim) <= sim_now(sim))
             faults_look(sim);
-        take_changes(sim);
         watch_hand_out(&sim->watch, sim_now(sim) + 1u); /* of the present tick there is only what was delivered */
     } while (sim_now(sim) < tick);
 }
