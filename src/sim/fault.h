@@ -61,7 +61,7 @@ struct fault {
     bool torn, level;
     bool counted;        /* `left` counts */
     uint32_t left;       /* times it will still act */
-    uint32_t skip;       /* occasions that it lets pass before */
+    uint64_t skip;       /* occasions that it lets pass before */
     uint32_t acted;      /* times it has */
     uint32_t millionths; /* probability, 1..1 000 000 */
     uint32_t number;     /* a mask, byte, number of bytes, or input */

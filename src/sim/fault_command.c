@@ -196,7 +196,7 @@ static bool read_occasions(const json_t *params, struct fault *fault, struct ref
         return false;
     fault->counted = count > 0;
     fault->left = (uint32_t)count;
-    fault->skip = (uint32_t)skip;
+    fault->skip = (uint64_t)skip;
     return true;
 }
 
