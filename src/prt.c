@@ -232,6 +232,8 @@ static uint8_t store_flash(struct rkm04_unit *unit, uint8_t motor)
         if (motor != '0' && motor != '1' + i)
             continue;
         int one = store_save(unit->port, unit->context, i + 1, &unit->motor[i].program);
+        if (one == 0)
+            unit->motor[i].slot = program_count(&unit->motor[i].program) > 0 ? RKM04_SLOT_STORED : RKM04_SLOT_EMPTY;
         if (error == 0)
             error = (uint8_t)one;
     }

@@ -119,6 +119,44 @@ START_TEST(control_characters_and_others_do_not_reach_the_terminal)
 }
 END_TEST
 
+/* Every number shown at a width is one that is shown where there is room: none is cut. */
+START_TEST(no_number_is_cut_at_any_width)
+{
+    static const char *const whole[] = {"551", "5000", "1234567", "55123", "12345678", "12.345678", "10", "3", "1", "2", "4", "7",
+                                        "0", "17", "16", "5", "23", "24", "25"};
+    for (int columns = 12; columns <= 130; columns++) {
+        json_t *shown = state(json_pack("{s:s, s:i, s:i, s:s, s:s, s:{s:i}}", "state", "moving", "position", 1234567, "index", 7,
+                                        "command", "R", "waits_for", "the end of R: 551 of 5000 steps done", "guards", "m", 5),
+                              json_pack("{s:s, s:s}", "command", "W55123", "waits_for", "the end of W55123: 55123 ms left"));
+        draw(shown, 12, columns);
+        bool lamps = false;
+        for (char *at = text; *at != '\0';) {
+            size_t length = strspn(at, "0123456789.");
+            if (at == text || at[-1] == '\n')
+                lamps = strncmp(at, "      ", 6) == 0; /* numbers above lamps */
+            bool known = length == 0 || lamps;
+            for (size_t i = 0; i < sizeof whole / sizeof *whole && !known; i++)
+                known = strlen(whole[i]) == length && memcmp(at, whole[i], length) == 0;
+            ck_assert_msg(known || strspn(at, "0.") > 0 || at[-1] == 'M' || at[-1] == 'x' || at[-1] == '[' || *at == '.',
+                          "%d columns: '%.*s' in\n%s", columns, (int)length, at, text);
+            at += length > 0 ? length : 1;
+        }
+    }
+}
+END_TEST
+
+START_TEST(progress_is_short_where_there_is_little_room)
+{
+    static const char waits[] = "the end of R: 551 of 5000 steps done";
+    draw(state(json_pack("{s:s, s:s}", "command", "R", "waits_for", waits), NULL), 24, 57);
+    assert_shown("R  551/5000\n");
+    draw(state(json_pack("{s:s, s:s}", "command", "R", "waits_for", waits), NULL), 24, 56);
+    assert_shown("  R\n");
+    draw(state(json_pack("{s:s, s:s}", "command", "R", "waits_for", waits), NULL), 24, 80);
+    assert_shown("R  551 of 5000 steps\n");
+}
+END_TEST
+
 static Suite *client_panel_suite(void)
 {
     Suite *suite = suite_create("client_panel");
@@ -130,6 +168,8 @@ static Suite *client_panel_suite(void)
     tcase_add_test(values, what_the_state_lacks_is_a_dash);
     tcase_add_test(values, control_characters_and_others_do_not_reach_the_terminal);
     tcase_add_test(sizes, at_every_size_nothing_is_wider_or_higher_and_positions_stay_longest);
+    tcase_add_test(sizes, no_number_is_cut_at_any_width);
+    tcase_add_test(sizes, progress_is_short_where_there_is_little_room);
     tcase_set_timeout(sizes, 60);
     suite_add_tcase(suite, values);
     suite_add_tcase(suite, sizes);

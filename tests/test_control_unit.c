@@ -193,12 +193,13 @@ START_TEST(the_state_shows_counter_and_true_position_side_by_side)
 }
 END_TEST
 
-START_TEST(U5_the_state_shows_what_flash_had)
+START_TEST(U5_the_state_shows_what_is_in_flash)
 {
     uint8_t answer[4];
     program("T03");
     ck_assert_str_eq(motor("slot"), "\"empty\"");
     ck_assert_uint_eq(rkm04_exchange(sim_core(&rig.sim, 1), (const uint8_t *)"\3\61", 2, answer, sizeof answer), 3);
+    ck_assert_str_eq(motor("slot"), "\"stored\"");
     command("reset", NULL);
     run(2000);
     ck_assert_str_eq(motor("slot"), "\"loaded\"");
@@ -329,7 +330,7 @@ int main(void)
     tcase_add_test(seen, P7_the_state_shows_the_profile_of_the_manuals_figure);
     tcase_add_test(seen, P7_a_request_that_waits_is_not_obeyed_by_looking);
     tcase_add_test(seen, the_state_shows_counter_and_true_position_side_by_side);
-    tcase_add_test(seen, U5_the_state_shows_what_flash_had);
+    tcase_add_test(seen, U5_the_state_shows_what_is_in_flash);
     tcase_add_checked_fixture(hands, setup, teardown);
     tcase_add_loop_test(hands, U2_inputs_are_set_one_or_several, 0, (int)COUNT(inputs_given));
     tcase_add_test(hands, inputs_not_named_stay);

@@ -302,8 +302,10 @@ START_TEST(P6_an_empty_program_empties_the_slot)
 {
     rig_accept(&rig, '1', "W1");
     ASK("\x03" "1", "\x03" "1\0");
+    ck_assert_int_eq(rig_motor(&rig, 1).slot, RKM04_SLOT_STORED);
     rig_accept(&rig, '1', "\\");
     ASK("\x03" "1", "\x03" "1\0");
+    ck_assert_int_eq(rig_motor(&rig, 1).slot, RKM04_SLOT_EMPTY);
     rig_power_cycle(&rig);
     ck_assert_str_eq(rig_program(&rig, 1), "");
     ck_assert_int_eq(rig_motor(&rig, 1).slot, RKM04_SLOT_EMPTY);

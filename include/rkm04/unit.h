@@ -39,8 +39,13 @@ enum rkm04_fault {
     RKM04_FAULT_MOTION      /* the motion could not be computed: the LED blinks (E1) */
 };
 
-/* How trustworthy a flash slot was at power-up (U5). */
-enum rkm04_slot { RKM04_SLOT_EMPTY, RKM04_SLOT_LOADED, RKM04_SLOT_UNTRUSTED /* held something, no whole program: empty */ };
+/* What a motor has in flash (U5): as power-up found it, until a program is stored. */
+enum rkm04_slot {
+    RKM04_SLOT_EMPTY,
+    RKM04_SLOT_LOADED,    /* the program that power-up has loaded */
+    RKM04_SLOT_UNTRUSTED, /* something that is no whole program: counts as empty */
+    RKM04_SLOT_STORED     /* a program that was stored since power-up */
+};
 
 /* ---- Port --------------------------------------------------------------------------------------------------------- */
 
@@ -165,7 +170,7 @@ struct rkm04_motor {
     bool resume;         /* C75 came: go on as soon as the motor may */
     bool hold_fresh;     /* K came behind the commands at `fresh`: hold before them */
     bool pin_forward;    /* the direction output */
-    uint8_t slot;        /* enum rkm04_slot: what power-up found in flash */
+    uint8_t slot;        /* enum rkm04_slot: what is in flash */
 
     /* Requests waiting for the next slot, in order of arrival (K2, C3, C4). */
     char pending[4];     /* 'K' and 'C' (C75) */

@@ -254,7 +254,7 @@ static enum exit_status call_method(struct client_job *job)
 
 /* ---- All of them ------------------------------------------------------------------------------------------------------ */
 
-enum { TAKES_UNIT = 1, TAKES_LIMIT = 2, TAKES_ONCE = 4 };
+enum { TAKES_UNIT = 1, TAKES_LIMIT = 2, TAKES_ONCE = 4, TAKES_ADVANCE = 8 };
 
 static const struct command {
     const char *name;
@@ -265,7 +265,8 @@ static const struct command {
 } commands[] = {
     {"state", 0, 0, "nothing", TAKES_UNIT, client_control_state},
     {"di", 0, 8, "up to eight of N=0 or N=1", TAKES_UNIT, client_control_di},
-    {"wait", 1, SIZE_MAX, "a condition, as in m1.position>=5000", TAKES_UNIT | TAKES_LIMIT, client_control_wait},
+    {"wait", 1, SIZE_MAX, "a condition, as in m1.position>=5000", TAKES_UNIT | TAKES_LIMIT | TAKES_ADVANCE,
+     client_control_wait},
     {"advance", 1, SIZE_MAX, "a time, as in 10ms, or a condition", TAKES_UNIT | TAKES_LIMIT, client_control_advance},
     {"watch", 0, 0, "nothing", TAKES_UNIT | TAKES_ONCE, client_watch},
     {"events", 0, SIZE_MAX, "kinds of events", TAKES_UNIT | TAKES_LIMIT, client_control_events},
@@ -309,6 +310,8 @@ enum exit_status client_control(struct client_job *job, const char *name)
         return client_usage("--limit is for wait, advance and events");
     if (job->once && !(command->options & TAKES_ONCE))
         return client_usage("--once is for watch");
+    if (job->advance && !(command->options & TAKES_ADVANCE))
+        return client_usage("--advance is for wait");
     enum exit_status status = command->function(job);
     if (job->connected)
         client_rpc_close(&job->rpc);

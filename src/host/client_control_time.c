@@ -89,9 +89,50 @@ static enum exit_status wait_by(struct client_job *job, const char *method, json
     return status == STATUS_WELL ? show_waited(job, result) : status;
 }
 
+/* Does the clock stand until somebody advances it? Returns the exit status. */
+static enum exit_status look_at_clock(struct client_job *job, bool *stopped)
+{
+    json_t *result;
+    enum exit_status status = client_job_call(job, "clock", NULL, false, &result);
+    const char *clock = json_string_value(json_object_get(result, "clock"));
+    *stopped = clock != NULL && strcmp(clock, "stepped") == 0;
+    json_decref(result);
+    return status;
+}
+
+static void note_stopped(void)
+{
+    warnx("note: time is stopped (clock stepped): it goes on when a client advances it, as rkmctl advance and wait --advance do");
+}
+
+/* Does the condition hold already? Otherwise say that time is stopped. Returns the exit status. */
+static enum exit_status wait_stopped(struct client_job *job, json_t *params)
+{
+    json_t *result, *now = json_pack("{s:O, s:i}", "until", json_object_get(params, "until"), "limit", 0);
+    enum exit_status status = client_job_call(job, "wait", now, false, &result);
+    if (status == STATUS_WELL && json_is_true(json_object_get(result, "holds"))) {
+        json_decref(params);
+        return show_waited(job, result);
+    }
+    json_decref(result);
+    if (status != STATUS_WELL) {
+        json_decref(params);
+        return status;
+    }
+    note_stopped();
+    return wait_by(job, "wait", params);
+}
+
 enum exit_status client_control_wait(struct client_job *job)
 {
-    return wait_by(job, "wait", until(job));
+    bool stopped;
+    json_t *params = until(job);
+    enum exit_status status = params != NULL ? look_at_clock(job, &stopped) : STATUS_USAGE;
+    if (status != STATUS_WELL) {
+        json_decref(params);
+        return status;
+    }
+    return stopped && !job->advance ? wait_stopped(job, params) : wait_by(job, stopped ? "advance" : "wait", params);
 }
 
 enum exit_status client_control_advance(struct client_job *job)
@@ -109,7 +150,8 @@ enum exit_status client_control_advance(struct client_job *job)
 
 struct listening {
     const struct client_job *job;
-    uint64_t left; /* events to show; 0: done */
+    uint64_t count; /* asked for; UINT64_MAX: all */
+    uint64_t left;  /* events to show; 0: done */
 };
 
 static void print_event(const json_t *event)
@@ -188,19 +230,28 @@ static bool set_limit(struct client_job *job)
 
 enum exit_status client_control_events(struct client_job *job)
 {
-    struct listening listening = {.job = job, .left = UINT64_MAX};
-    json_t *result, *params = read_choice(job, &listening.left);
+    struct listening listening = {.job = job, .count = UINT64_MAX};
+    bool stopped = false;
+    json_t *result, *params = read_choice(job, &listening.count);
     if (params == NULL)
         return STATUS_USAGE;
+    listening.left = listening.count;
+    enum exit_status status = look_at_clock(job, &stopped);
+    if (status != STATUS_WELL) {
+        json_decref(params);
+        return status;
+    }
     job->rpc.notified = on_event;
     job->rpc.context = &listening;
     setvbuf(stdout, NULL, _IOLBF, 0);
-    enum exit_status status = client_job_call(job, "subscribe", params, true, &result);
+    status = client_job_call(job, "subscribe", params, true, &result);
     json_int_t t_us = json_integer_value(json_object_get(result, "t_us"));
     json_decref(result);
     if (status != STATUS_WELL)
         return status;
     fprintf(stderr, "listening from %" PRId64 ".%06d s\n", (int64_t)(t_us / 1000000), (int)(t_us % 1000000)); /* for scripts */
+    if (stopped)
+        note_stopped();
     if (job->limit != NULL && !set_limit(job))
         return STATUS_FAILURE;
     enum client_rpc_outcome outcome = CLIENT_RPC_NOTHING;
@@ -209,7 +260,10 @@ enum exit_status client_control_events(struct client_job *job)
         outcome = client_rpc_listen(&job->rpc, CLIENT_RPC_FOREVER, &answer);
     status = client_job_outcome(job, outcome, answer);
     json_decref(answer);
-    return status;
+    if (status != STATUS_WELL || listening.left == 0 || listening.count == UINT64_MAX || ferror(stdout))
+        return status;
+    warnx("%" PRIu64 " of %" PRIu64 " events came within %s", listening.count - listening.left, listening.count, job->limit);
+    return STATUS_NO_ANSWER;
 }
 
 /* ---- Traces ----------------------------------------------------------------------------------------------------------- */

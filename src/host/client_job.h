@@ -19,7 +19,7 @@ struct client_job {
     const char *limit;        /* --limit; NULL: none */
     int line;                 /* -1: not named */
     int timeout_ms;           /* of real time; 0: not given */
-    bool json, once;
+    bool json, once, advance;
     const char *const *words; /* behind the name of the command */
     size_t count;
     bool connected;

@@ -142,6 +142,20 @@ static bool is_answer(const struct dialogue *d)
     return client->answer[0] == d->request[0] && is_for_motor(d);
 }
 
+static const struct rkm04_framing *other_framing(const struct client *client)
+{
+    return client->framing == &rkm04_hdlc ? &rkm04_plain : &rkm04_hdlc;
+}
+
+/* A whole message that is not the answer. */
+static void count_strange(const struct dialogue *d)
+{
+    struct client *client = d->client;
+    client->strange++;
+    client->echoed += client->receiver.dnode == client->node && client->receiver.length == d->length &&
+                      memcmp(client->answer, d->request, d->length) == 0;
+}
+
 /* Take what came. Returns true when the answer stands in the buffer. */
 static bool take(struct dialogue *d, const uint8_t *bytes, size_t length)
 {
@@ -149,38 +163,62 @@ static bool take(struct dialogue *d, const uint8_t *bytes, size_t length)
     uint64_t now = client_now();
     client->heard += (uint32_t)length;
     for (size_t i = 0; i < length; i++) {
+        client->foreign += other_framing(client)->receive(&client->other, bytes[i], now, client->foreign_message,
+                                                          sizeof client->foreign_message);
         if (!client->framing->receive(&client->receiver, bytes[i], now, client->answer, sizeof client->answer))
             continue;
         if (is_answer(d)) {
             client->length = client->receiver.length;
             return true;
         }
-        client->strange++;
+        count_strange(d);
     }
     uint64_t limit = now + (uint64_t)client->timeout_ms * 1000u;
     d->deadline = limit < d->last_moment ? limit : d->last_moment;
     return false;
 }
 
+/* What the bytes that came tell about the cause. Returns whether there is anything to tell. */
+static bool tell_causes(const struct dialogue *d)
+{
+    const struct client *client = d->client;
+    const struct rkm04_receiver *r = &client->receiver;
+    uint32_t others = client->strange - client->echoed;
+    if (client->foreign > 0)
+        fprintf(stderr, "  - %" PRIu32 " messages came in the framing %s: try --framing %s.\n", client->foreign,
+                other_framing(client)->name, other_framing(client)->name);
+    if (client->echoed > 0)
+        fputs("  - the request itself came back: the adapter echoes, or its two wires are connected.\n", stderr);
+    if (others > 0)
+        fprintf(stderr, "  - %" PRIu32 " messages came that are not the answer: is another program or unit on this address?\n",
+                others);
+    if (r->bad_check > 0)
+        fprintf(stderr, "  - %" PRIu32 " frames came with a wrong check value: do two units have the address %u, or does another "
+                "program send at the same time (a collision)? Or is the bus disturbed?\n", r->bad_check, client->node);
+    if (r->malformed > 0 && client->foreign == 0)
+        fprintf(stderr, "  - %" PRIu32 " frames came that are cut or malformed: does another program read from %s, too?\n",
+                r->malformed, client->port);
+    bool told = client->foreign > 0 || client->strange > 0 || r->bad_check > 0 || r->malformed > 0;
+    if (!told && client->heard > 0)
+        fprintf(stderr, "  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right?\n",
+                client->heard);
+    return told || client->heard > 0;
+}
+
 static void advise(const struct dialogue *d)
 {
     const struct client *client = d->client;
-    const char *other = client->framing == &rkm04_hdlc ? "plain" : "hdlc";
     warnx("no answer from unit %u within %u ms", client->node, client->timeout_ms);
     fputs("Please check:\n", stderr);
-    if (client->strange > 0)
-        fprintf(stderr, "  - %" PRIu32 " messages came that are not the answer: is another program or unit on this address?\n",
-                client->strange);
-    else if (client->heard > 0)
-        fprintf(stderr,
-                "  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right (see below)?\n",
-                client->heard);
+    if (tell_causes(d))
+        return;
     fprintf(stderr,
+            "  - nothing at all was heard.\n"
             "  - has the unit power, and is its line (A, B) connected to %s?\n"
             "  - is its address %u (switch S1; rkm04 serve --node %u)? Another one is chosen with -n.\n"
             "  - does it use the framing %s? The other one is --framing %s.\n"
             "  - is it slow, or the line long? --timeout MS waits longer.\n",
-            client->port, client->node, client->node, client->framing->name, other);
+            client->port, client->node, client->node, client->framing->name, other_framing(client)->name);
 }
 
 static enum client_outcome await_answer(struct dialogue *d)
@@ -205,7 +243,8 @@ enum client_outcome client_exchange(struct client *client, const uint8_t *reques
 {
     struct dialogue d = {.client = client, .request = request, .length = length, .frame = encode(client, request, length)};
     client->heard = 0;
-    client->strange = 0;
+    client->strange = client->echoed = client->foreign = 0;
+    client->other = (struct rkm04_receiver){0};
     d.begun = client_now();
     d.deadline = d.begun + line_time(d.frame) + (uint64_t)client->timeout_ms * 1000u;
     d.last_moment = d.deadline + line_time(sizeof client->wire);

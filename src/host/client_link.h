@@ -38,6 +38,10 @@ struct client {
     struct rkm04_receiver receiver;
     uint32_t heard;   /* bytes that came since the request */
     uint32_t strange; /* whole messages among them that were not the answer */
+    uint32_t echoed;  /* of these, the request itself */
+    struct rkm04_receiver other; /* what the same bytes are in the other framing: counts only */
+    uint32_t foreign;            /* whole messages in it */
+    uint8_t foreign_message[CLIENT_MESSAGE_MAX];
     uint8_t wire[2 * CLIENT_MESSAGE_MAX + 2 * RKM04_FRAME_EDGE_MAX];
 };
 

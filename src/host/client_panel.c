@@ -33,6 +33,23 @@ static int put(struct panel *panel, int row, int column, enum panel_style style,
     return column;
 }
 
+static int put_whole(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+/* Put text if all of it has room: part of a number would be another number. Returns the column behind it, beyond the last one if
+ * it has none: what would follow has none, either. */
+static int put_whole(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
+{
+    char text[TEXT_MAX];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (column + (int)strlen(text) > panel->columns)
+        return panel->columns + 1;
+    return put(panel, row, column, style, "%s", text);
+}
+
 static void fill_row(struct panel *panel, int row, enum panel_style style)
 {
     for (int column = 0; column < panel->columns; column++)
@@ -130,46 +147,53 @@ static void put_field(struct panel *panel, int row, const int column[FIELDS], en
     if (column[field] < 0)
         return;
     if (field == FIELD_COMMAND)
-        put(panel, row, column[field], style, "%s", text);
+        put_whole(panel, row, column[field], style, "%s", text);
     else if (fields[field].right)
         put(panel, row, column[field], style, "%*.*s", fields[field].width, fields[field].width, text);
     else
         put(panel, row, column[field], style, "%-*.*s", fields[field].width, fields[field].width, text);
 }
 
+/* What the command waits for, as far as there is room for it: "10 of 5000 steps", "10/5000", or nothing. Returns the column
+ * behind it. */
+static int put_wait(struct panel *panel, int row, int column, const char *waits_for)
+{
+    const char *progress = strstr(waits_for, ": "); /* "the end of R: 10 of 5000 steps done" */
+    const char *shown = progress != NULL ? progress + 2 : waits_for;
+    const char *done = progress != NULL ? strstr(shown, " done") : NULL, *of = done != NULL ? strstr(shown, " of ") : NULL;
+    int length = done != NULL ? (int)(done - shown) : (int)strlen(shown);
+    if (of == NULL || column + 2 + length <= panel->columns)
+        return put_whole(panel, row, column, PANEL_PLAIN, "  %.*s", length, shown);
+    return put_whole(panel, row, column, PANEL_PLAIN, "  %.*s/%.*s", (int)(of - shown), shown, (int)strcspn(of + 4, " "), of + 4);
+}
+
 /* Guards that are armed, as the commands that armed them: "  X04  M01". */
-static void append_guards(const json_t *motor, char *text, size_t room)
+static void put_guards(struct panel *panel, int row, int column, const json_t *motor)
 {
     static const char *const keys[] = {"x", "m", "n"};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         const json_t *input = json_object_get(json_object_get(motor, "guards"), keys[i]);
-        size_t length = strlen(text);
         if (json_is_integer(input))
-            snprintf(text + length, room - length, "  %c%02d", keys[i][0] - 'a' + 'A', (int)json_integer_value(input));
+            column = put_whole(panel, row, column, PANEL_PLAIN, "  %c%02d", keys[i][0] - 'a' + 'A',
+                               (int)json_integer_value(input));
     }
 }
 
 static void put_command(struct panel *panel, int row, const int column[FIELDS], const json_t *motor)
 {
-    char text[TEXT_MAX];
     const char *fault = string_of(motor, "fault", NULL), *waits_for = string_of(motor, "waits_for", NULL);
-    snprintf(text, sizeof text, "%s", string_of(motor, "command", "-"));
-    if (fault != NULL && strcmp(fault, "none") != 0) {
-        size_t length = strlen(text);
-        snprintf(text + length, sizeof text - length, "  fault: %s", fault);
-        put_field(panel, row, column, FIELD_COMMAND, PANEL_WRONG, text);
+    int at = column[FIELD_COMMAND];
+    bool wrong = fault != NULL && strcmp(fault, "none") != 0;
+    if (at < 0)
+        return;
+    at = put_whole(panel, row, at, wrong ? PANEL_WRONG : PANEL_PLAIN, "%s", string_of(motor, "command", "-"));
+    if (wrong) {
+        put_whole(panel, row, at, PANEL_WRONG, "  fault: %s", fault);
         return;
     }
-    if (waits_for != NULL) {
-        size_t length = strlen(text);
-        const char *progress = strstr(waits_for, ": "); /* "the end of R: 10 of 5000 steps done" */
-        const char *shown = progress != NULL ? progress + 2 : waits_for;
-        const char *done = progress != NULL ? strstr(shown, " done") : NULL;
-        size_t part = done != NULL ? (size_t)(done - shown) : strlen(shown);
-        snprintf(text + length, sizeof text - length, "  %.*s", (int)part, shown);
-    }
-    append_guards(motor, text, sizeof text);
-    put_field(panel, row, column, FIELD_COMMAND, PANEL_PLAIN, text);
+    if (waits_for != NULL)
+        at = put_wait(panel, row, at, waits_for);
+    put_guards(panel, row, at, motor);
 }
 
 static void put_motor(struct panel *panel, const struct panel_view *view, int row, const int column[FIELDS], unsigned number)
@@ -261,26 +285,26 @@ static void put_title(struct panel *panel, const struct panel_view *view, int ro
     if (row < 0)
         return;
     fill_row(panel, row, PANEL_TITLE);
-    int column = put(panel, row, 1, PANEL_TITLE, "RKM04 unit %s", name);
+    int column = put_whole(panel, row, 1, PANEL_TITLE, "RKM04 unit %s", name);
     if (!powered(view))
-        column = put(panel, row, column, PANEL_TITLE, ": no power");
-    column = put(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000), (int)(t_us % 1000000));
-    column = put(panel, row, column + 2, PANEL_TITLE, "clock %s", string_of(view->state, "clock", "-"));
+        column = put_whole(panel, row, column, PANEL_TITLE, ": no power");
+    column = put_whole(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000), (int)(t_us % 1000000));
+    column = put_whole(panel, row, column + 2, PANEL_TITLE, "clock %s", string_of(view->state, "clock", "-"));
     if (json_is_true(json_object_get(view->state, "simulation")))
-        column = put(panel, row, column + 2, PANEL_TITLE, "simulation");
+        column = put_whole(panel, row, column + 2, PANEL_TITLE, "simulation");
     if (json_array_size(view->units) < 2)
         return;
-    column = put(panel, row, column + 2, PANEL_TITLE, "units");
+    column = put_whole(panel, row, column + 2, PANEL_TITLE, "units");
     json_array_foreach(view->units, i, unit) {
         const char *other = json_string_value(unit) != NULL ? json_string_value(unit) : "-";
-        column = put(panel, row, column + 1, PANEL_TITLE, strcmp(other, name) == 0 ? "[%s]" : "%s", other);
+        column = put_whole(panel, row, column + 1, PANEL_TITLE, strcmp(other, name) == 0 ? "[%s]" : "%s", other);
     }
 }
 
 static void put_count(struct panel *panel, int row, int *column, const json_t *counters, const char *key, const char *text)
 {
     char number[24];
-    *column = put(panel, row, *column, PANEL_PLAIN, "%s %s", number_text(counters, key, number), text) + 3;
+    *column = put_whole(panel, row, *column, PANEL_PLAIN, "%s %s", number_text(counters, key, number), text) + 3;
 }
 
 static void put_counters(struct panel *panel, const struct panel_view *view, const int at[ROWS])

@@ -151,7 +151,8 @@ static enum exit_status run(const struct asking *a, struct client *client)
 {
     char motor = (char)('0' + a->request->motor);
     const struct client_request *request = a->request;
-    struct client_send sender = {.client = client, .motor = motor, .message_max = request->message_max, .json = request->json};
+    struct client_send sender = {.client = client, .motor = motor, .message_max = request->message_max, .json = request->json,
+                                 .allow_overflow = request->allow_overflow};
     switch (a->command->operand) {
     case TEXT_OPERAND:
         return client_send_text(&sender, request->words[0]);

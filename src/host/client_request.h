@@ -13,7 +13,7 @@ struct client_request {
     const char *port;         /* NULL: not named */
     const struct rkm04_framing *framing;
     unsigned node, motor, timeout_ms, message_max;
-    bool json;
+    bool json, allow_overflow;
     const char *const *words; /* behind the name of the command */
     size_t count;
 };

@@ -81,6 +81,8 @@ static const char *advice(const char *path, int error)
         return "; the emulator that made it has ended";
     case EACCES:
         return "; it belongs to another user";
+    case ENAMETOOLONG:
+        return "; the name of a socket, behind the last /, has at most 80 characters";
     default:
         return "";
     }

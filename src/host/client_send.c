@@ -146,13 +146,15 @@ static enum exit_status print_json_result(const struct sending *s)
 
 static enum exit_status print_result(const struct sending *s)
 {
-    enum exit_status status = is_refusal(s->flag) ? STATUS_FAILURE : STATUS_WELL;
+    bool overflow = s->flag == FLAG_OVERFLOW, failed = is_refusal(s->flag) || (overflow && !s->send->allow_overflow);
+    enum exit_status status = failed ? STATUS_FAILURE : STATUS_WELL;
     if (is_refusal(s->flag)) {
         report_refusal(s);
         explain_rest(s);
-    } else if (s->flag == FLAG_OVERFLOW) {
-        warnx("warning: the program memory of 700 commands has overflowed (flag 3): the oldest commands are overwritten or, "
-              "with T40, the newest are lost");
+    } else if (overflow) {
+        warnx("%s: the program memory of 700 commands has overflowed (flag 3): the oldest commands are overwritten or, "
+              "with T40, the newest are lost%s", failed ? "error" : "warning",
+              failed ? "; if that is meant, --allow-overflow" : "");
     }
     if (s->send->json) {
         enum exit_status printed = print_json_result(s);

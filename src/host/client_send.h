@@ -13,7 +13,7 @@ struct client_send {
     struct client *client;
     char motor;         /* '0'..'4' */
     size_t message_max; /* bytes the unit takes in one message, 64..CLIENT_MESSAGE_MAX */
-    bool json;
+    bool json, allow_overflow;
 };
 
 /* Send one text, mapped, in one message, as it is: the unit judges it. Reports what it refuses on stderr.

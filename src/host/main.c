@@ -8,7 +8,10 @@
 
 #include <rkm04/limits.h>
 
+#include "nearest.h"
 #include "subcommands.h"
+
+#define NAMES "serve, exec, test or replay"
 
 const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
@@ -62,7 +65,7 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN); /* writing says so, too */
     argp_err_exit_status = STATUS_USAGE;
     if (argc < 2) {
-        fputs("rkm04: no sub-command: expected `rkm04 serve', `exec', `test' or `replay'; `rkm04 --help' tells more\n", stderr);
+        fputs("rkm04: no sub-command: expected " NAMES "; `rkm04 --help' tells more\n", stderr);
         return STATUS_USAGE;
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-?") == 0 || strcmp(argv[1], "help") == 0) {
@@ -81,6 +84,7 @@ int main(int argc, char **argv)
             return subcommands[i].run(argc - 1, argv + 1);
         }
     }
-    fprintf(stderr, "rkm04: unknown sub-command `%s': expected serve or exec; `rkm04 --help' tells more\n", argv[1]);
+    fprintf(stderr, "rkm04: unknown sub-command `%s': expected " NAMES " (`rkm04 --help' tells more)%s\n", argv[1],
+            nearest_hint(argv[1], NAMES));
     return STATUS_USAGE;
 }

@@ -14,6 +14,7 @@
 #include "client_link.h"
 #include "client_request.h"
 #include "client_usage.h"
+#include "nearest.h"
 
 #define TIMEOUT_MS 1000
 #define TIMEOUT_MS_MAX 3600000
@@ -32,7 +33,7 @@ struct options {
     size_t count;
 };
 
-enum { KEY_FRAMING = 0x100, KEY_TIMEOUT, KEY_MESSAGE_MAX, KEY_LINE, KEY_LIMIT, KEY_ONCE };
+enum { KEY_FRAMING = 0x100, KEY_TIMEOUT, KEY_MESSAGE_MAX, KEY_LINE, KEY_LIMIT, KEY_ONCE, KEY_ADVANCE, KEY_ALLOW_OVERFLOW };
 
 static const struct argp_option option_table[] = {
     {NULL, 0, NULL, 0, "A unit on the line:", 1},
@@ -41,6 +42,8 @@ static const struct argp_option option_table[] = {
     {"motor", 'm', "MOTOR", 0, "Motor 1 to 4; 0: all four (default 1)", 0},
     {"framing", KEY_FRAMING, "NAME", 0, "hdlc or plain, as the unit has it (default hdlc)", 0},
     {"message-max", KEY_MESSAGE_MAX, "BYTES", 0, "Longest message the unit takes, 64 to 9216 (default 9216)", 0},
+    {"allow-overflow", KEY_ALLOW_OVERFLOW, NULL, 0,
+     "set, send: a program that overflows the unit's memory is a warning, not a failure", 0},
     {NULL, 0, NULL, 0, "The emulator:", 2},
     {"control", 'c', "PATH", 0,
      "Its control socket (default: RKM04_CONTROL of the environment, else that of an `rkm04 serve' without --link)", 0},
@@ -48,6 +51,7 @@ static const struct argp_option option_table[] = {
     {"line", KEY_LINE, "N", 0, "The line of an emulator with several, 0 to 255 (default 0)", 0},
     {"limit", KEY_LIMIT, "TIME", 0,
      "How long to wait, advance or listen, in virtual time, as in 10s, 250ms or a number of us", 0},
+    {"advance", KEY_ADVANCE, NULL, 0, "wait: with a stepped clock let time go on until the condition holds", 0},
     {"once", KEY_ONCE, NULL, 0, "watch: print one picture as text", 0},
     {NULL, 0, NULL, 0, "Both:", 3},
     {"timeout", KEY_TIMEOUT, "MS", 0,
@@ -111,8 +115,8 @@ static const char doc[] =
     "  rkmctl di 3=1 && rkmctl wait 'm1.position>=5000' --limit 10s\n"
     "  rkmctl -c bus.control -u 3 fault inject drop direction=to_master count=1\n"
     "\n"
-    "Exit status: 0 well; 1 failure (refused, flash not written, port or emulator cannot be reached); 2 wrong usage; 3 no "
-    "answer, or the condition did not hold, in time.";
+    "Exit status: 0 success; 1 failure (refused, memory overflowed, flash not written, port or emulator cannot be reached); 2 "
+    "wrong usage; 3 no answer, the condition did not hold, or too few events, in time.";
 
 /* A decimal number low..high; anything else is a usage error. */
 static unsigned take_number(const char *what, const char *text, unsigned low, unsigned high)
@@ -163,6 +167,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case KEY_LIMIT:
         options->job.limit = text;
         return 0;
+    case KEY_ADVANCE:
+        options->job.advance = true;
+        return 0;
+    case KEY_ALLOW_OVERFLOW:
+        options->request.allow_overflow = true;
+        return 0;
     case KEY_ONCE:
         options->job.once = true;
         return 0;
@@ -189,7 +199,7 @@ static enum exit_status do_request(struct options *options)
 {
     struct client_request *request = &options->request;
     const struct client_job *job = &options->job;
-    if (job->path != NULL || job->unit != NULL || job->line >= 0 || job->limit != NULL || job->once)
+    if (job->path != NULL || job->unit != NULL || job->line >= 0 || job->limit != NULL || job->once || job->advance)
         return client_usage("%s goes to a unit on the line: expected --port, --node and --motor", options->command);
     request->json = options->json;
     request->words = options->words;
@@ -203,6 +213,8 @@ static enum exit_status do_job(struct options *options)
     struct client_job *job = &options->job;
     if (options->request.port != NULL)
         return client_usage("%s goes to the emulator: expected --control instead of --port", options->command);
+    if (options->request.allow_overflow)
+        return client_usage("--allow-overflow is for set and send");
     if (job->unit == NULL)
         job->unit = options->node;
     job->json = options->json;
@@ -220,8 +232,8 @@ static enum exit_status run(struct options *options)
         return do_request(options);
     if (client_control_knows(options->command))
         return do_job(options);
-    return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator, found '%s'",
-                        options->command);
+    return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator, found '%s'%s",
+                        options->command, nearest_hint(options->command, CLIENT_REQUEST_NAMES ", " CLIENT_CONTROL_NAMES));
 }
 
 int main(int argc, char **argv)

@@ -10,6 +10,7 @@
 
 #include <rkm04/limits.h>
 
+#include "diagnose.h"
 #include "program_text.h"
 #include "subcommands.h"
 
@@ -72,7 +73,7 @@ static char *read_file(void *context, const char *path, size_t *length, const ch
 
 int test_case_read(struct test_case *test, const char *path)
 {
-    static const struct scenario_files files = {.read = read_file, .map = program_text_map};
+    static const struct scenario_files files = {.read = read_file, .map = program_text_map, .diagnose = diagnose_text};
     bool standard = strcmp(path, "-") == 0;
     const char *why = "";
     size_t length;

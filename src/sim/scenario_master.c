@@ -141,16 +141,20 @@ static char *silence_text(const struct running *running, uint64_t since)
                         ticks % RKM04_TICKS_PER_SECOND, why);
 }
 
-static char *flag_text(const uint8_t *answer)
+/* `wrong`: what is wrong with the program; NULL: nothing is known of it. */
+static char *flag_text(const uint8_t *answer, const char *wrong)
 {
     static const char *const meanings[] = {"all right", "bad value", "unknown command", "memory has overflowed"};
     unsigned flag = answer[2];
     const char *meaning = flag < sizeof meanings / sizeof meanings[0] ? meanings[flag] : "?";
     if (flag != 1 && flag != 2)
         return running_text("flag %u (%s)", flag, meaning);
+    const char *colon = wrong != NULL ? ": " : "";
+    if (wrong == NULL)
+        wrong = "";
     if (answer[3] >= 0x20 && answer[3] < 0x7F)
-        return running_text("flag %u (%s '%c')", flag, meaning, answer[3]);
-    return running_text("flag %u (%s, character %02X)", flag, meaning, answer[3]);
+        return running_text("flag %u (%s '%c')%s%s", flag, meaning, answer[3], colon, wrong);
+    return running_text("flag %u (%s, character %02X)%s%s", flag, meaning, answer[3], colon, wrong);
 }
 
 static bool judge_program(struct running *running, const struct scenario_step *step)
@@ -160,7 +164,7 @@ static bool judge_program(struct running *running, const struct scenario_step *s
     if (master->length != 4 || answer.byte[0] != 2 || answer.byte[1] != step->bytes.byte[1])
         return running_failed(running, step, sim_now(running->sim), wanted_text(step), text_with(&answer, "the answer %s"));
     if (answer.byte[2] != step->flag)
-        return running_failed(running, step, sim_now(running->sim), wanted_text(step), flag_text(answer.byte));
+        return running_failed(running, step, sim_now(running->sim), wanted_text(step), flag_text(answer.byte, step->wrong));
     return true;
 }
 

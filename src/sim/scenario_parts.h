@@ -58,6 +58,7 @@ struct scenario_step {
     const char *method;             /* of a command */
     json_t *json;                   /* a condition, or parameters of a command */
     struct scenario_bytes bytes, wanted;
+    char *wrong;                    /* of a program: what a unit will refuse in it; NULL: nothing */
     struct scenario_pulses pulses;
 };
 

@@ -159,9 +159,26 @@ static bool read_bytes(struct scenario_reader *reader, const struct config_node 
            read_answer(node, ANSWER_UNASKED, step);
 }
 
-/* The message 2 that carries a program text, and what must be answered. */
+/* Keep the first of the errors in the program, for the report if the unit refuses it. `name`: of the file. */
+static void find_wrong(const struct scenario_reader *reader, const char *name, struct scenario_step *step)
+{
+    char *text = NULL;
+    size_t length;
+    FILE *out = reader->files->diagnose != NULL ? open_memstream(&text, &length) : NULL;
+    if (out == NULL)
+        return;
+    int errors = reader->files->diagnose(name, (const char *)step->bytes.byte + 2, step->bytes.length - 2, out);
+    if (fclose(out) == 0 && errors > 0) {
+        text[strcspn(text, "\n")] = '\0';
+        step->wrong = text;
+    } else {
+        free(text);
+    }
+}
+
+/* The message 2 that carries a program text, from the file `name`, and what must be answered. */
 static bool take_program(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step,
-                         const char *text, size_t length)
+                         const char *name, const char *text, size_t length)
 {
     const struct config_node *motor_node = config_get(node, "motor"), *flag_node = config_get(node, "flag");
     int64_t motor = 1, flag = 0;
@@ -180,6 +197,7 @@ static bool take_program(struct scenario_reader *reader, const struct config_nod
     step->bytes.length = length + 2;
     if (reader->files->map != NULL)
         step->bytes.length = 2 + reader->files->map((char *)step->bytes.byte + 2, length);
+    find_wrong(reader, name, step);
     step->flag = (uint8_t)flag;
     step->answer = step->unit == 0 ? ANSWER_UNASKED : ANSWER_THIS;
     return step->unit != 0 || flag_node == NULL || config_error(flag_node, "expected none: no unit answers what is sent to all");
@@ -188,7 +206,7 @@ static bool take_program(struct scenario_reader *reader, const struct config_nod
 static bool read_set(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
 {
     const char *text = read_text(config_get(node, "set"), "program");
-    return text != NULL && take_program(reader, node, step, text, strlen(text));
+    return text != NULL && take_program(reader, node, step, "TEXT", text, strlen(text));
 }
 
 static bool read_program(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
@@ -197,10 +215,8 @@ static bool read_program(struct scenario_reader *reader, const struct config_nod
     char *path = NULL;
     size_t length;
     char *text = scenario_file(reader, file, &path, &length);
+    bool well = text != NULL && take_program(reader, node, step, path, text, length);
     free(path);
-    if (text == NULL)
-        return false;
-    bool well = take_program(reader, node, step, text, length);
     free(text);
     return well;
 }
@@ -458,4 +474,6 @@ void scenario_step_free(struct scenario_step *step)
     scenario_bytes_free(&step->wanted);
     json_decref(step->json);
     step->json = NULL;
+    free(step->wrong);
+    step->wrong = NULL;
 }

@@ -12,6 +12,7 @@ static const char *const slot_names[] = {
     [RKM04_SLOT_EMPTY] = "empty",
     [RKM04_SLOT_LOADED] = "loaded",
     [RKM04_SLOT_UNTRUSTED] = "untrusted",
+    [RKM04_SLOT_STORED] = "stored",
 };
 
 /* Place 1..700 of command `number`. */

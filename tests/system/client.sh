@@ -11,6 +11,49 @@ test_no_answer_in_time_is_exit_3_with_advice() {
     holds "${complained,,}" framing "the message says what to check"
 }
 
+# A device that answers each request of three bytes or more with these bytes, in hex.
+pretend_unit() {
+    say_bytes 1 "$1" >"$folder/bytes"
+    start device socat "PTY,raw,echo=0,link=$folder/device" "SYSTEM:head -c 3 >/dev/null; cat $folder/bytes; cat >/dev/null"
+    soon "the device is there" test -e "$folder/device"
+}
+
+test_no_answer_names_the_cause_where_it_can_be_known() {
+    serve bus --baud 0
+    exits 0 "$RKMCTL" -c "$folder/bus.control" fault inject wrong_fcs count=1
+    exits 3 ctl bus --timeout 200 version
+    holds "$complained" "1 frames came with a wrong check value" "a damaged answer"
+    holds "$complained" "two units have the address 1" "what may have damaged it"
+    pretend_unit 00000404313100 # plain, from node 0: not the answer
+    exits 3 "$RKMCTL" -p "$folder/device" --timeout 200 version
+    holds "$complained" "came in the framing plain: try --framing plain" "the other framing"
+    kill "$started"
+    status_of "$started"
+    exits 3 ctl bus --timeout 200 -n 7 version
+    holds "$complained" "nothing at all was heard" "silence"
+}
+
+test_a_request_that_comes_back_is_called_an_echo() {
+    start device socat "PTY,raw,echo=0,link=$folder/device" SYSTEM:cat
+    soon "the device is there" test -e "$folder/device"
+    exits 3 "$RKMCTL" -p "$folder/device" --timeout 200 version
+    holds "$complained" "the request itself came back" "an echo"
+}
+
+test_C10_a_program_that_overflows_is_a_failure_unless_allowed() {
+    local i
+    serve bus --clock stepped
+    for i in {1..400}; do echo "W$i"; done >"$folder/half.rks"
+    exits 0 ctl bus send "$folder/half.rks"
+    exits 1 ctl bus send "$folder/half.rks"
+    holds "$complained" "overflowed (flag 3)" "what happened"
+    holds "$complained" "--allow-overflow" "what to do if that is meant"
+    exits 0 ctl bus --allow-overflow send "$folder/half.rks"
+    holds "$complained" "warning" "still said"
+    exits 1 ctl bus set "$(tr '\n' ' ' <"$folder/half.rks")"
+    exits 2 "$RKMCTL" -c "$folder/bus.control" --allow-overflow state
+}
+
 test_a_device_that_cannot_be_opened_is_exit_1() {
     exits 1 "$RKMCTL" -p "$folder/nothing" version
     holds "$complained" "$folder/nothing" "the message names it"

@@ -362,4 +362,39 @@ test_commands_go_where_they_belong() {
     holds "$complained" --once "the message says what else there is"
 }
 
+test_a_wait_for_time_that_is_stopped_says_so_at_once() {
+    emulator
+    program 'S100 V1000 A2000 F500 R'
+    exits 0 control wait 'm1.position=0'
+    same "" "$complained" "nothing to say where the condition holds"
+    start waiting "$RKMCTL" wait 'm1.position>=500'
+    soon "it says why it waits" grep -q 'time is stopped' "$folder/waiting.err"
+    grep -q 'rkmctl advance' "$folder/waiting.err" || fail "it does not say what to do"
+    exits 0 control advance 2s
+    status_of "$started"
+    same 0 "$status" "the wait ends when another client lets time go on"
+    program 'B500 R'
+    exits 0 control wait --advance 'm1.position=0'
+    [[ $said == [12].*" s" ]] || fail "the time: $said"
+    exits 3 control wait --advance 'm1.position=9' --limit 10ms
+    exits 0 control clock max
+    program 'F5 R'
+    exits 0 control wait --advance 'm1.position=5'
+    exits 2 control --advance state
+}
+
+test_events_that_do_not_come_within_the_limit_are_exit_3() {
+    serve bus --clock max
+    export RKM04_CONTROL=$folder/bus.control
+    exits 3 control events count=3 --limit 10ms
+    holds "$complained" "0 of 3 events" "what is missing"
+    exits 0 control events --limit 10ms
+    exits 0 control clock stepped
+    start listening "$RKMCTL" events count=1 --limit 10ms
+    soon "it says that time is stopped" grep -q 'time is stopped' "$folder/listening.err"
+    exits 0 control advance 1s
+    status_of "$started"
+    same 3 "$status" "no event came"
+}
+
 run_cases "$@"

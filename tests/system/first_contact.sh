@@ -138,4 +138,31 @@ test_clients_that_come_and_go_are_logged_with_verbose_only() {
     grep -q 'client has opened' "$folder/bus.err" || fail "no client in the log"
 }
 
+test_a_mistyped_command_is_answered_with_all_there_are_and_the_nearest() {
+    exits 2 "$RKM04" bogus
+    holds "$complained" "expected serve, exec, test or replay" "all"
+    [[ $complained != *mean* ]] || fail "nothing is near: $complained"
+    exits 2 "$RKM04" reply
+    holds "$complained" "did you mean \`replay'?" "the nearest"
+    exits 2 "$RKM04"
+    holds "$complained" "expected serve, exec, test or replay" "all"
+    exits 2 "$RKMCTL" positon
+    holds "$complained" "did you mean \`position'?" "the nearest of a unit"
+    exits 2 "$RKMCTL" wiat
+    holds "$complained" "did you mean \`wait'?" "the nearest of an emulator"
+}
+
+test_state_tells_what_is_in_flash_now() {
+    serve bus --clock stepped --flash "$folder/flash"
+    exits 0 ctl bus set 'W5'
+    exits 0 "$RKMCTL" -c "$folder/bus.control" state
+    holds "$said" "flash empty" "before"
+    exits 0 ctl bus store
+    exits 0 "$RKMCTL" -c "$folder/bus.control" state
+    holds "$said" "flash stored" "behind store"
+    exits 0 "$RKMCTL" -c "$folder/bus.control" reset
+    exits 0 "$RKMCTL" -c "$folder/bus.control" state
+    holds "$said" "flash loaded" "behind power-up"
+}
+
 run_cases "$@"

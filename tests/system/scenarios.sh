@@ -222,4 +222,15 @@ test_a_person_who_watches_sees_how_far_it_is() {
     soon "it ends" grep -q 'interrupted' "$folder/run.out"
 }
 
+test_what_is_wrong_in_a_program_has_its_place_in_the_report() {
+    mkdir "$folder/programs"
+    printf 'S100 V1000\nF5000 R X9\n' >"$folder/programs/wrong.rks"
+    printf 'steps:\n  - program: programs/wrong.rks\n' >"$folder/file.yaml"
+    printf 'steps:\n  - set: "F5 R X9"\n' >"$folder/text.yaml"
+    cd "$folder" || exit 1
+    exits 3 "$RKM04" test --no-records file.yaml text.yaml
+    holds "$said" "programs/wrong.rks:2:9: error: expected a number 1..8 after X, found 9" "the place in the file"
+    holds "$said" "TEXT:1:6: error: expected a number 1..8 after X, found 9" "the place in the text"
+}
+
 run_cases "$@"
