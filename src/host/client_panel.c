@@ -288,7 +288,8 @@ static void put_title(struct panel *panel, const struct panel_view *view, int ro
     int column = put_whole(panel, row, 1, PANEL_TITLE, "RKM04 unit %s", name);
     if (!powered(view))
         column = put_whole(panel, row, column, PANEL_TITLE, ": no power");
-    column = put_whole(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000), (int)(t_us % 1000000));
+    column = put_whole(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000),
+                       (int)(t_us % 1000000));
     column = put_whole(panel, row, column + 2, PANEL_TITLE, "clock %s", string_of(view->state, "clock", "-"));
     if (json_is_true(json_object_get(view->state, "simulation")))
         column = put_whole(panel, row, column + 2, PANEL_TITLE, "simulation");
