@@ -162,6 +162,17 @@ START_TEST(power_that_goes_may_come_back_by_itself)
 }
 END_TEST
 
+START_TEST(power_does_not_go_before_its_turn_however_far_that_is)
+{
+    begin();
+    inject("{'kind': 'power', 'skip': 2147483647, 'operation': 2147483650}"); /* 2^32 in all */
+    ck_assert_uint_eq(answers_to(1, STORE, 2), 1);
+    ck_assert_uint_eq(answer_byte(2), 0);
+    ck_assert_uint_eq(rig.news, 0);
+    ck_assert(sim_powered(&rig.sim, 1));
+}
+END_TEST
+
 START_TEST(a_broadcast_may_cost_several_units_their_power)
 {
     rig_begin(_i, 3);
@@ -275,6 +286,7 @@ int main(void)
     tcase_add_test(flash, the_flash_of_another_unit_does_not_suffer);
     tcase_add_test(power, P6_power_lost_at_any_operation_leaves_the_old_program_or_the_new_one);
     tcase_add_test(power, power_that_goes_may_come_back_by_itself);
+    tcase_add_test(power, power_does_not_go_before_its_turn_however_far_that_is);
     tcase_add_loop_test(power, a_broadcast_may_cost_several_units_their_power, 0, 2);
     tcase_add_test(power, P10_power_may_go_when_a_request_is_taken_that_waited);
     tcase_add_test(input, U2_a_stuck_input_stays_whatever_is_done_to_it);
