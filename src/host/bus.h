@@ -66,6 +66,7 @@ struct bus {
     bool busy;            /* within bus_catch_up() */
     uint64_t behind;      /* ns since when bus_catch_up() has not got as far as the clock; 0: it has */
     bool behind_told;     /* of this clock */
+    bool over_told;       /* that virtual time has come to its end */
     int timer_fd;
     uv_poll_t timer;
 

@@ -25,11 +25,18 @@ bool bus_stepped(const struct bus *bus)
     return bus->clock.stands;
 }
 
+/* Where the clock stands at `now` (ns). */
+static uint64_t clock_tick(const struct bus *bus, uint64_t now)
+{
+    uint64_t tick = virtual_clock_tick(&bus->clock, now);
+    return tick < SIM_TIME_MAX ? tick : SIM_TIME_MAX;
+}
+
 uint64_t bus_present(const struct bus *bus)
 {
     if (!bus->running)
         return 0;
-    return bus_stepped(bus) || bus->behind > 0 ? sim_now(&bus->sim) : virtual_clock_tick(&bus->clock, uv_hrtime());
+    return bus_stepped(bus) || bus->behind > 0 ? sim_now(&bus->sim) : clock_tick(bus, uv_hrtime());
 }
 
 /* ---- Who waits ------------------------------------------------------------------------------------------------------ */
@@ -115,15 +122,18 @@ static uint64_t due(const struct bus *bus)
  * way, past the next thing that happens. RKM04_NEVER: no reason to leap. */
 static uint64_t leap_to(const struct bus *bus, uint64_t now)
 {
-    if (!bus->clock.runs_ahead)
+    if (!bus->clock.runs_ahead || sim_time_is_over(&bus->sim))
         return RKM04_NEVER;
     uint64_t byte = due(bus);
     if (byte != RKM04_NEVER)
-        return byte;
+        return byte < SIM_TIME_MAX ? byte : SIM_TIME_MAX;
     if (segment_in_frame(&bus->sim.segment) && now - bus->heard < FRAME_SILENCE)
         return RKM04_NEVER;
     uint64_t event = sim_next_event(&bus->sim), least = sim_now(&bus->sim) + LEAP;
-    return event == RKM04_NEVER ? RKM04_NEVER : event < least ? least : event + 1;
+    if (event == RKM04_NEVER)
+        return RKM04_NEVER;
+    uint64_t leap = event < least ? least : event + 1;
+    return leap < SIM_TIME_MAX ? leap : SIM_TIME_MAX;
 }
 
 /* Up to which tick the units are to be at `now` (ns). */
@@ -131,7 +141,7 @@ static uint64_t goal(struct bus *bus, uint64_t now)
 {
     if (bus_stepped(bus))
         return bus->goal;
-    uint64_t tick = virtual_clock_tick(&bus->clock, now), leap = leap_to(bus, now);
+    uint64_t tick = clock_tick(bus, now), leap = leap_to(bus, now);
     if (leap == RKM04_NEVER || leap <= tick)
         return tick;
     virtual_clock_leap(&bus->clock, now, leap);
@@ -163,7 +173,7 @@ static bool is_watched(const struct bus *bus)
 static uint64_t next_wake(const struct bus *bus, uint64_t now)
 {
     uint64_t byte = due(bus), event = sim_next_event(&bus->sim), wanted = waiters_next(bus), when = 0;
-    if (bus_stepped(bus))
+    if (bus_stepped(bus) || sim_time_is_over(&bus->sim))
         return 0;
     if (leap_to(bus, now) != RKM04_NEVER)
         return now;
@@ -219,6 +229,15 @@ static void note_behind(struct bus *bus, uint64_t now, bool behind)
     }
 }
 
+static void note_end_of_time(struct bus *bus)
+{
+    if (bus->over_told || !sim_time_is_over(&bus->sim))
+        return;
+    bus_log(bus, "virtual time has come to its end, %" PRIu64 " s: the units' time does not go on, and they answer no more. "
+            "Start again", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND);
+    bus->over_told = true;
+}
+
 void bus_catch_up(struct bus *bus)
 {
     uint64_t start = uv_hrtime(), now = start, tick;
@@ -235,6 +254,7 @@ void bus_catch_up(struct bus *bus)
         now = uv_hrtime();
     } while (now - start < STINT && (sim_now(&bus->sim) < tick || leap_to(bus, now) != RKM04_NEVER));
     note_behind(bus, now, sim_now(&bus->sim) < tick);
+    note_end_of_time(bus);
     if (segment_idle(&bus->sim.segment))
         bus_ports_silence(bus);
     bus_ports_listen(bus);

@@ -3,6 +3,7 @@
  *
  * An `advance` of a client that subscribes is done in slices, and goes on only when the client has read what it led to: nothing
  * is lost however fast time runs. */
+#include <inttypes.h>
 #include <stdlib.h>
 
 #include "control_inside.h"
@@ -135,7 +136,7 @@ static struct control_call *new_call(struct control_context *context, struct con
     call->peer = peer;
     call->bus = context->bus;
     call->id = json_incref((json_t *)context->request->id);
-    call->limit = limit > RKM04_NEVER - now ? RKM04_NEVER : now + limit;
+    call->limit = limit > SIM_TIME_MAX - now ? SIM_TIME_MAX : now + limit;
     call->moves = moves;
     call->waiter = (struct bus_waiter){.condition = condition, .limit = call->limit, .done = on_done, .context = call};
     call->next = peer->calls;
@@ -218,6 +219,12 @@ json_t *control_advance(struct control_context *context, struct refusal *refusal
     context->again = control_time_is_moved(context->peer->control, context->bus);
     if (context->again || !read_advance(context, &condition, &ticks, refusal))
         return NULL;
+    uint64_t left = SIM_TIME_MAX - sim_now(&context->bus->sim);
+    if (left == 0 || (!condition && ticks > left)) {
+        condition_free(condition);
+        return refuse(refusal, REFUSED_STATE, "virtual time ends at %" PRIu64 " us: expected at most %" PRIu64 " us more",
+                      SIM_TIME_MAX, left);
+    }
     struct control_call *call = new_call(context, condition, ticks, true);
     if (!call) {
         condition_free(condition);

@@ -246,7 +246,10 @@ static int exit_status(struct exec_run *run, const struct options *options, enum
     const struct rkm04_unit *unit = exec_run_unit(run);
     bool fault = report_faults(unit);
     if (end == EXEC_UNTIL && is_running(unit)) {
-        fprintf(stderr, "rkm04 exec: --until %s reached with a motor still running\n", options->until_text);
+        if (options->until_text == NULL)
+            fprintf(stderr, "rkm04 exec: virtual time has come to its end with a motor still running\n");
+        else
+            fprintf(stderr, "rkm04 exec: --until %s reached with a motor still running\n", options->until_text);
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
     if (end == EXEC_INTERRUPTED)

@@ -122,9 +122,7 @@ static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
         end = (end + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS * RKM04_SLOT_TICKS + 1;
     if (stimulus < end)
         end = stimulus;
-    if (end != RKM04_NEVER && run->until != RKM04_NEVER && end > run->until + 1)
-        end = run->until + 1;
-    return end;
+    return end == RKM04_NEVER || end <= run->until ? end : run->until + 1;
 }
 
 static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
@@ -133,7 +131,7 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
         uint64_t now = sim_now(&run->sim);
         bool left = run->next < run->stimuli->count;
         uint64_t stimulus = left ? run->stimuli->list[run->next].tick : RKM04_NEVER;
-        if (run->until != RKM04_NEVER && now > run->until)
+        if (now > run->until)
             return EXEC_UNTIL;
         if (stimulus <= now) {
             deliver(run, &run->stimuli->list[run->next++]);
@@ -154,6 +152,8 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
 enum exec_end exec_run(struct exec_run *run)
 {
     struct progress progress;
+    if (run->until >= SIM_TIME_MAX)
+        run->until = SIM_TIME_MAX - 1u;
     progress_begin(&progress);
     enum exec_end end = run_loop(run, &progress);
     progress_end(&progress);

@@ -232,7 +232,7 @@ bool condition_run(struct condition *condition, uint64_t limit)
 {
     bool held = condition_holds(condition);
     while (!held && sim_now(condition->sim) < limit) {
-        if (limit == RKM04_NEVER && condition_next(condition) == RKM04_NEVER)
+        if ((limit == RKM04_NEVER && condition_next(condition) == RKM04_NEVER) || sim_time_is_over(condition->sim))
             break; /* nothing will ever happen */
         held = condition_step(condition, limit);
     }

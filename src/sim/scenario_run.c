@@ -193,7 +193,12 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 
 bool running_turn(struct running *running, uint64_t limit, struct condition *condition)
 {
-    uint64_t now = sim_now(running->sim), next = earlier(limit, now + RKM04_TICKS_PER_SECOND);
+    uint64_t now = sim_now(running->sim), quiet = earlier(sim_next_event(running->sim), sim_due(running->sim));
+    uint64_t next = now + RKM04_TICKS_PER_SECOND;
+    next = earlier(limit, quiet > next ? quiet : next); /* not longer, so that the run can be interrupted */
+    if (sim_time_is_over(running->sim))
+        return running_failed(running, running->step, now, running_text("virtual time to go on"),
+                              running_text("its end, after %" PRIu64 " s", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND));
     if (condition != NULL)
         next = earlier(next, condition_next(condition));
     for (size_t i = 0; i < always_count(running); i++)

@@ -283,7 +283,7 @@ void sim_set_timed(struct sim *sim, bool timed)
         return;
     if (sim->journal)
         sim->journal->timed(sim->journal->context, sim_now(sim), timed);
-    for (uint64_t last = sim_now(sim) + LONGEST_ANSWER; sim_due(sim) <= last;)
+    for (uint64_t last = earlier(sim_now(sim) + LONGEST_ANSWER, SIM_TIME_MAX); sim_due(sim) <= last;)
         sim_advance(sim, sim_due(sim));
     segment_set_timed(&sim->segment, timed);
 }
@@ -293,6 +293,11 @@ void sim_set_timed(struct sim *sim, bool timed)
 uint64_t sim_now(const struct sim *sim)
 {
     return segment_now(&sim->segment);
+}
+
+bool sim_time_is_over(const struct sim *sim)
+{
+    return sim_now(sim) >= SIM_TIME_MAX;
 }
 
 uint64_t sim_due(const struct sim *sim)
@@ -344,6 +349,7 @@ static uint64_t leap_end(const struct sim *sim, uint64_t tick)
 
 void sim_advance(struct sim *sim, uint64_t tick)
 {
+    tick = earlier(tick, SIM_TIME_MAX);
     do {
         segment_advance(&sim->segment, leap_end(sim, tick));
         take_changes(sim); /* they were before the faults that begin or end now */

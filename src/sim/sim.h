@@ -19,6 +19,7 @@
 #include "plant.h"
 #include "segment.h"
 #include "serve_names.h"
+#include "time_value.h"
 #include "watch.h"
 #include "wire_monitor.h"
 
@@ -86,9 +87,15 @@ void sim_end(struct sim *sim);
 
 /* ---- Time ------------------------------------------------------------------------------------------------------------- */
 
+/* The end of virtual time: the last tick that can be reached. Everything that has a time fits: recordings, snapshots, sums. */
+#define SIM_TIME_MAX TIME_VALUE_MAX
+
 uint64_t sim_now(const struct sim *sim);
 
-/* Do all ticks before `tick`, move every byte due by `tick`, and hand out what happened before it. */
+/* Has time come to its end? It does not go on then; commands are obeyed. */
+bool sim_time_is_over(const struct sim *sim);
+
+/* Do all ticks before `tick`, but none from SIM_TIME_MAX on, move every byte due by then, and hand out what happened before. */
 void sim_advance(struct sim *sim, uint64_t tick);
 
 /* Move what is due by the present tick: what comes in from outside now comes after it. Called by everything that comes in, so

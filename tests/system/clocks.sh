@@ -98,6 +98,34 @@ test_the_clock_can_be_changed_while_the_units_run() {
     holds "$complained" stepped "the message"
 }
 
+# A program of dwells runs through all of virtual time in a moment.
+test_virtual_time_ends_and_it_is_said() {
+    serve bus --clock max --record "$folder/session.record"
+    exits 0 ctl bus set '@1 W16000000 J1'
+    soon "the end is told" grep -q 'virtual time has come to its end, 1000000000 s' "$folder/bus.err"
+    same 1000000000000000 "$(tick)" "the time"
+    exits 3 ctrl wait 'do1=1'
+    exits 0 ctrl clock stepped
+    exits 1 ctrl advance 1s
+    holds "$complained" 'virtual time ends at 1000000000000000 us: expected at most 0 us more' "the message"
+    exits 0 ctrl snapshot "file=$folder/end.record"
+    exits 0 ctrl clock real
+    exits 0 ctrl shutdown
+    status_of "$started"
+    same 0 "$status" "exit status of serve"
+    exits 0 "$RKM04" replay "$folder/session.record"
+}
+
+test_no_advance_beyond_the_end_of_time() {
+    serve bus --clock stepped
+    exits 0 ctrl advance 999999999s
+    exits 1 ctrl advance 2s
+    holds "$complained" 'virtual time ends at 1000000000000000 us: expected at most 1000000 us more' "the message"
+    same 999999999000000 "$(tick)" "the time"
+    exits 3 ctrl advance 'do1=1' --limit 10s
+    same 1000000000000000 "$(tick)" "the time"
+}
+
 stopped() { [[ $(ps -o stat= -p "$started") == T* ]]; }
 passed() { ((${EPOCHREALTIME/[.,]/} >= until)); }
 
