@@ -19,3 +19,9 @@ file(GLOB pages ${share}/man/man*/*.[1-9])
 execute_process(COMMAND gzip -9nf ${pages} ${documents}/changelog ${documents}/changelog.Debian COMMAND_ERROR_IS_FATAL ANY)
 file(GLOB_RECURSE libraries ${CPACK_TEMPORARY_DIRECTORY}/usr/lib/*.a)
 execute_process(COMMAND ${CPACK_RKM04_STRIP} --strip-debug --enable-deterministic-archives ${libraries} COMMAND_ERROR_IS_FATAL ANY)
+
+# The Python of the system, which has the packages that this one depends on.
+set(kit ${CPACK_TEMPORARY_DIRECTORY}/usr/bin/rkm04-conformance)
+file(READ ${kit} text)
+string(REPLACE "#!/usr/bin/env python3\n" "#!/usr/bin/python3\n" text "${text}")
+file(WRITE ${kit} "${text}")

@@ -9,7 +9,14 @@ if(RKM04_HOST)
   install(FILES packaging/systemd/system/rkm04@.service DESTINATION lib/systemd/system)
   install(FILES packaging/systemd/user/rkm04@.service DESTINATION lib/systemd/user)
 endif()
-install(FILES docs/SPEC.md packaging/debian/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN man EXCLUDE)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES packaging/debian/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The conformance kit finds its cases beside its own place: PREFIX/bin and PREFIX/share/rkm04/conformance.
+file(GLOB KIT CONFIGURE_DEPENDS tests/conformance/*.py tests/conformance/*.json)
+install(PROGRAMS tools/conformance DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME rkm04-conformance)
+install(FILES ${KIT} DESTINATION share/rkm04/conformance)
 
 set(RKM04_MAINTAINER "rkm04 maintainers <rkm04@example.invalid>" CACHE STRING "Whom the Debian package names as its maintainer")
 
@@ -23,8 +30,9 @@ the same answers, the same pulses at the same microsecond. Host software is
 tested with it without motors, on a pseudo terminal, a serial device or over
 TCP; programs are tried out in virtual time.
 .
-The package holds the emulator rkm04, the client rkmctl, units for systemd,
-and the emulator's core as a C library.")
+The package holds the emulator rkm04, the client rkmctl, the conformance kit
+rkm04-conformance, units for systemd, documents, examples, and the emulator's
+core as a C library.")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
@@ -34,6 +42,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION electronics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3:any") # of rkm04-conformance
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-serial")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gtkwave, wireshark")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/prerm ${PROJECT_SOURCE_DIR}/packaging/debian/postrm)
 set(CPACK_RKM04_CHANGELOG ${PROJECT_SOURCE_DIR}/CHANGELOG.md)

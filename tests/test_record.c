@@ -43,7 +43,7 @@ static const char *replayed(const char *text, size_t length)
     static char said[1200];
     FILE *in = fmemopen((void *)text, length, "r");
     ck_assert_ptr_nonnull(in);
-    struct replay *replay = replay_open("file.rkm", in);
+    struct replay *replay = replay_open("file.record", in);
     ck_assert_ptr_nonnull(replay);
     enum replay_end end = replay_run(replay, NULL, NULL);
     ck_assert((end == REPLAY_DIFFERENT) == (replay_difference(replay) != NULL));
@@ -128,7 +128,7 @@ START_TEST(what_is_left_of_a_killed_process_is_replayed)
         ck_assert_msg(strstr(said, "incomplete: all before it was replayed") || (whole && strstr(said, "there is no \"end\"")),
                       "%zu bytes: %s", length, said);
     }
-    expect(taken.text, 20, "wrong: file.rkm:1:1: expected a record, which begins with {\"rkm04_record\":1,");
+    expect(taken.text, 20, "wrong: file.record:1:1: expected a record, which begins with {\"rkm04_record\":1,");
     free(taken.text);
 }
 END_TEST
@@ -256,7 +256,7 @@ END_TEST
 START_TEST(a_replay_ends_where_it_is_told_to)
 {
     FILE *in = fmemopen(simple.text, simple.length, "r");
-    struct replay *replay = replay_open("file.rkm", in);
+    struct replay *replay = replay_open("file.record", in);
     replay_until(replay, 123456);
     ck_assert_int_eq(replay_run(replay, NULL, NULL), REPLAY_SAME);
     ck_assert_uint_eq(sim_now(replay_sim(replay)), 123456);
@@ -274,7 +274,7 @@ static bool at_once(void *context)
 START_TEST(a_replay_can_be_interrupted)
 {
     FILE *in = fmemopen(simple.text, simple.length, "r");
-    struct replay *replay = replay_open("file.rkm", in);
+    struct replay *replay = replay_open("file.record", in);
     ck_assert_int_eq(replay_run(replay, at_once, NULL), REPLAY_INTERRUPTED);
     ck_assert_str_eq(replay_text(replay), "interrupted at tick 0");
     replay_free(replay);
@@ -316,7 +316,7 @@ END_TEST
 
 static void setup(void)
 {
-    snprintf(path, sizeof path, "record-%d.rkm", (int)getpid());
+    snprintf(path, sizeof path, "record-%d.record", (int)getpid());
 }
 
 static void teardown(void)

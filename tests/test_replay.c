@@ -216,7 +216,7 @@ END_TEST
 START_TEST(a_record_makes_nobody_touch_files)
 {
     char text[400], path[64];
-    snprintf(path, sizeof path, "replay-%d.rkm", (int)getpid());
+    snprintf(path, sizeof path, "replay-%d.record", (int)getpid());
     snprintf(text, sizeof text, HEAD "{\"t\":5,\"command\":\"snapshot\",\"params\":{\"file\":\"%s\"}}\n{\"t\":6,\"end\":true}\n",
              path);
     ck_assert_int_eq(replayed(text, strlen(text), NULL, NULL), REPLAY_SAME);

@@ -275,7 +275,7 @@ static char path[64], params[100];
 
 static void file_setup(void)
 {
-    snprintf(path, sizeof path, "snapshot-%d.rkm", (int)getpid());
+    snprintf(path, sizeof path, "snapshot-%d.record", (int)getpid());
     snprintf(params, sizeof params, "{\"file\": \"%s\"}", path);
 }
 
@@ -394,7 +394,7 @@ START_TEST(a_file_of_another_line_is_refused_and_changes_nothing)
     FILE *file = fopen(path, "w");
     fputs("{\"rkm04_record\":1,\n", file);
     fclose(file);
-    refused("restore", params, ".rkm:1:18: expected a JSON object");
+    refused("restore", params, ".record:1:18: expected a JSON object");
     ck_assert_int_eq(counter(1), 5);
 }
 END_TEST

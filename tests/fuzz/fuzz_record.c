@@ -18,7 +18,7 @@ static enum replay_end replay(const uint8_t *data, size_t size)
 {
     unsigned looks = 0;
     FILE *in = fmemopen((void *)data, size, "r");
-    struct replay *replay = replay_open("file.rkm", in);
+    struct replay *replay = replay_open("file.record", in);
     FUZZ_CHECK(replay != NULL, "no memory");
     enum replay_end end = replay_run(replay, is_enough, &looks);
     FUZZ_CHECK(end != REPLAY_NO_MEMORY, "no memory");

@@ -297,7 +297,7 @@ class Soak:
         elif self.dice.random() < 0.8:
             self.try_call("restore", name=name)
         else:
-            self.try_call("snapshot", file="snapshot.rkm")
+            self.try_call("snapshot", file="snapshot.record")
 
     def clocks(self):
         kind = self.dice.choice(["max", "x3", "x200", "stepped"])

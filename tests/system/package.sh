@@ -114,6 +114,33 @@ test_the_package_has_what_a_debian_package_has() {
         fail "the manual page is another one"
 }
 
+test_the_package_has_all_documents_and_examples() {
+    local contents file
+    contents=$(dpkg-deb -c "$package" | awk '{ print $6 }')
+    while IFS= read -r file; do
+        [[ $file == docs/man/* ]] && file=share/man/man1/${file##*/}.gz || file=share/doc/rkm04/${file#docs/}
+        grep -qxF "./usr/$file" <<<"$contents" || fail "no file $file in $contents"
+    done < <(cd "$source" && find docs examples -type f)
+}
+
+test_the_conformance_kit_of_the_package_judges_a_unit() {
+    empty_system
+    on_system -i "$package"
+    exits 0 "$root/usr/bin/rkm04-conformance" --help
+    holds "$said" "usage: rkm04-conformance" "what it calls itself"
+    holds "$said" "rkm04-conformance --list" "its examples"
+    serve unit
+    exits 0 "$root/usr/bin/rkm04-conformance" --port "$folder/unit" --has control --only P1
+    holds "$said" passed "its report"
+    same "" "$(find "$root/usr" -name '*.pyc')" "what Python left behind"
+}
+
+test_an_example_of_the_package_passes() {
+    empty_system
+    on_system -i "$package"
+    exits 0 "$root/usr/bin/rkm04" test --no-records "$root/usr/share/doc/rkm04/examples/linear-axis.yaml"
+}
+
 test_the_package_satisfies_lintian() {
     command -v lintian >/dev/null || { echo "  (lintian is not installed: not asked)"; return; }
     # There is no bug in Debian's tracker that asks for this package.

@@ -102,6 +102,7 @@ test_an_instance_with_a_name_takes_its_nodes_from_its_file() {
     for node in 2 5; do
         exits 0 "$RKMCTL" -p "tcp:127.0.0.1:$port" -n "$node" version
     done
+    exits 0 "$RKMCTL" -c "$folder/run/rkm04/press/control" state
 }
 
 test_an_instance_with_a_name_and_no_file_says_what_is_missing() {
@@ -116,7 +117,7 @@ test_an_instance_with_a_name_and_no_file_says_what_is_missing() {
 }
 
 # The pty belongs to the service; those who may use serial ports may use it too.
-test_the_group_of_serial_ports_may_use_the_pty_of_the_service() {
+test_the_group_of_serial_ports_may_use_pty_and_control_socket_of_the_service() {
     if [[ $(id -u) != 0 ]] || ! getent group dialout >/dev/null; then
         echo "  (not root, or no group dialout: not tried)"
         return
@@ -127,6 +128,7 @@ test_the_group_of_serial_ports_may_use_the_pty_of_the_service() {
     eval "post=($(unit_line ExecStartPost))"
     "${post[0]}" "${post[1]}" "${post[2]//\$\$/\$}" || fail "ExecStartPost"
     same "dialout 660" "$(stat -L -c '%G %a' "$folder/run/rkm04/3/bus0")" "group and mode of the pty"
+    same "dialout 660" "$(stat -c '%G %a' "$folder/run/rkm04/3/control")" "group and mode of the control socket"
 }
 
 run_cases "$@"

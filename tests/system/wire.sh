@@ -64,13 +64,13 @@ test_faults_that_have_acted_explain_what_is_seen() {
 }
 
 test_K1_a_replay_writes_the_same_files() {
-    serve bus --node 3,5 --record "$folder/bus.rec" --wire "$folder/bus.log" --wire "$folder/bus.pcapng"
+    serve bus --node 3,5 --record "$folder/bus.record" --wire "$folder/bus.log" --wire "$folder/bus.pcapng"
     exits 0 ctl bus -n 3 set 'F500 R'
     exits 1 ctl bus -n 5 set 'F500 x'
     exits 0 ctl bus -n 3 position
     kill "$started"
     status_of "$started"
-    exits 0 "$RKM04" replay "$folder/bus.rec" --wire "$folder/again.log" --wire "$folder/again.pcapng"
+    exits 0 "$RKM04" replay "$folder/bus.record" --wire "$folder/again.log" --wire "$folder/again.pcapng"
     cmp "$folder/bus.log" "$folder/again.log" || fail "logs differ"
     cmp "$folder/bus.pcapng" "$folder/again.pcapng" || fail "capture files differ"
     same 6 "$(told | wc -l)" "frames"
