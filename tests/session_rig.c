@@ -110,7 +110,7 @@ uint64_t session_draw(struct session *session, uint64_t below)
 
 const char *session_refusal(struct session *session, const char *method, const char *params)
 {
-    static char text[400];
+    static char text[sizeof(((struct refusal *)0)->text)];
     struct refusal refusal;
     json_error_t error;
     json_t *json = json_loads(params, 0, &error);

@@ -384,11 +384,27 @@ static const char *read_file(const char *name)
     return text;
 }
 
+static bool try_report(const char *name)
+{
+    struct coverage_files files;
+    bool well = coverage_open(&files, name, 0);
+    coverage_close(&files);
+    return well;
+}
+
+static bool write_report(const char *name)
+{
+    struct coverage_files files;
+    bool well = coverage_open(&files, name, 0) && coverage_write(&coverage, &files);
+    coverage_close(&files);
+    return well;
+}
+
 START_TEST(the_text_lists_what_is_covered_and_what_is_missing)
 {
     ask("\1", 1);
     ask("\1", 1);
-    ck_assert(coverage_write(&coverage, file));
+    ck_assert(write_report(file));
     const char *text = read_file(file);
     const char *lacking = strstr(text, "\nmissing\n"), *there = strstr(text, "\ncovered (how often)\n");
     ck_assert_ptr_nonnull(lacking);
@@ -403,7 +419,7 @@ START_TEST(the_JSON_says_the_same)
 {
     ask("\1", 1);
     set('2', "C100");
-    ck_assert(coverage_write(&coverage, file));
+    ck_assert(write_report(file));
     json_error_t error;
     json_t *report = json_load_file(json_file, 0, &error);
     ck_assert_msg(report != NULL, "%s: %s", json_file, error.text);
@@ -426,7 +442,7 @@ END_TEST
 
 START_TEST(a_name_that_ends_in_json_gets_the_JSON_alone)
 {
-    ck_assert(coverage_write(&coverage, json_file));
+    ck_assert(write_report(json_file));
     ck_assert_int_eq(read_file(json_file)[0], '{');
     ck_assert_int_ne(access(file, F_OK), 0);
 }
@@ -436,12 +452,12 @@ START_TEST(a_place_that_cannot_be_written_is_known_from_the_start)
 {
     char nowhere[96];
     snprintf(nowhere, sizeof nowhere, "%s/none/report", folder);
-    ck_assert(!coverage_try(nowhere));
-    ck_assert(!coverage_write(&coverage, nowhere));
-    ck_assert(coverage_try(file));
-    ck_assert(coverage_write(&coverage, file));
+    ck_assert(!try_report(nowhere));
+    ck_assert(!write_report(nowhere));
+    ck_assert(try_report(file));
+    ck_assert(write_report(file));
     size_t length = strlen(read_file(file));
-    ck_assert(coverage_try(file));
+    ck_assert(try_report(file));
     ck_assert_uint_eq(strlen(read_file(file)), length);
 }
 END_TEST
@@ -449,11 +465,11 @@ END_TEST
 START_TEST(a_full_disk_is_reported)
 {
     ck_assert_int_eq(symlink("/dev/full", json_file), 0);
-    ck_assert(!coverage_write(&coverage, file));
+    ck_assert(!write_report(file));
     ck_assert_ptr_nonnull(strstr(read_file(file), "missing"));
     empty_folder();
     ck_assert_int_eq(symlink("/dev/full", file), 0);
-    ck_assert(!coverage_write(&coverage, file));
+    ck_assert(!write_report(file));
     ck_assert_int_eq(read_file(json_file)[0], '{');
 }
 END_TEST

@@ -13,6 +13,7 @@
 
 #include "disk_shim.h"
 #include "log.h"
+#include "output_file.h"
 #include "store_rig.h"
 
 /* So many cuts at the least, if no case was chosen. */
@@ -83,8 +84,10 @@ static void power_up(void)
 /* The process ends, in whatever way. */
 static void end(void)
 {
-    if (file.fd >= 0)
+    if (file.fd >= 0) {
+        output_file_release(file.fd);
         close(file.fd);
+    }
     file.fd = -1;
 }
 

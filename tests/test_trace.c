@@ -225,10 +225,10 @@ END_TEST
 START_TEST(a_file_that_cannot_be_opened_is_told_with_the_reason)
 {
     char *error;
-    ck_assert_ptr_null(trace_file_begin(trace_rig_sim(), "/no/such/folder/run.vcd", &error));
+    ck_assert_ptr_null(trace_file_begin(trace_rig_sim(), "/no/such/folder/run.vcd", 0, &error));
     ck_assert_str_eq(error, "cannot write /no/such/folder/run.vcd: No such file or directory");
     free(error);
-    ck_assert_ptr_null(trace_file_begin(trace_rig_sim(), "run.txt", &error));
+    ck_assert_ptr_null(trace_file_begin(trace_rig_sim(), "run.txt", 0, &error));
     ck_assert_str_eq(error, "run.txt: expected a name that ends with .vcd, .csv or .jsonl");
     free(error);
 }

@@ -37,7 +37,7 @@ static struct wire_file *open_file(const char *name)
 {
     char *error = NULL;
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    struct wire_file *file = wire_file_begin(sim, path, &error);
+    struct wire_file *file = wire_file_begin(sim, path, 0, &error);
     ck_assert_msg(file != NULL, "%s", error ? error : "?");
     return file;
 }
@@ -194,7 +194,7 @@ START_TEST(a_file_that_cannot_be_opened_is_refused_with_its_name)
 {
     char *error = NULL;
     wire_rig_begin("3", HDLC);
-    ck_assert_ptr_null(wire_file_begin(sim, "/nowhere/bus.log", &error));
+    ck_assert_ptr_null(wire_file_begin(sim, "/nowhere/bus.log", 0, &error));
     ck_assert_str_eq(error, "cannot write /nowhere/bus.log: No such file or directory");
     free(error);
 }
@@ -206,7 +206,7 @@ START_TEST(a_full_disk_is_told_and_nothing_is_written_any_more)
     wire_rig_begin("3", HDLC);
     snprintf(path, sizeof path, "%s/full.log", folder);
     ck_assert_int_eq(symlink("/dev/full", path), 0);
-    struct wire_file *file = wire_file_begin(sim, path, &error);
+    struct wire_file *file = wire_file_begin(sim, path, 0, &error);
     ck_assert_ptr_nonnull(file);
     wire_rig_ask(3, "\1", 1);
     ck_assert_int_eq(wire_file_failed(file), ENOSPC);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "log.h"
+#include "output_file.h"
 #include "snapshot.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
@@ -202,6 +203,11 @@ static bool configure_plant(struct bus *bus)
 {
     const char *path = bus->options->plant;
     char *text = path ? read_text(path) : NULL;
+    if (text && !output_file_spare(path)) {
+        log_error("out of memory");
+        free(text);
+        return false;
+    }
     bool well = !path || (text && plant_configure(&bus->sim, path, text, strlen(text), stderr));
     free(text);
     return well;
@@ -257,7 +263,7 @@ bool bus_begin(struct bus *bus, unsigned number, const struct serve_options *opt
     if (!bus_ports_open(bus, loop, watch) || !open_flash(bus) || !begin_sim(bus))
         return false;
     watch_for_log(bus);
-    return configure_plant(bus) && keep_journal(bus) && bus_files_begin(bus) && bus_time_begin(bus, loop);
+    return configure_plant(bus) && keep_journal(bus) && bus_time_begin(bus, loop);
 }
 
 bool bus_start(struct bus *bus)

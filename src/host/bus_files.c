@@ -36,14 +36,15 @@ static bool complain(char *error)
 static bool begin_record(struct bus *bus)
 {
     struct bus_files *files = &bus->files;
-    char path[PATH_MAX];
+    char path[PATH_MAX], *why;
     if (!bus->options->record)
         return true;
     if (!path_of(bus, bus->options->record, path))
         return false;
-    files->record_stream = output_file_open(path);
+    files->record_stream = output_file_open(path, OUTPUT_RECORDING, bus->options->output_flags, &why);
     if (!files->record_stream) {
-        log_error("cannot write %s: %s", path, strerror(errno));
+        log_error("cannot write %s: %s", path, why ? why : strerror(ENOMEM));
+        free(why);
         return false;
     }
     files->record = record_begin(&bus->sim, files->record_stream);
@@ -60,14 +61,14 @@ bool bus_files_begin(struct bus *bus)
     for (unsigned i = 0; i < SERVE_FILES_MAX && options->trace[i]; i++) {
         if (!path_of(bus, options->trace[i], path))
             return false;
-        files->trace[i] = trace_file_begin(&bus->sim, path, &error);
+        files->trace[i] = trace_file_begin(&bus->sim, path, options->output_flags, &error);
         if (!files->trace[i])
             return complain(error);
     }
     for (unsigned i = 0; i < SERVE_FILES_MAX && options->wire[i]; i++) {
         if (!path_of(bus, options->wire[i], path))
             return false;
-        files->wire[i] = wire_file_begin(&bus->sim, path, &error);
+        files->wire[i] = wire_file_begin(&bus->sim, path, options->output_flags, &error);
         if (!files->wire[i])
             return complain(error);
     }
@@ -114,7 +115,7 @@ bool bus_files_end(struct bus *bus)
     }
     if (files->record)
         well = check(options->record, record_end(files->record)) && well;
-    if (files->record_stream && fclose(files->record_stream) != 0)
+    if (files->record_stream && output_file_close(files->record_stream) != 0)
         well = check(options->record, errno);
     files->record = NULL;
     files->record_stream = NULL;

@@ -211,12 +211,20 @@ json_t *client_job_file(const char *path)
     return params;
 }
 
+json_t *client_job_output(const struct client_job *job, const char *path)
+{
+    json_t *params = client_job_file(path);
+    if (params != NULL && job->force)
+        json_object_set_new(params, "force", json_true());
+    return params;
+}
+
 /* snapshot, restore: a name in memory, or file=PATH. */
 static enum exit_status come_back(struct client_job *job, const char *method)
 {
     const char *word = job->words[0];
     bool file = strncmp(word, "file=", 5) == 0;
-    json_t *params = file ? client_job_file(word + 5) : json_pack("{s:s}", "name", word);
+    json_t *params = file ? client_job_output(job, word + 5) : json_pack("{s:s}", "name", word);
     if (params == NULL)
         return file ? STATUS_FAILURE : client_usage("%s: expected UTF-8", word);
     return simply(job, method, params, false);
@@ -254,7 +262,7 @@ static enum exit_status call_method(struct client_job *job)
 
 /* ---- All of them ------------------------------------------------------------------------------------------------------ */
 
-enum { TAKES_UNIT = 1, TAKES_LIMIT = 2, TAKES_ONCE = 4, TAKES_ADVANCE = 8 };
+enum { TAKES_UNIT = 1, TAKES_LIMIT = 2, TAKES_ONCE = 4, TAKES_ADVANCE = 8, TAKES_FORCE = 16 };
 
 static const struct command {
     const char *name;
@@ -270,7 +278,7 @@ static const struct command {
     {"advance", 1, SIZE_MAX, "a time, as in 10ms, or a condition", TAKES_UNIT | TAKES_LIMIT, client_control_advance},
     {"watch", 0, 0, "nothing", TAKES_UNIT | TAKES_ONCE, client_watch},
     {"events", 0, SIZE_MAX, "kinds of events", TAKES_UNIT | TAKES_LIMIT, client_control_events},
-    {"snapshot", 1, 1, "NAME or file=PATH", 0, snapshot},
+    {"snapshot", 1, 1, "NAME or file=PATH", TAKES_FORCE, snapshot},
     {"restore", 1, 1, "NAME or file=PATH", 0, restore},
     {"reset", 0, 0, "nothing", TAKES_UNIT, reset},
     {"power", 1, 1, "on or off", TAKES_UNIT, power},
@@ -278,7 +286,7 @@ static const struct command {
     {"fault", 0, SIZE_MAX, "inject KIND NAME=VALUE..., clear [ID], or nothing to list them", TAKES_UNIT, client_control_fault},
     {"plant", 0, 4, "set FILE, none, motor=N..., or nothing to show it", TAKES_UNIT, client_control_plant},
     {"clock", 0, 1, "real, xN, max, stepped, or nothing to show it", 0, clock_of_line},
-    {"trace", 1, 2, "start FILE or stop [NUMBER]", 0, client_control_trace},
+    {"trace", 1, 2, "start FILE or stop [NUMBER]", TAKES_FORCE, client_control_trace},
     {"call", 1, SIZE_MAX, "a METHOD and its parameters, JSON or NAME=VALUE...", TAKES_UNIT, call_method},
     {"shutdown", 0, 0, "nothing", 0, end_emulator},
 };
@@ -312,6 +320,8 @@ enum exit_status client_control(struct client_job *job, const char *name)
         return client_usage("--once is for watch");
     if (job->advance && !(command->options & TAKES_ADVANCE))
         return client_usage("--advance is for wait");
+    if (job->force && !(command->options & TAKES_FORCE))
+        return client_usage("--force is for snapshot and trace start");
     enum exit_status status = command->function(job);
     if (job->connected)
         client_rpc_close(&job->rpc);

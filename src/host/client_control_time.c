@@ -287,7 +287,7 @@ enum exit_status client_control_trace(struct client_job *job)
     if (strcmp(job->words[0], "start") == 0) {
         if (job->count < 2)
             return client_usage("trace start: expected a FILE that ends with .vcd, .csv, .jsonl, .log or .pcapng");
-        return start_trace(job, client_job_file(job->words[1]));
+        return start_trace(job, client_job_output(job, job->words[1]));
     }
     if (strcmp(job->words[0], "stop") != 0)
         return client_usage("trace: expected start FILE or stop [NUMBER], found '%s'", job->words[0]);

@@ -19,7 +19,7 @@ struct client_job {
     const char *limit;        /* --limit; NULL: none */
     int line;                 /* -1: not named */
     int timeout_ms;           /* of real time; 0: not given */
-    bool json, once, advance;
+    bool json, once, advance, force;
     const char *const *words; /* behind the name of the command */
     size_t count;
     bool connected;
@@ -52,6 +52,9 @@ void client_job_print_members(const json_t *object, const char *const *but);
 /* Parameters with `file`, the place of a file as seen from here: the emulator may run in another folder. Returns a new reference,
  * or NULL (reported). */
 json_t *client_job_file(const char *path);
+
+/* The same for a file that the emulator is to write: with `force' if --force was given. */
+json_t *client_job_output(const struct client_job *job, const char *path);
 
 /* The commands, one function each: client_control.c, client_control_time.c, client_control_state.c, client_control_plant.c. */
 typedef enum exit_status client_job_function(struct client_job *job);

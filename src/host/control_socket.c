@@ -77,8 +77,7 @@ static bool claim(struct control_socket *control, const struct sockaddr_un *addr
     uintmax_t device, inode;
     if (record[0] != '\0' && sscanf(record, RECORD, &pid, &device, &inode) != 3) {
         log_error("%s is not a lock file of an emulator: remove it, or choose another --control", control->lock_path);
-        close(control->lock);
-        control->lock = -1;
+        lock_file_leave(&control->lock);
         return false;
     }
     if (!clear_stale(control, address, record)) {

@@ -42,22 +42,14 @@ static struct control_trace *free_place(struct control *control)
     return NULL;
 }
 
-/* Nobody writes the same file twice. */
-static bool is_written(const struct control *control, const char *path)
-{
-    for (unsigned i = 0; i < CONTROL_TRACES; i++)
-        if (control->traces[i].number != 0 && strcmp(control->traces[i].path, path) == 0)
-            return true;
-    return false;
-}
-
-static bool begin(struct control_trace *trace, struct sim *sim, const char *path, struct refusal *refusal)
+static bool begin(struct control_trace *trace, struct sim *sim, const char *path, unsigned flags,
+                  struct refusal *refusal)
 {
     char *error = NULL;
     if (trace_file_named(path))
-        trace->trace = trace_file_begin(sim, path, &error);
+        trace->trace = trace_file_begin(sim, path, flags, &error);
     else
-        trace->wire = wire_file_begin(sim, path, &error);
+        trace->wire = wire_file_begin(sim, path, flags, &error);
     if (trace->trace || trace->wire)
         return true;
     if (error)
@@ -68,22 +60,21 @@ static bool begin(struct control_trace *trace, struct sim *sim, const char *path
 
 json_t *control_trace_start(struct control_context *context, struct refusal *refusal)
 {
-    static const char *const names[] = {"file", NULL};
+    static const char *const names[] = {"file", "force", NULL};
     struct control *control = context->peer->control;
     const json_t *params = context->request->params;
     const char *path = params_known(params, names, refusal) ? param_string(params, "file", refusal) : NULL;
-    if (!path)
+    bool force;
+    if (!path || !param_flag(params, "force", &force, refusal))
         return NULL;
     if (!trace_file_named(path) && !wire_file_named(path))
         return refuse(refusal, REFUSED_PARAMS, "file: expected %s, or %s", TRACE_FILE_EXPECTED, WIRE_FILE_EXPECTED);
-    if (is_written(control, path))
-        return refuse(refusal, REFUSED_STATE, "file: %.200s is being written already", path);
     struct control_trace *trace = free_place(control);
     if (!trace)
         return refuse(refusal, REFUSED_STATE, "too many traces: expected at most %u at a time", CONTROL_TRACES);
     char *copy = strdup(path);
     struct sim *sim = bus_sim(context->bus);
-    if (!copy || !begin(trace, sim, path, refusal)) {
+    if (!copy || !begin(trace, sim, path, OUTPUT_REQUESTED | (force ? OUTPUT_FORCE : 0u), refusal)) {
         free(copy);
         return NULL;
     }

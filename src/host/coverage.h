@@ -78,12 +78,21 @@ void coverage_print(const struct coverage *coverage, FILE *out);
  * {name, count}. Returns a new reference, or NULL if memory is short. */
 json_t *coverage_json(const struct coverage *coverage);
 
-/* Write the text to `file` and the JSON to `file` + ".json"; if `file` ends in ".json" only the JSON, to `file`.
- * Failures are reported (log.h). Returns false if anything could not be written. */
-bool coverage_write(const struct coverage *coverage, const char *file);
+/* The files of a report. */
+struct coverage_files {
+    FILE *text, *json; /* NULL: none */
+    char *text_name, *json_name;
+};
 
-/* Can coverage_write() write there? To be asked at the start, when it can still be mended. Files that are not there are
- * made, empty; others are left as they are. Failures are reported. */
-bool coverage_try(const char *file);
+/* Open `file` for the text and `file` + ".json" for the JSON; if `file` ends in ".json" only that, for the JSON. What is in them
+ * stays until coverage_write(). `flags`: of output_file.h. Failures are reported (log.h). Returns false if it did not work;
+ * coverage_close() is due in either case. */
+bool coverage_open(struct coverage_files *files, const char *file, unsigned flags);
+
+/* Write the report and close. Failures are reported. Returns false if anything could not be written. */
+bool coverage_write(const struct coverage *coverage, struct coverage_files *files);
+
+/* Close what is open, unwritten. */
+void coverage_close(struct coverage_files *files);
 
 #endif

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "log.h"
+#include "output_file.h"
 
 #define JSON_ENDING ".json"
 
@@ -104,15 +105,6 @@ static bool ends_in_json(const char *file)
     return length >= ending && strcmp(file + length - ending, JSON_ENDING) == 0;
 }
 
-/* The name of the JSON beside the text `file`. Returns NULL if memory is short; to be freed. */
-static char *json_name(const char *file)
-{
-    char *name = malloc(strlen(file) + sizeof JSON_ENDING);
-    if (name != NULL)
-        strcat(strcpy(name, file), ends_in_json(file) ? "" : JSON_ENDING);
-    return name;
-}
-
 static bool print_json(const struct coverage *coverage, FILE *out)
 {
     json_t *object = coverage_json(coverage);
@@ -122,40 +114,64 @@ static bool print_json(const struct coverage *coverage, FILE *out)
     return well;
 }
 
-/* Write one file, or, with no `coverage`, see that it can be written. Reports what goes wrong. */
-static bool write_one(const struct coverage *coverage, const char *name, bool json)
+static bool open_one(FILE **out, const char *name, enum output_kind kind, unsigned flags)
 {
-    errno = 0;
-    FILE *out = name == NULL ? NULL : fopen(name, coverage == NULL ? "a" : "w");
-    bool well = out != NULL;
-    if (well && coverage != NULL && json)
-        well = print_json(coverage, out);
-    else if (well && coverage != NULL)
-        coverage_print(coverage, out);
-    if (out != NULL) {
-        well = !ferror(out) && well;
-        well = fclose(out) == 0 && well;
+    char *why = NULL;
+    *out = name ? output_file_open(name, kind, flags | OUTPUT_KEEP, &why) : NULL;
+    if (!*out)
+        log_error("cannot write the coverage to %s: %s", name ? name : "a file", why ? why : strerror(ENOMEM));
+    free(why);
+    return *out != NULL;
+}
+
+bool coverage_open(struct coverage_files *files, const char *file, unsigned flags)
+{
+    *files = (struct coverage_files){0};
+    if (ends_in_json(file)) {
+        files->json_name = strdup(file);
+    } else {
+        files->text_name = strdup(file);
+        if (asprintf(&files->json_name, "%s" JSON_ENDING, file) < 0)
+            files->json_name = NULL;
+        if (!open_one(&files->text, files->text_name, OUTPUT_COVERAGE, flags))
+            return false;
     }
+    return open_one(&files->json, files->json_name, OUTPUT_COVERAGE_JSON, flags);
+}
+
+/* Write and close one file. Reports what goes wrong. */
+static bool write_one(const struct coverage *coverage, FILE **file, const char *name, bool json)
+{
+    FILE *out = *file;
+    *file = NULL;
+    if (!out)
+        return true;
+    errno = 0;
+    bool well = output_file_empty(out);
+    if (well && json)
+        well = print_json(coverage, out);
+    else if (well)
+        coverage_print(coverage, out);
+    well = !ferror(out) && well;
+    well = output_file_close(out) == 0 && well;
     if (!well)
-        log_error("cannot write the coverage to %s: %s", name == NULL ? "a file" : name, strerror(errno ? errno : ENOMEM));
+        log_error("cannot write the coverage to %s: %s", name, strerror(errno ? errno : ENOMEM));
     return well;
 }
 
-static bool write_both(const struct coverage *coverage, const char *file)
+bool coverage_write(const struct coverage *coverage, struct coverage_files *files)
 {
-    char *json = json_name(file);
-    bool well = ends_in_json(file) || write_one(coverage, file, false);
-    well = write_one(coverage, json, true) && well;
-    free(json);
-    return well;
+    bool well = write_one(coverage, &files->text, files->text_name, false);
+    return write_one(coverage, &files->json, files->json_name, true) && well;
 }
 
-bool coverage_write(const struct coverage *coverage, const char *file)
+void coverage_close(struct coverage_files *files)
 {
-    return write_both(coverage, file);
-}
-
-bool coverage_try(const char *file)
-{
-    return write_both(NULL, file);
+    if (files->text)
+        output_file_close(files->text);
+    if (files->json)
+        output_file_close(files->json);
+    free(files->text_name);
+    free(files->json_name);
+    *files = (struct coverage_files){0};
 }

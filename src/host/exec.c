@@ -12,6 +12,7 @@
 #include "exec_program.h"
 #include "exec_report.h"
 #include "exec_run.h"
+#include "output_file.h"
 #include "stimulus.h"
 #include "subcommands.h"
 #include "time_value.h"
@@ -27,13 +28,18 @@ struct options {
     const char *stimulus, *trace, *until_text;
     uint64_t until;
     bool json;
+    unsigned output_flags; /* of output_file.h */
 };
+
+enum option_key { KEY_FORCE = 256 };
 
 static const struct argp_option option_table[] = {
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"stimulus", 's', "FILE", 0, "What comes from outside while the programs run", 0},
     {"trace", 't', "FILE", 0, "Write all that happens: .vcd, .jsonl, any other name CSV; - is standard output, CSV", 0},
     {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
+    {"force", KEY_FORCE, NULL, 0,
+     "Overwrite a file of another kind with the trace, too; never one that is also read or written otherwise", 0},
     {0},
 };
 
@@ -108,6 +114,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case 'j':
         options->json = true;
         return 0;
+    case KEY_FORCE:
+        options->output_flags |= OUTPUT_FORCE;
+        return 0;
     case ARGP_KEY_ARG:
         take_argument(state, options, text);
         return 0;
@@ -141,6 +150,17 @@ struct inputs {
     struct stimuli stimuli;
 };
 
+/* Read a text, which is not to be overwritten. */
+static bool read_file(struct exec_file *file, const char *path)
+{
+    if (!exec_file_read(file, path))
+        return false;
+    if (output_file_spare(path))
+        return true;
+    fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
+    return false;
+}
+
 static bool read_programs(struct inputs *inputs, const struct options *options)
 {
     bool well = true;
@@ -148,7 +168,7 @@ static bool read_programs(struct inputs *inputs, const struct options *options)
         struct program *program = &inputs->program[inputs->programs++];
         struct exec_file *file = &program->file;
         program->motor = options->argument[i].motor;
-        if (!exec_file_read(file, options->argument[i].path))
+        if (!read_file(file, options->argument[i].path))
             well = false;
         else if (diagnose_text(file->name, file->text.text, file->text.length, stderr) > 0)
             well = false;
@@ -186,7 +206,7 @@ static bool is_refused(const struct stimulus *s)
 static bool read_stimuli(struct inputs *inputs, const char *path)
 {
     struct exec_file *file = &inputs->stimulus_file;
-    if (!exec_file_read(file, path))
+    if (!read_file(file, path))
         return false;
     int errors = stimuli_read(&inputs->stimuli, file->name, file->text.text, file->text.length, stderr);
     if (errors < 0)
@@ -310,14 +330,18 @@ static int run_traced(struct exec_run *run, const struct options *options, const
         return run_programs(run, options, inputs, NULL);
     if (strcmp(options->trace, "-") == 0)
         return run_programs(run, options, inputs, stdout);
-    FILE *file = fopen(options->trace, "we");
+    enum trace_format format = trace_file_format(options->trace);
+    enum output_kind kind = trace_file_kind(format == TRACE_FORMATS ? TRACE_CSV : format);
+    char *why;
+    FILE *file = output_file_open(options->trace, kind, options->output_flags | OUTPUT_MAY_WAIT, &why);
     if (file == NULL) {
-        tell_trace(options, errno);
+        fprintf(stderr, "rkm04 exec: cannot write the trace %s: %s\n", options->trace, why != NULL ? why : strerror(ENOMEM));
+        free(why);
         return STATUS_FAILURE;
     }
     setvbuf(file, NULL, _IONBF, 0); /* gathered in a buffer already */
     int status = run_programs(run, options, inputs, file);
-    if (fclose(file) != 0 && status == STATUS_WELL) {
+    if (output_file_close(file) != 0 && status == STATUS_WELL) {
         tell_trace(options, errno);
         status = STATUS_FAILURE;
     }

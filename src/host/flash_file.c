@@ -5,12 +5,14 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "log.h"
+#include "output_file.h"
 
 #define ERASED 0xff
 
@@ -72,9 +74,15 @@ static bool settle(const struct flash_file *flash)
 static bool check_image(struct flash_file *flash)
 {
     struct stat found;
+    char *why;
     if (fstat(flash->fd, &found) != 0 || !S_ISREG(found.st_mode)) {
         log_error("--flash: %s is not a file: expected a flash image of %d bytes, or a name that is free", flash->path,
                   FLASH_FILE_SIZE);
+        return false;
+    }
+    if (!output_file_claim(flash->fd, flash->path, &why)) {
+        log_error("cannot use the flash image %s: %s", flash->path, why ? why : strerror(ENOMEM));
+        free(why);
         return false;
     }
     if (flock(flash->fd, LOCK_EX | LOCK_NB) != 0) {
@@ -111,6 +119,7 @@ bool flash_file_open(struct flash_file *flash, const char *path)
     }
     if (check_image(flash))
         return true;
+    output_file_release(flash->fd);
     close(flash->fd);
     flash->fd = -1;
     return false;
@@ -188,8 +197,10 @@ int flash_file_program(struct flash_file *flash, unsigned block, unsigned offset
 bool flash_file_close(struct flash_file *flash)
 {
     bool synced = flash_file_sync(flash);
-    if (flash->fd >= 0)
+    if (flash->fd >= 0) {
+        output_file_release(flash->fd);
         close(flash->fd);
+    }
     flash->fd = -1;
     return synced;
 }

@@ -122,8 +122,7 @@ bool link_path_claim(struct link_path *link, const char *path, unsigned number)
     }
     if (!read_record(record, target)) {
         log_error("%s is not a lock file of an emulator: remove it, or choose another --link", link->lock_path);
-        close(link->lock);
-        link->lock = -1;
+        lock_file_leave(&link->lock);
         return false;
     }
     if (!clear_stale(link, target)) {

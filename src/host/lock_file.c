@@ -5,10 +5,13 @@
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "output_file.h"
 
 /* Is the open file still the one of that name? Who held it before may have removed it between our open and our lock. */
 static bool is_there(int fd, const char *path)
@@ -23,6 +26,18 @@ static bool is_ours(int fd)
 {
     struct stat found;
     return fstat(fd, &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == geteuid() && found.st_nlink <= 1;
+}
+
+/* See that no output goes there. Returns `fd`, or -1 if one does already. */
+static int claim(int fd, const char *path)
+{
+    char *why;
+    if (output_file_claim(fd, path, &why))
+        return fd;
+    free(why);
+    close(fd);
+    errno = EPERM;
+    return -1;
 }
 
 int lock_file_take(const char *path, char record[LOCK_RECORD_MAX])
@@ -43,7 +58,7 @@ int lock_file_take(const char *path, char record[LOCK_RECORD_MAX])
         record[length > 0 ? length : 0] = '\0';
         record[strcspn(record, "\n")] = '\0';
         if (locked && is_there(fd, path))
-            return fd;
+            return claim(fd, path);
         close(fd);
         if (!locked) {
             errno = why;
@@ -72,9 +87,15 @@ bool lock_file_write(int fd, const char *format, ...)
     return ftruncate(fd, 0) == 0 && pwrite(fd, record, (size_t)length + 1, 0) == length + 1;
 }
 
+void lock_file_leave(int *fd)
+{
+    output_file_release(*fd);
+    close(*fd);
+    *fd = -1;
+}
+
 void lock_file_drop(const char *path, int *fd)
 {
     unlink(path);
-    close(*fd);
-    *fd = -1;
+    lock_file_leave(fd);
 }

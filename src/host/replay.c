@@ -29,7 +29,10 @@ struct options {
     size_t traces, wires;
     uint64_t until; /* RKM04_NEVER: to the end */
     bool json;
+    unsigned output_flags; /* of output_file.h */
 };
+
+enum option_key { KEY_FORCE = 256 };
 
 static const struct argp_option option_table[] = {
     {"trace", 't', "FILE", 0, "Write what happens: FILE.vcd for GTKWave and PulseView, FILE.csv or FILE.jsonl; may be repeated",
@@ -37,6 +40,7 @@ static const struct argp_option option_table[] = {
     {"wire", 'w', "FILE", 0, "Write what passes on the wires: FILE.log, or FILE.pcapng for Wireshark; may be repeated", 0},
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"json", 'j', NULL, 0, "Print the result as JSON", 0},
+    {"force", KEY_FORCE, NULL, 0, "Overwrite files of another kind, too; never one that is also read or written otherwise", 0},
     {0},
 };
 
@@ -87,6 +91,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case 'j':
         options->json = true;
+        return 0;
+    case KEY_FORCE:
+        options->output_flags |= OUTPUT_FORCE;
         return 0;
     case ARGP_KEY_ARG:
         if (options->path)
@@ -189,9 +196,9 @@ static bool begin_files(struct files *files, struct sim *sim, const struct optio
     char *error = NULL;
     bool well = true;
     for (size_t i = 0; well && i < options->traces; i++)
-        well = (files->trace[i] = trace_file_begin(sim, options->trace[i], &error)) != NULL;
+        well = (files->trace[i] = trace_file_begin(sim, options->trace[i], options->output_flags, &error)) != NULL;
     for (size_t i = 0; well && i < options->wires; i++)
-        well = (files->wire[i] = wire_file_begin(sim, options->wire[i], &error)) != NULL;
+        well = (files->wire[i] = wire_file_begin(sim, options->wire[i], options->output_flags, &error)) != NULL;
     if (!well)
         fprintf(stderr, "rkm04 replay: %s\n", error ? error : "out of memory");
     free(error);
@@ -301,6 +308,10 @@ int replay_main(int argc, char **argv)
     FILE *in = is_stdin ? stdin : fopen(options.path, "re");
     if (!in) {
         fprintf(stderr, "rkm04 replay: cannot read %s: %s\n", options.path, strerror(errno));
+        return STATUS_FAILURE;
+    }
+    if (!output_file_spare(options.path)) {
+        fputs("rkm04 replay: out of memory\n", stderr);
         return STATUS_FAILURE;
     }
     catch_signals();

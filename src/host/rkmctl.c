@@ -33,7 +33,9 @@ struct options {
     size_t count;
 };
 
-enum { KEY_FRAMING = 0x100, KEY_TIMEOUT, KEY_MESSAGE_MAX, KEY_LINE, KEY_LIMIT, KEY_ONCE, KEY_ADVANCE, KEY_ALLOW_OVERFLOW };
+enum {
+    KEY_FRAMING = 0x100, KEY_TIMEOUT, KEY_MESSAGE_MAX, KEY_LINE, KEY_LIMIT, KEY_ONCE, KEY_ADVANCE, KEY_ALLOW_OVERFLOW, KEY_FORCE
+};
 
 static const struct argp_option option_table[] = {
     {NULL, 0, NULL, 0, "A unit on the line:", 1},
@@ -52,6 +54,7 @@ static const struct argp_option option_table[] = {
     {"limit", KEY_LIMIT, "TIME", 0,
      "How long to wait, advance or listen, in virtual time, as in 10s, 250ms or a number of us", 0},
     {"advance", KEY_ADVANCE, NULL, 0, "wait: with a stepped clock let time go on until the condition holds", 0},
+    {"force", KEY_FORCE, NULL, 0, "snapshot, trace start: overwrite a file of another kind, too", 0},
     {"once", KEY_ONCE, NULL, 0, "watch: print one picture as text", 0},
     {NULL, 0, NULL, 0, "Both:", 3},
     {"timeout", KEY_TIMEOUT, "MS", 0,
@@ -173,6 +176,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case KEY_ALLOW_OVERFLOW:
         options->request.allow_overflow = true;
         return 0;
+    case KEY_FORCE:
+        options->job.force = true;
+        return 0;
     case KEY_ONCE:
         options->job.once = true;
         return 0;
@@ -199,7 +205,8 @@ static enum exit_status do_request(struct options *options)
 {
     struct client_request *request = &options->request;
     const struct client_job *job = &options->job;
-    if (job->path != NULL || job->unit != NULL || job->line >= 0 || job->limit != NULL || job->once || job->advance)
+    if (job->path != NULL || job->unit != NULL || job->line >= 0 || job->limit != NULL || job->once || job->advance ||
+        job->force)
         return client_usage("%s goes to a unit on the line: expected --port, --node and --motor", options->command);
     request->json = options->json;
     request->words = options->words;

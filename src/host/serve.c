@@ -31,6 +31,7 @@ struct serve {
     struct bus *bus[SERVE_LINES_MAX];
     struct line_watch watch;
     struct coverage coverage;
+    struct coverage_files coverage_files;
     struct control *control; /* NULL: none */
     enum exit_status status;
 
@@ -149,6 +150,16 @@ static bool start_watch(struct serve *serve)
            check("watch the line", uv_poll_start(&serve->notices, UV_READABLE, on_notice));
 }
 
+/* When all inputs are read and valid. */
+static bool start_files(struct serve *serve)
+{
+    const struct serve_options *options = &serve->options;
+    for (unsigned i = 0; i < options->lines; i++)
+        if (!bus_files_begin(serve->bus[i]))
+            return false;
+    return !options->coverage || coverage_open(&serve->coverage_files, options->coverage, options->output_flags);
+}
+
 static bool start_buses(struct serve *serve)
 {
     struct coverage *coverage = wants_coverage(serve) ? &serve->coverage : NULL;
@@ -161,6 +172,8 @@ static bool start_buses(struct serve *serve)
         if (!bus_begin(serve->bus[i], i, &serve->options, &serve->loop, &serve->watch, coverage, &calls, serve))
             return false;
     }
+    if (!start_files(serve))
+        return false;
     serve_report_start(&serve->options, serve->bus);
     for (unsigned i = 0; i < serve->options.lines; i++)
         if (!bus_start(serve->bus[i]))
@@ -207,8 +220,6 @@ static bool start(struct serve *serve)
     const struct serve_options *options = &serve->options;
     allow_files(options);
     coverage_begin(&serve->coverage);
-    if (options->coverage && !coverage_try(options->coverage))
-        return false;
     serve->idle.data = serve;
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
         !start_signals(serve) || !start_control(serve) ||
@@ -231,7 +242,7 @@ static void report_coverage(struct serve *serve)
 {
     const struct serve_options *options = &serve->options;
     double percent = coverage_percent(&serve->coverage);
-    if (options->coverage && !coverage_write(&serve->coverage, options->coverage))
+    if (options->coverage && !coverage_write(&serve->coverage, &serve->coverage_files))
         serve->status = STATUS_FAILURE;
     log_at(bus_present(serve->bus[0]), "coverage of the protocol: %.1f %%", percent);
     if (options->min_coverage >= 0 && (int)(percent * 10 + 0.5) < options->min_coverage) {
@@ -256,6 +267,7 @@ static void end(struct serve *serve)
         if (serve->bus[i])
             bus_free(serve->bus[i]);
     line_watch_close(&serve->watch);
+    coverage_close(&serve->coverage_files);
 }
 
 int serve_main(int argc, char **argv)

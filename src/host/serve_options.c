@@ -10,6 +10,7 @@
 
 #include "net_port.h"
 #include "notify.h"
+#include "output_file.h"
 #include "segment.h"
 #include "trace_file.h"
 #include "wire_file.h"
@@ -47,6 +48,7 @@ enum key {
     KEY_TRACE,
     KEY_WIRE,
     KEY_RECORD,
+    KEY_FORCE,
     KEY_CONTROL,
     KEY_NO_CONTROL
 };
@@ -102,6 +104,9 @@ static const struct argp_option table[] = {
      "given up to eight times. %l in it stands for the number of the line", 0},
     {"wire", KEY_WIRE, "FILE", 0, "Take down what passes on the wires: FILE.log to read, FILE.pcapng for Wireshark; likewise", 0},
     {"record", KEY_RECORD, "FILE", 0, "Record all that comes in, so that `rkm04 replay FILE' does it again", 0},
+    {"force", KEY_FORCE, NULL, 0,
+     "Overwrite files of another kind with traces, logs, recordings and reports, too; never one that is also read or written "
+     "otherwise", 0},
     {"seed", KEY_SEED, "N", 0, "Of faults on demand that have a probability; default 1", 0},
     {NULL, 0, NULL, 0, "Begin, end and report:", 5},
     {"verbose", KEY_VERBOSE, NULL, 0, "Also log each client that opens or closes the bus", 0},
@@ -398,6 +403,9 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_RECORD:
         options->record = read_pattern("record", text, state);
+        return 0;
+    case KEY_FORCE:
+        options->output_flags |= OUTPUT_FORCE;
         return 0;
     case KEY_CONTROL:
         options->control = read_path("control", text, state);

@@ -39,6 +39,7 @@ struct serve_options {
     const char *plant;          /* file; NULL: none */
     const char *trace[SERVE_FILES_MAX], *wire[SERVE_FILES_MAX]; /* patterns; NULL: no more */
     const char *record;         /* pattern; NULL: none */
+    unsigned output_flags;      /* of output_file.h: --force */
     const char *control;        /* socket; NULL: the default */
     bool no_control;
     bool verbose;

@@ -7,16 +7,18 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "output_file.h"
 #include "subcommands.h"
 #include "test_case.h"
 #include "test_report.h"
 
-enum option_key { KEY_NO_RECORDS = 256 };
+enum option_key { KEY_NO_RECORDS = 256, KEY_FORCE };
 
 struct options {
     const char **path; /* in the order of the command line */
     size_t paths;
     bool stdin_taken, json, no_records;
+    unsigned output_flags; /* of output_file.h */
     const char *junit, *records;
 };
 
@@ -25,6 +27,8 @@ static const struct argp_option option_table[] = {
     {"json", 'j', NULL, 0, "Print the results as JSON, instead of a line for each scenario", 0},
     {"records", 'r', "FOLDER", 0, "Where the records of failed scenarios are kept; the default is the present folder", 0},
     {"no-records", KEY_NO_RECORDS, NULL, 0, "Keep no records", 0},
+    {"force", KEY_FORCE, NULL, 0,
+     "Overwrite files of another kind with the report and records, too; never one that is also read or written otherwise", 0},
     {0},
 };
 
@@ -83,6 +87,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case KEY_NO_RECORDS:
         options->no_records = true;
         return 0;
+    case KEY_FORCE:
+        options->output_flags |= OUTPUT_FORCE;
+        return 0;
     case ARGP_KEY_ARG:
         take_path(state, options, text);
         return 0;
@@ -138,7 +145,7 @@ static bool run_all(struct test_case *tests, const struct options *options, int 
         for (size_t before = 0; before < i; before++)
             number += test_case_alike(&tests[before], &tests[i]);
         progress.at = i + 1;
-        well = test_case_run(&tests[i], folder, number, &progress) && well;
+        well = test_case_run(&tests[i], folder, options->output_flags, number, &progress) && well;
         if (!options->json)
             test_report_line(stdout, &tests[i]);
         if (fflush(stdout) != 0 && *wrong == 0)
@@ -154,7 +161,7 @@ static bool finish(FILE *file, const char *what, int wrong)
         wrong = errno;
     if (ferror(file) && wrong == 0)
         wrong = EIO;
-    if (file != stdout && fclose(file) != 0 && wrong == 0)
+    if (file != stdout && output_file_close(file) != 0 && wrong == 0)
         wrong = errno;
     if (wrong != 0)
         fprintf(stderr, "rkm04 test: cannot write %s: %s\n", what, strerror(wrong));
@@ -182,9 +189,11 @@ static int run(struct test_case *tests, const struct options *options)
     if (status != STATUS_WELL)
         return status;
     if (options->junit != NULL) {
-        junit = fopen(options->junit, "w");
+        char *why;
+        junit = output_file_open(options->junit, OUTPUT_JUNIT, options->output_flags | OUTPUT_MAY_WAIT, &why);
         if (junit == NULL) {
-            fprintf(stderr, "rkm04 test: cannot write %s: %s\n", options->junit, strerror(errno));
+            fprintf(stderr, "rkm04 test: cannot write %s: %s\n", options->junit, why != NULL ? why : strerror(ENOMEM));
+            free(why);
             return STATUS_FAILURE;
         }
     }

@@ -11,6 +11,7 @@
 #include <rkm04/limits.h>
 
 #include "diagnose.h"
+#include "output_file.h"
 #include "program_text.h"
 #include "subcommands.h"
 
@@ -34,8 +35,8 @@ bool test_case_interrupted(void)
 
 /* ---- Files ---------------------------------------------------------------------------------------------------------- */
 
-/* Read all of `file`. Returns a text to be freed, or NULL and the reason. */
-static char *read_stream(FILE *file, size_t *length, const char **why)
+/* Read all of `file`, which is not to be overwritten. Returns a text to be freed, or NULL and the reason. */
+static char *read_stream(FILE *file, const char *path, size_t *length, const char **why)
 {
     char *text = NULL;
     *length = 0;
@@ -50,8 +51,13 @@ static char *read_stream(FILE *file, size_t *length, const char **why)
             free(text);
             return NULL;
         }
-        if (*length < room)
+        if (*length == room)
+            continue;
+        if (output_file_spare(path))
             return text;
+        *why = strerror(ENOMEM);
+        free(text);
+        return NULL;
     }
     *why = "it is too large";
     free(text);
@@ -66,7 +72,7 @@ static char *read_file(void *context, const char *path, size_t *length, const ch
         *why = strerror(errno);
         return NULL;
     }
-    char *text = read_stream(file, length, why);
+    char *text = read_stream(file, path, length, why);
     fclose(file);
     return text;
 }
@@ -78,7 +84,7 @@ int test_case_read(struct test_case *test, const char *path)
     const char *why = "";
     size_t length;
     *test = (struct test_case){.file = standard ? "<stdin>" : path};
-    char *text = standard ? read_stream(stdin, &length, &why) : read_file(NULL, path, &length, &why);
+    char *text = standard ? read_stream(stdin, path, &length, &why) : read_file(NULL, path, &length, &why);
     if (text == NULL) {
         fprintf(stderr, "rkm04 test: cannot read %s: %s\n", test->file, why);
         return STATUS_FAILURE;
@@ -132,27 +138,33 @@ static char *record_path(const struct test_case *test, const char *folder, unsig
     return asprintf(&path, "%s/%.*s%s.record", folder, length, base, suffix) < 0 ? NULL : path;
 }
 
-static bool write_record(const char *path, const char *text, size_t length)
+/* Returns false if it did not work; *why as output_file_open(). */
+static bool write_record(const char *path, unsigned flags, const char *text, size_t length, char **why)
 {
-    FILE *file = fopen(path, "w");
+    FILE *file = output_file_open(path, OUTPUT_RECORDING, flags | OUTPUT_MAY_WAIT, why);
     if (file == NULL)
         return false;
     bool well = fwrite(text, 1, length, file) == length;
-    return fclose(file) == 0 && well;
+    well = output_file_close(file) == 0 && well;
+    if (!well)
+        *why = strdup(strerror(errno));
+    return well && output_file_spare(path); /* from the others of the run */
 }
 
-static bool keep_record(struct test_case *test, const char *folder, unsigned number, const char *text, size_t length)
+static bool keep_record(struct test_case *test, const char *folder, unsigned flags, unsigned number, const char *text,
+                        size_t length)
 {
-    char *path = record_path(test, folder, number);
-    if (test->result.record_error == 0 && path != NULL && write_record(path, text, length)) {
+    char *path = record_path(test, folder, number), *why = NULL;
+    if (test->result.record_error == 0 && path != NULL && write_record(path, flags, text, length, &why)) {
         /* as one would write it */
         test->record = strncmp(path, "./", 2) == 0 ? strdup(path + 2) : strdup(path);
         free(path);
         return true;
     }
     fprintf(stderr, "rkm04 test: cannot write the record %s: %s\n", path != NULL ? path : "",
-            strerror(test->result.record_error != 0 ? test->result.record_error : errno));
+            why != NULL ? why : strerror(test->result.record_error != 0 ? test->result.record_error : ENOMEM));
     free(path);
+    free(why);
     return false;
 }
 
@@ -183,7 +195,7 @@ static bool ask(void *context, uint64_t tick)
     return interrupted != 0;
 }
 
-bool test_case_run(struct test_case *test, const char *folder, unsigned number, struct test_progress *progress)
+bool test_case_run(struct test_case *test, const char *folder, unsigned flags, unsigned number, struct test_progress *progress)
 {
     static const enum test_outcome outcomes[] = {
         [SCENARIO_PASSED] = TEST_PASSED,
@@ -206,7 +218,7 @@ bool test_case_run(struct test_case *test, const char *folder, unsigned number, 
     if (out != NULL && fclose(out) != 0)
         test->result.record_error = errno;
     if (test->outcome == TEST_FAILED && folder != NULL)
-        well = keep_record(test, folder, number, record, length);
+        well = keep_record(test, folder, flags, number, record, length);
     free(record);
     return well;
 }

@@ -36,9 +36,10 @@ struct test_progress {
  * Returns 0, or what the exit status is to be. */
 int test_case_read(struct test_case *test, const char *path);
 
-/* Run it. `folder`: where the record of a failure goes; NULL: it is not kept. `number`: 2, 3, … for the second, third of a run
- * whose files are called alike. A record that cannot be written is reported on stderr: then false. */
-bool test_case_run(struct test_case *test, const char *folder, unsigned number, struct test_progress *progress);
+/* Run it. `folder`: where the record of a failure goes; NULL: it is not kept. `flags`: of output_file.h, for the record.
+ * `number`: 2, 3, … for the second, third of a run whose files are called alike. A record that cannot be written is reported on
+ * stderr: then false. */
+bool test_case_run(struct test_case *test, const char *folder, unsigned flags, unsigned number, struct test_progress *progress);
 
 /* Would the records of both have the same name? */
 bool test_case_alike(const struct test_case *left, const struct test_case *right);

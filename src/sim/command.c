@@ -145,6 +145,16 @@ const char *param_string(const json_t *params, const char *name, struct refusal 
     return text;
 }
 
+bool param_flag(const json_t *params, const char *name, bool *value, struct refusal *refusal)
+{
+    const json_t *given = json_object_get(params, name);
+    *value = json_is_true(given);
+    if (!given || json_is_boolean(given))
+        return true;
+    refuse(refusal, REFUSED_PARAMS, "%s: expected true or false", name);
+    return false;
+}
+
 bool params_known(const json_t *params, const char *const *names, struct refusal *refusal)
 {
     const char *key;

@@ -22,7 +22,7 @@ enum refusal_code {
 
 struct refusal {
     int code;
-    char text[320];
+    char text[640];
 };
 
 /* Do it. `params`: an object or NULL. Returns the result, a new reference; NULL: refused, nothing was changed. */
@@ -52,6 +52,9 @@ bool param_time(const json_t *params, const char *name, uint64_t missing, uint64
 
 /* Read a string. Returns NULL if it is missing or no string: refused. */
 const char *param_string(const json_t *params, const char *name, struct refusal *refusal);
+
+/* Read true or false, false if it is missing. Returns false: refused. */
+bool param_flag(const json_t *params, const char *name, bool *value, struct refusal *refusal);
 
 /* Refuse every parameter that is not in the list, which ends with NULL: a typing error must not go unnoticed. */
 bool params_known(const json_t *params, const char *const *names, struct refusal *refusal);

@@ -3,22 +3,263 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-FILE *output_file_open(const char *path)
+/* A file that the process reads, has written, or writes. Descriptors and files belong to the process, and so does this list. */
+struct use {
+    dev_t device;
+    ino_t inode;
+    int fd;     /* open for writing; -1: spared */
+    char *path; /* "-": standard input */
+    struct use *next;
+};
+
+static struct use *uses;
+
+/* Returns false, for the callers' convenience. */
+__attribute__((format(printf, 2, 3))) static bool explain(char **why, const char *format, ...)
 {
-    struct stat found;
-    int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, 0666);
-    if (fd < 0)
-        return NULL;
-    if (fstat(fd, &found) != 0 || (!S_ISREG(found.st_mode) && !S_ISCHR(found.st_mode))) {
-        close(fd);
-        errno = EINVAL;
+    va_list values;
+    va_start(values, format);
+    if (vasprintf(why, format, values) < 0)
+        *why = NULL;
+    va_end(values);
+    return false;
+}
+
+/* The same with an errno. */
+static bool explain_error(char **why, int error)
+{
+    return explain(why, "%s", strerror(error));
+}
+
+/* ---- Files in use --------------------------------------------------------------------------------------------------- */
+
+static bool is_file(const struct use *use, const struct stat *status)
+{
+    return use->device == status->st_dev && use->inode == status->st_ino;
+}
+
+static int stat_input(const char *path, struct stat *status)
+{
+    return strcmp(path, "-") == 0 ? fstat(STDIN_FILENO, status) : stat(path, status);
+}
+
+/* The number of a file that was spared and is gone may have been given to another one. */
+static bool is_in_use(const struct use *use, const struct stat *status)
+{
+    struct stat present;
+    return is_file(use, status) && (use->fd >= 0 || (stat_input(use->path, &present) == 0 && is_file(use, &present)));
+}
+
+static bool add_use(const struct stat *status, int fd, const char *path)
+{
+    struct use *use = malloc(sizeof *use);
+    char *copy = strdup(path);
+    if (!use || !copy) {
+        free(use);
+        free(copy);
+        return false;
+    }
+    *use = (struct use){.device = status->st_dev, .inode = status->st_ino, .fd = fd, .path = copy, .next = uses};
+    uses = use;
+    return true;
+}
+
+static bool is_open_at(int fd, const struct stat *status)
+{
+    struct stat open;
+    return fstat(fd, &open) == 0 && open.st_dev == status->st_dev && open.st_ino == status->st_ino;
+}
+
+/* Is the regular file used by nobody else? `written`: only files that are written count. */
+static bool check_free(const struct stat *status, const char *path, bool written, char **why)
+{
+    static const char same_file[] = "it is the same file as %s, which is %s: choose another name";
+    for (const struct use *use = uses; use; use = use->next) {
+        const char *how = use->fd >= 0 ? "written" : "read";
+        if ((written && use->fd < 0) || !is_in_use(use, status))
+            continue;
+        if (strcmp(use->path, path) == 0)
+            return explain(why, "it is %s: choose another name", use->fd >= 0 ? "being written already" : "read, too");
+        return explain(why, same_file, strcmp(use->path, "-") == 0 ? "standard input" : use->path, how);
+    }
+    if (is_open_at(STDOUT_FILENO, status))
+        return explain(why, same_file, "standard output", "written");
+    if (is_open_at(STDERR_FILENO, status))
+        return explain(why, same_file, "standard error", "written");
+    return true;
+}
+
+bool output_file_spare(const char *path)
+{
+    struct stat status;
+    if (stat_input(path, &status) != 0 || !S_ISREG(status.st_mode))
+        return true;
+    for (const struct use *use = uses; use; use = use->next)
+        if (use->fd < 0 && is_in_use(use, &status))
+            return true;
+    return add_use(&status, -1, path);
+}
+
+bool output_file_claim(int fd, const char *path, char **why)
+{
+    struct stat status;
+    *why = NULL;
+    if (fstat(fd, &status) != 0)
+        return explain_error(why, errno);
+    return check_free(&status, path, false, why) && add_use(&status, fd, path);
+}
+
+void output_file_release(int fd)
+{
+    for (struct use **at = &uses; *at; at = &(*at)->next) {
+        struct use *use = *at;
+        if (use->fd != fd)
+            continue;
+        *at = use->next;
+        free(use->path);
+        free(use);
+        return;
+    }
+}
+
+/* ---- Open and close ------------------------------------------------------------------------------------------------- */
+
+static bool check_kind(int fd, enum output_kind kind, unsigned flags, char **why)
+{
+    char bytes[OUTPUT_KIND_BYTES];
+    ssize_t length = pread(fd, bytes, sizeof bytes, 0); /* -1: it may be written, but not read */
+    if ((flags & OUTPUT_FORCE) || (length >= 0 && output_kind_is(kind, bytes, (size_t)length)))
+        return true;
+    return explain(why, "it exists and is not %s: choose another name, or overwrite it with %s", output_kind_name(kind),
+                   flags & OUTPUT_REQUESTED ? "`force': true (rkmctl --force)" : "--force");
+}
+
+/* Regular files are opened for reading, too, to look at their kind; a pipe must not be, or nobody would have to read it. */
+static int open_output(const char *path, unsigned flags)
+{
+    struct stat there;
+    int how = O_CLOEXEC | O_NOCTTY | (flags & OUTPUT_MAY_WAIT ? 0 : O_NONBLOCK);
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
+        return open(path, how | O_WRONLY);
+    int fd = open(path, how | O_RDWR | O_CREAT, 0666);
+    return fd < 0 && errno == EACCES ? open(path, how | O_WRONLY) : fd;
+}
+
+/* See that what was opened may be written, and make a regular file ours. */
+static bool take_output(int fd, const char *path, enum output_kind kind, unsigned flags, char **why)
+{
+    struct stat status;
+    if (fstat(fd, &status) != 0)
+        return explain_error(why, errno);
+    if (S_ISCHR(status.st_mode) || (S_ISFIFO(status.st_mode) && (flags & OUTPUT_MAY_WAIT)))
+        return true;
+    if (!S_ISREG(status.st_mode))
+        return explain(why, "it is not a regular file: choose another name");
+    if (!check_free(&status, path, false, why) || !check_kind(fd, kind, flags, why))
+        return false;
+    if (status.st_size > 0 && !(flags & OUTPUT_KEEP) && ftruncate(fd, 0) != 0)
+        return explain_error(why, errno);
+    return add_use(&status, fd, path);
+}
+
+FILE *output_file_open(const char *path, enum output_kind kind, unsigned flags, char **why)
+{
+    *why = NULL;
+    int fd = open_output(path, flags);
+    if (fd < 0) {
+        explain_error(why, errno);
         return NULL;
     }
-    FILE *file = fdopen(fd, "w");
-    if (!file)
+    bool taken = take_output(fd, path, kind, flags, why);
+    FILE *file = taken ? fdopen(fd, "w") : NULL;
+    if (file)
+        return file;
+    if (taken)
+        output_file_release(fd);
+    close(fd);
+    return NULL;
+}
+
+bool output_file_empty(FILE *file)
+{
+    struct stat status;
+    if (fstat(fileno(file), &status) != 0)
+        return false;
+    return !S_ISREG(status.st_mode) || ftruncate(fileno(file), 0) == 0;
+}
+
+int output_file_close(FILE *file)
+{
+    output_file_release(fileno(file));
+    return fclose(file);
+}
+
+/* ---- Replace -------------------------------------------------------------------------------------------------------- */
+
+/* May what has that name, if anything does, be replaced? */
+static bool check_replaced(const char *path, enum output_kind kind, unsigned flags, char **why)
+{
+    struct stat status;
+    if (lstat(path, &status) != 0)
+        return errno == ENOENT || explain_error(why, errno);
+    if (!S_ISREG(status.st_mode))
+        return explain(why, "it is not a regular file: choose another name");
+    if (!check_free(&status, path, true, why))
+        return false;
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NOFOLLOW | O_NONBLOCK);
+    bool well = check_kind(fd, kind, flags, why);
+    if (fd >= 0)
         close(fd);
+    return well;
+}
+
+/* A new file in the folder of `path`, whose name is in *name, to be freed. Returns NULL if there is none; errno says why. */
+static FILE *make_beside(const char *path, char **name)
+{
+    const char *slash = strrchr(path, '/');
+    int folder = slash ? (int)(slash - path) + 1 : 0;
+    if (asprintf(name, "%.*s.rkm04-XXXXXX", folder, path) < 0) {
+        *name = NULL;
+        errno = ENOMEM;
+        return NULL;
+    }
+    int fd = mkostemp(*name, O_CLOEXEC);
+    FILE *file = fd >= 0 ? fdopen(fd, "w") : NULL;
+    if (!file && fd >= 0) {
+        int error = errno;
+        close(fd);
+        unlink(*name);
+        errno = error;
+    }
     return file;
+}
+
+bool output_file_replace(const char *path, enum output_kind kind, unsigned flags, bool (*write)(void *context, FILE *out),
+                         void *context, char **why)
+{
+    char *name = NULL;
+    *why = NULL;
+    if (!check_replaced(path, kind, flags, why))
+        return false;
+    FILE *file = make_beside(path, &name);
+    bool well = file && write(context, file);
+    int error = errno;
+    if (file && fclose(file) != 0 && well) {
+        well = false;
+        error = errno;
+    }
+    if (well && rename(name, path) != 0) {
+        well = false;
+        error = errno;
+    }
+    if (!well && file)
+        unlink(name);
+    free(name);
+    return well || explain_error(why, error);
 }

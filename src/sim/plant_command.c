@@ -83,18 +83,6 @@ static json_t *configure(struct sim *sim, const json_t *plant, struct refusal *r
 
 /* ---- A hand at the motor -------------------------------------------------------------------------------------------- */
 
-/* A flag that may be left out: then `given` is false. Returns false if it is something else: refused. */
-static bool param_flag(const json_t *params, const char *name, bool *given, bool *value, struct refusal *refusal)
-{
-    const json_t *flag = json_object_get(params, name);
-    *given = flag != NULL;
-    *value = json_is_true(flag);
-    if (!flag || json_is_boolean(flag))
-        return true;
-    refuse(refusal, REFUSED_PARAMS, "%s: expected true or false", name);
-    return false;
-}
-
 static json_t *place(struct sim *sim, struct sim_unit *unit, unsigned motor, int64_t position, struct refusal *refusal)
 {
     struct plant_change change;
@@ -110,10 +98,10 @@ static json_t *place(struct sim *sim, struct sim_unit *unit, unsigned motor, int
 static json_t *handle(struct sim *sim, unsigned number, const json_t *params, struct refusal *refusal)
 {
     struct sim_unit *unit = &sim->unit[number - 1u];
-    bool held, jammed, taken, missing;
+    bool held = json_object_get(params, "jammed"), taken = json_object_get(params, "missing_lead"), jammed, missing;
     int64_t motor, position;
     if (!param_integer(params, "motor", 1, RKM04_MOTORS, &motor, refusal) ||
-        !param_flag(params, "jammed", &held, &jammed, refusal) || !param_flag(params, "missing_lead", &taken, &missing, refusal))
+        !param_flag(params, "jammed", &jammed, refusal) || !param_flag(params, "missing_lead", &missing, refusal))
         return NULL;
     unsigned which = (unsigned)motor;
     if (!unit->plant || !plant_position(unit->plant, which, &position))

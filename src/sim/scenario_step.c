@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "condition_term.h"
+#include "output_file.h"
 #include "scenario_parts.h"
 
 #define SILENCE 1000000u /* ticks: how long `answer: none` listens */
@@ -307,6 +308,13 @@ static bool read_pulses(struct scenario_reader *reader, const struct config_node
 
 /* ---- What is done from outside -------------------------------------------------------------------------------------- */
 
+/* What a scenario will restore is not to be overwritten by the report or a recording of the same run. */
+static bool spare_file(const struct config_node *node, const json_t *params)
+{
+    const char *file = json_string_value(json_object_get(params, "file"));
+    return file == NULL || output_file_spare(file) || no_memory(node);
+}
+
 /* Try a command out, on a line of which nothing is seen. Takes `params` over. */
 static bool take_command(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step,
                          const char *method, json_t *params)
@@ -317,7 +325,7 @@ static bool take_command(struct scenario_reader *reader, const struct config_nod
     if (params == NULL)
         return no_memory(node);
     if (strcmp(method, "snapshot") == 0 || strcmp(method, "restore") == 0)
-        return true; /* files may be concerned: when the scenario runs */
+        return spare_file(node, params); /* files may be concerned: when the scenario runs */
     json_t *result = sim_command(reader->sim, method, params, &refusal);
     bool wrong = result == NULL && (refusal.code == REFUSED_PARAMS || refusal.code == REFUSED_METHOD);
     json_decref(result);

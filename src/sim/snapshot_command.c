@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "output_file.h"
 #include "record.h"
 #include "record_line.h"
 #include "replay_inside.h"
@@ -57,9 +58,9 @@ bool snapshots_keep_journal(struct sim *sim)
 /* ---- Parameters ----------------------------------------------------------------------------------------------------- */
 
 /* Either `name` or `file`. Returns false: refused. */
-static bool read_params(const json_t *params, const char **name, const char **file, struct refusal *refusal)
+static bool read_params(const json_t *params, const char *const *known, const char **name, const char **file,
+                        struct refusal *refusal)
 {
-    static const char *const known[] = {"name", "file", NULL};
     const json_t *given_name = json_object_get(params, "name"), *given_file = json_object_get(params, "file");
     *name = *file = NULL;
     if (!params_known(params, known, refusal))
@@ -110,44 +111,36 @@ static json_t *take_named(struct sim_snapshots *store, const char *name, struct 
     return json_pack("{s:s, s:I}", "name", name, "t_us", (json_int_t)sim_now(store->sim));
 }
 
-/* Under another name first: a file that is there is replaced by a whole one or not at all. */
-static json_t *write_file(struct sim_snapshots *store, const char *path, struct refusal *refusal)
+static bool write_journal(void *context, FILE *out)
+{
+    return journal_write(context, out);
+}
+
+static json_t *write_file(struct sim_snapshots *store, const char *path, bool force, struct refusal *refusal)
 {
     const char *gap = store->journal ? journal_gap(store->journal) : "what has come in was not kept: use `name'";
-    char *fresh = NULL;
+    unsigned flags = OUTPUT_REQUESTED | (force ? OUTPUT_FORCE : 0u);
+    char *why;
     if (gap)
         return refuse(refusal, REFUSED_STATE, "file: cannot write a snapshot: %s", gap);
-    if (asprintf(&fresh, "%s.new", path) < 0)
-        return refuse(refusal, REFUSED_MEMORY, out_of_memory);
-    unlink(fresh);
-    FILE *out = fopen(fresh, "wxe"); /* a new file, never one that somebody's link leads to */
-    bool well = out && journal_write(store->journal, out);
-    int error = well ? 0 : errno;
-    if (out && fclose(out) != 0 && well) {
-        well = false;
-        error = errno;
-    }
-    if (well && rename(fresh, path) != 0) {
-        well = false;
-        error = errno;
-    }
-    if (!well && out)
-        remove(fresh);
-    free(fresh);
-    if (!well)
-        return refuse(refusal, REFUSED_STATE, "file: cannot write %.160s: %s", path, strerror(error));
-    return json_pack("{s:s, s:I}", "file", path, "t_us", (json_int_t)sim_now(store->sim));
+    if (output_file_replace(path, OUTPUT_RECORDING, flags, write_journal, store->journal, &why))
+        return json_pack("{s:s, s:I}", "file", path, "t_us", (json_int_t)sim_now(store->sim));
+    refuse(refusal, REFUSED_STATE, "file: cannot write %.160s: %s", path, why ? why : out_of_memory);
+    free(why);
+    return NULL;
 }
 
 json_t *command_snapshot(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
+    static const char *const known[] = {"name", "file", "force", NULL};
     const char *name, *file;
+    bool force;
     struct sim_snapshots *store = store_of(sim);
     if (!store)
         return refuse(refusal, REFUSED_MEMORY, out_of_memory);
-    if (!read_params(params, &name, &file, refusal))
+    if (!read_params(params, known, &name, &file, refusal) || !param_flag(params, "force", &force, refusal))
         return NULL;
-    return file ? write_file(store, file, refusal) : take_named(store, name, refusal);
+    return file ? write_file(store, file, force, refusal) : take_named(store, name, refusal);
 }
 
 /* ---- restore -------------------------------------------------------------------------------------------------------- */
@@ -244,13 +237,14 @@ json_t *restore_text(struct sim *sim, const char *name, const char *text, size_t
 
 json_t *command_restore(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
+    static const char *const known[] = {"name", "file", NULL};
     const char *name, *file;
     struct sim_snapshots *store = store_of(sim);
     if (!store)
         return refuse(refusal, REFUSED_MEMORY, out_of_memory);
     free(store->text);
     store->text = NULL;
-    if (!read_params(params, &name, &file, refusal))
+    if (!read_params(params, known, &name, &file, refusal))
         return NULL;
     if (name)
         return restore_named(store, name, refusal);

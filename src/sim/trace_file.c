@@ -7,6 +7,12 @@
 
 #include "output_file.h"
 
+static const enum output_kind kinds[TRACE_FORMATS] = {
+    [TRACE_CSV] = OUTPUT_CSV,
+    [TRACE_VCD] = OUTPUT_VCD,
+    [TRACE_JSONL] = OUTPUT_JSONL,
+};
+
 static const struct trace_writer *const writers[TRACE_FORMATS] = {
     [TRACE_CSV] = &trace_csv,
     [TRACE_VCD] = &trace_vcd,
@@ -68,6 +74,11 @@ enum trace_format trace_file_format(const char *path)
     return TRACE_FORMATS;
 }
 
+enum output_kind trace_file_kind(enum trace_format format)
+{
+    return kinds[format];
+}
+
 bool trace_file_named(const char *path)
 {
     return trace_file_format(path) != TRACE_FORMATS;
@@ -109,17 +120,19 @@ static void explain(char **error, const char *format, const char *path, const ch
         *error = NULL;
 }
 
-struct trace_file *trace_file_begin(struct sim *sim, const char *path, char **error)
+struct trace_file *trace_file_begin(struct sim *sim, const char *path, unsigned flags, char **error)
 {
+    char *why;
     enum trace_format format = trace_file_format(path);
     *error = NULL;
     if (format == TRACE_FORMATS) {
         explain(error, "%s: expected %s", path, TRACE_FILE_EXPECTED);
         return NULL;
     }
-    FILE *out = output_file_open(path);
+    FILE *out = output_file_open(path, kinds[format], flags, &why);
     if (!out) {
-        explain(error, "cannot write %s: %s", path, strerror(errno));
+        explain(error, "cannot write %s: %s", path, why ? why : strerror(ENOMEM));
+        free(why);
         return NULL;
     }
     setvbuf(out, NULL, _IONBF, 0); /* gathered in a buffer already */
@@ -127,7 +140,7 @@ struct trace_file *trace_file_begin(struct sim *sim, const char *path, char **er
     if (file)
         file->owned = true;
     else
-        fclose(out);
+        output_file_close(out);
     return file;
 }
 
@@ -139,7 +152,7 @@ int trace_file_end(struct trace_file *file)
     trace_file_flush(file);
     int error = file->error;
     errno = 0;
-    if (file->owned && fclose(file->out) != 0 && error == 0)
+    if (file->owned && output_file_close(file->out) != 0 && error == 0)
         error = errno != 0 ? errno : EIO;
     free(file->state);
     free(file);

@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 
+#include "output_file.h"
 #include "sim.h"
 
 #define TRACE_FILE_EXPECTED "a name that ends with .vcd, .csv or .jsonl"
@@ -20,9 +21,12 @@ bool trace_file_named(const char *path);
 /* The format that a name chooses; TRACE_FORMATS: none. */
 enum trace_format trace_file_format(const char *path);
 
-/* Open `path`, "-" is not allowed, and begin to watch; what there is now is its beginning. Returns NULL if it did not work;
- * *error is what to say then ("cannot write FILE: …"), to be freed; NULL: memory is short. */
-struct trace_file *trace_file_begin(struct sim *sim, const char *path, char **error);
+/* The kind of file that it makes; `format`: not TRACE_FORMATS. */
+enum output_kind trace_file_kind(enum trace_format format);
+
+/* Open `path`, "-" is not allowed, with `flags` of output_file_open(), and begin to watch; what there is now is its beginning.
+ * Returns NULL if it did not work; *error is what to say then ("cannot write FILE: …"), to be freed; NULL: memory is short. */
+struct trace_file *trace_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 
 /* The same on a stream, which stays the caller's. Returns NULL if memory is short. */
 struct trace_file *trace_file_begin_on(struct sim *sim, FILE *out, enum trace_format format);

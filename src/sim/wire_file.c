@@ -86,18 +86,21 @@ static void see(void *context, const struct watch_event *event)
     write_entry(file, &entry);
 }
 
-struct wire_file *wire_file_begin(struct sim *sim, const char *path, char **error)
+struct wire_file *wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error)
 {
     struct wire_file *file = malloc(sizeof *file);
-    FILE *out = file ? output_file_open(path) : NULL;
+    const struct wire_format *format = format_of(path);
+    char *why = NULL;
+    FILE *out = file ? output_file_open(path, format->kind, flags, &why) : NULL;
     if (!out) {
-        if (asprintf(error, "cannot write %s: %s", path, strerror(errno)) < 0)
+        if (asprintf(error, "cannot write %s: %s", path, why ? why : strerror(ENOMEM)) < 0)
             *error = NULL;
+        free(why);
         free(file);
         return NULL;
     }
     file->sim = sim;
-    file->format = format_of(path);
+    file->format = format;
     file->out = out;
     file->error = 0;
     struct wire_text entry = begin_entry(file);
@@ -130,7 +133,7 @@ int wire_file_end(struct wire_file *file)
     sim_unwatch(file->sim, &file->watcher);
     write_rest(file, false);
     write_rest(file, true);
-    if (fclose(file->out) != 0 && file->error == 0)
+    if (output_file_close(file->out) != 0 && file->error == 0)
         file->error = errno;
     int error = file->error;
     free(file);

@@ -4,6 +4,7 @@
 #ifndef RKM04_SIM_WIRE_FILE_H
 #define RKM04_SIM_WIRE_FILE_H
 
+#include "output_file.h"
 #include "sim.h"
 
 #define WIRE_FILE_EXPECTED "a name that ends with .log or .pcapng"
@@ -13,9 +14,9 @@ struct wire_file;
 /* Does the name end with one of WIRE_FILE_EXPECTED? */
 bool wire_file_named(const char *path);
 
-/* Open `path`, which is overwritten, and begin to watch. Returns NULL if it did not work; *error is what to say then ("cannot
- * write FILE: …"), to be freed, or NULL if memory is short. */
-struct wire_file *wire_file_begin(struct sim *sim, const char *path, char **error);
+/* Open `path`, with `flags` of output_file_open(), and begin to watch. Returns NULL if it did not work; *error is what to say
+ * then ("cannot write FILE: …"), to be freed, or NULL if memory is short. */
+struct wire_file *wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 
 /* 0, or the errno with which writing has failed. Nothing is written after the first failure. */
 int wire_file_failed(const struct wire_file *file);

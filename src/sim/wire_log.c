@@ -54,4 +54,4 @@ static void log_news(struct wire_text *out, const struct sim *sim, const struct 
     wire_text_put(out, '\n');
 }
 
-const struct wire_format wire_log = {".log", log_head, log_message, log_news};
+const struct wire_format wire_log = {".log", OUTPUT_WIRE_LOG, log_head, log_message, log_news};

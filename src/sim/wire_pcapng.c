@@ -210,4 +210,4 @@ static void pcapng_news(struct wire_text *out, const struct sim *sim, const stru
     put_packet(out, &packet, &comment);
 }
 
-const struct wire_format wire_pcapng = {".pcapng", pcapng_head, pcapng_message, pcapng_news};
+const struct wire_format wire_pcapng = {".pcapng", OUTPUT_PCAPNG, pcapng_head, pcapng_message, pcapng_news};

@@ -82,9 +82,9 @@ static double measure(const char *format, uint64_t seconds, double *size)
     polls = 0;
     double begun = cpu_time();
     if (wire_file_named(path))
-        wire = wire_file_begin(&sim, path, &error);
+        wire = wire_file_begin(&sim, path, 0, &error);
     else if (trace_file_named(path))
-        trace = trace_file_begin(&sim, path, &error);
+        trace = trace_file_begin(&sim, path, 0, &error);
     if (error)
         die(error);
     run(seconds * SECOND);

@@ -150,10 +150,10 @@ bool machine_ring(void)
 
 /* ---- Files ---------------------------------------------------------------------------------------------------------- */
 
-struct trace_file *__wrap_trace_file_begin(struct sim *sim, const char *path, char **error);
-struct trace_file *__real_trace_file_begin(struct sim *sim, const char *path, char **error);
-struct wire_file *__wrap_wire_file_begin(struct sim *sim, const char *path, char **error);
-struct wire_file *__real_wire_file_begin(struct sim *sim, const char *path, char **error);
+struct trace_file *__wrap_trace_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
+struct trace_file *__real_trace_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
+struct wire_file *__wrap_wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
+struct wire_file *__real_wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 command_function __wrap_command_snapshot, __real_command_snapshot, __wrap_command_restore, __real_command_restore;
 
 static char folder[PATH_MAX];
@@ -206,16 +206,16 @@ static const char *tame_trace(char path[PATH_MAX], const char *name)
     return path;
 }
 
-struct trace_file *__wrap_trace_file_begin(struct sim *sim, const char *path, char **error)
+struct trace_file *__wrap_trace_file_begin(struct sim *sim, const char *path, unsigned flags, char **error)
 {
     char safe[PATH_MAX];
-    return __real_trace_file_begin(sim, tame_trace(safe, path), error);
+    return __real_trace_file_begin(sim, tame_trace(safe, path), flags, error);
 }
 
-struct wire_file *__wrap_wire_file_begin(struct sim *sim, const char *path, char **error)
+struct wire_file *__wrap_wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error)
 {
     char safe[PATH_MAX];
-    return __real_wire_file_begin(sim, tame_trace(safe, path), error);
+    return __real_wire_file_begin(sim, tame_trace(safe, path), flags, error);
 }
 
 /* A command with the parameter `file`, by another name. */

@@ -350,7 +350,8 @@ def test_files_begun_are_ended_with_the_emulator(emulator):
     client = emulator.client()
     for name in ["a.vcd", "a.csv", "a.jsonl", "a.log", "a.pcapng"]:
         client.call("trace.start", file=name)
-    assert client.refused("trace.start", file="a.vcd").message == "file: a.vcd is being written already"
+    error = client.refused("trace.start", file="a.vcd")
+    assert error.message == "cannot write a.vcd: it is being written already: choose another name", error
     assert client.refused("trace.stop").message == "trace: missing: there are several"
     emulator.program(1, "S100 F5 R")
     client.call("advance", ticks="1s")
