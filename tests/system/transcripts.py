@@ -10,8 +10,8 @@ do not count, `...' stands for anything, a line that is indented goes on with th
     <!-- file: NAME -->        the block is that file
     <!-- not run: REASON -->   the block needs what a test has not got
 
-The blocks of a document share a folder, a shell, and the emulator that was started last. --write: put what came into the document;
-look at the difference then."""
+The blocks of a document share a folder, a shell, and the emulator that was started last. --write: put what came into the
+document; look at the difference then."""
 import os
 import re
 import select
