@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/timerfd.h>
 
 #include "bus.h"
@@ -11,6 +12,7 @@
 #define NS_PER_SECOND 1000000000u
 #define NS_PER_BYTE 520834u       /* 10 bits at 19200 baud */
 #define NS_PER_LOOK 200000u       /* between two looks whether a device has sent all */
+#define AGAIN_MS 1000u            /* between two tries to have a new pty */
 
 unsigned bus_ports_clients(const struct bus *bus)
 {
@@ -62,7 +64,7 @@ static void look(struct bus *bus)
 static size_t room(const struct bus *bus)
 {
     size_t most = bus_room(bus);
-    return !strict(bus) ? most : most > 0 ? (most - 1) / LINE_EAR_MAX : 0;
+    return !bus->options->strict_line ? most : most > 0 ? (most - 1) / LINE_EAR_MAX : 0;
 }
 
 static void take_heard(struct bus *bus, const struct line_heard *heard, size_t number)
@@ -166,6 +168,9 @@ void bus_ports_silence(struct bus *bus)
 
 /* ---- The pty or device ---------------------------------------------------------------------------------------------- */
 
+static void on_again(uv_timer_t *timer);
+static void follow_adapter(struct bus *bus);
+
 static void on_news(void *context, enum line_news news)
 {
     struct bus *bus = context;
@@ -187,7 +192,10 @@ static void on_news(void *context, enum line_news news)
         bus_log(bus, "one more client has opened the line: they will take each other's answers (%u now)", ports->line.clients);
         break;
     case LINE_FAILED:
-        bus->calls->failed(bus->context);
+        if (!ports->lost)
+            bus_log(bus, "a client has locked the pty %s for good and gone: another pty takes its place", ports->line.path);
+        ports->lost = true;
+        uv_timer_start(&ports->again, on_again, 0, 0);
         return;
     }
     bus->calls->presence(bus->context);
@@ -198,16 +206,19 @@ static bool read_line(struct bus *bus)
 {
     uint8_t bytes[1024];
     size_t most;
-    look(bus);
+    struct line *line = &bus->ports.line;
     while ((most = room(bus)) > 0) {
-        ssize_t length = line_read(&bus->ports.line, bytes, most < sizeof bytes ? most : sizeof bytes);
+        ssize_t length = line_read(line, bytes, most < sizeof bytes ? most : sizeof bytes);
         if (length < 0)
             return false;
         if (length == 0)
             return true;
+        if (line->watch)
+            line_watch_follow(line->watch); /* who has sent them is there before an answer is */
+        if (line->watch && line->clients == 0)
+            line_pty_count_again(line);
+        look(bus);
         take(bus, bytes, (size_t)length);
-        if (bus->ports.line.clients == 0)
-            line_pty_count_again(&bus->ports.line);
     }
     return true;
 }
@@ -233,8 +244,6 @@ static void on_readable(uv_poll_t *handle, int status, int events)
     if (bus->options->port)
         bus->calls->presence(bus->context);
 }
-
-static void follow_adapter(struct bus *bus);
 
 void bus_ports_listen(struct bus *bus)
 {
@@ -266,14 +275,7 @@ static void net_bytes(void *context, const uint8_t *bytes, size_t length)
 {
     struct bus *bus = context;
     look(bus);
-    while (length > 0) {
-        size_t most = room(bus), part = length < most ? length : most;
-        if (part == 0)
-            return; /* look() has found a strict line, which has less room than it seemed: the rest is lost */
-        take(bus, bytes, part);
-        bytes += part;
-        length -= part;
-    }
+    take(bus, bytes, length);
     if (!bus->busy)
         bus_catch_up(bus);
 }
@@ -392,6 +394,8 @@ static bool open_line(struct bus *bus, uv_loop_t *loop, struct line_watch *watch
             log_error("--link: the path is too long");
             return false;
         }
+        uv_timer_init(loop, &ports->again);
+        ports->again.data = bus;
         if (!link_path_claim(&ports->link, options->link ? path : NULL, bus->number) ||
             !line_pty_open(&ports->line, watch, on_news, bus))
             return false;
@@ -438,7 +442,8 @@ static void on_pty_closed(uv_handle_t *handle)
 {
     struct bus *bus = handle->data;
     bus->ports.closing = false;
-    follow_adapter(bus);
+    if (!bus->ports.resting)
+        follow_adapter(bus);
 }
 
 static void plug_network(struct bus_ports *ports, bool plugged)
@@ -449,25 +454,51 @@ static void plug_network(struct bus_ports *ports, bool plugged)
         net_port_plug(ports->rfc2217, plugged);
 }
 
+/* The pty goes away with its link. */
+static void drop_pty(struct bus *bus)
+{
+    struct bus_ports *ports = &bus->ports;
+    uint64_t dropped = ports->line.dropped;
+    struct stat found;
+    if (stat(ports->line.path, &found) == 0) {
+        ports->group = found.st_gid;
+        ports->mode = found.st_mode & 0777;
+    }
+    link_path_hide(&ports->link);
+    ports->closing = true;
+    ports->reading = false;
+    uv_close((uv_handle_t *)&ports->readable, on_pty_closed);
+    line_close(&ports->line);
+    line_none(&ports->line);
+    ports->line.dropped = dropped;
+}
+
 static void pull_out(struct bus *bus)
 {
     struct bus_ports *ports = &bus->ports;
     ports->out = true;
     if (bus->options->pty) {
-        bus_log(bus, "the adapter is unplugged: %s and its link are gone", ports->line.path);
-        link_path_hide(&ports->link);
-        ports->closing = true;
-        ports->reading = false;
-        uv_close((uv_handle_t *)&ports->readable, on_pty_closed);
-        uint64_t dropped = ports->line.dropped;
-        line_close(&ports->line);
-        line_none(&ports->line);
-        ports->line.dropped = dropped;
+        if (!ports->lost)
+            bus_log(bus, "the adapter is unplugged: %s and its link are gone", ports->line.path);
+        drop_pty(bus);
     } else {
         bus_log(bus, "the adapter is unplugged%s", bus->options->port ? ": the device stays, and is silent" : "");
     }
     plug_network(ports, false);
     bus->calls->presence(bus->context);
+}
+
+/* The new pty is for whom the old one was for. */
+static void keep_access(const struct bus_ports *ports)
+{
+    const char *path = ports->line.path;
+    struct stat found;
+    if (ports->mode == 0 || stat(path, &found) != 0)
+        return;
+    if (found.st_gid != ports->group && chown(path, (uid_t)-1, ports->group) != 0)
+        log_error("cannot give %s the group %u of the pty before: %s", path, (unsigned)ports->group, strerror(errno));
+    else if ((found.st_mode & 0777) != ports->mode && chmod(path, ports->mode) != 0)
+        log_error("cannot give %s the mode %03o of the pty before: %s", path, (unsigned)ports->mode, strerror(errno));
 }
 
 static bool make_pty(struct bus *bus)
@@ -476,23 +507,37 @@ static bool make_pty(struct bus *bus)
     uint64_t dropped = ports->line.dropped;
     bool made = line_pty_open(&ports->line, ports->watch, on_news, bus);
     ports->line.dropped = dropped;
-    if (made)
-        ports->reading = poll_fd(bus, ports->readable.loop, &ports->readable, ports->line.fd, on_readable);
-    return made && ports->reading && bus_ports_publish(bus);
+    if (!made)
+        return false;
+    ports->reading = poll_fd(bus, ports->again.loop, &ports->readable, ports->line.fd, on_readable);
+    if (!ports->reading) {
+        line_close(&ports->line);
+        return false;
+    }
+    keep_access(ports);
+    if (bus_ports_publish(bus))
+        return true;
+    drop_pty(bus);
+    return false;
 }
 
 static void put_in(struct bus *bus)
 {
     struct bus_ports *ports = &bus->ports;
-    ports->out = false;
+    if (bus->options->pty && !make_pty(bus)) {
+        if (!ports->rest_told)
+            bus_log(bus, "the adapter cannot be plugged in again: trying every second");
+        ports->resting = ports->rest_told = true;
+        uv_timer_start(&ports->again, on_again, AGAIN_MS, 0);
+        return;
+    }
+    ports->out = ports->rest_told = false;
     ports->known = ports->net = line_settings_unit;
     plug_network(ports, true);
-    if (!bus->options->pty)
-        bus_log(bus, "the adapter is plugged in again");
-    else if (make_pty(bus))
+    if (bus->options->pty)
         bus_log(bus, "the adapter is plugged in again: %s, link %s", ports->line.path, ports->link.path);
     else
-        bus->calls->failed(bus->context);
+        bus_log(bus, "the adapter is plugged in again");
 }
 
 /* What the fault of the adapter has come to since the last look. It may have come and gone: then it is another pty. */
@@ -501,13 +546,20 @@ static void follow_adapter(struct bus *bus)
     struct bus_ports *ports = &bus->ports;
     if (ports->ended)
         return;
-    if (ports->pulled) {
-        ports->pulled = false;
+    if (ports->pulled || ports->lost) {
         if (!ports->out)
             pull_out(bus);
+        ports->pulled = ports->lost = false;
     }
-    if (ports->out && !ports->unplugged && !ports->closing)
+    if (ports->out && !ports->unplugged && !ports->closing && !ports->resting)
         put_in(bus);
+}
+
+static void on_again(uv_timer_t *timer)
+{
+    struct bus *bus = timer->data;
+    bus->ports.resting = false;
+    follow_adapter(bus);
 }
 
 void bus_ports_plug(struct bus *bus, bool plugged)

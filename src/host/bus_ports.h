@@ -33,6 +33,11 @@ struct bus_ports {
     bool pulled, unplugged;     /* the adapter was pulled out since the last look; it is out now, if it is up to the fault */
     bool out;                   /* what follows of that has been done */
     bool closing;               /* `readable` is, of the pty that is gone */
+    bool lost;                  /* the pty is, to a client that has locked it and gone */
+    bool resting;               /* there was no new pty to be had: another try when `again` goes off */
+    bool rest_told;
+    uv_timer_t again;           /* follow_adapter() is due */
+    uint32_t group, mode;       /* of the pty that is gone; its successor gets them; mode 0: there was none */
     bool ended;                 /* bus_ports_close() */
 };
 
@@ -44,8 +49,9 @@ bool bus_ports_publish(struct bus *bus);
 
 void bus_ports_close(struct bus *bus);
 
-/* The adapter is pulled out: the pty goes away with its link, network clients are hung up; or put in again: a new pty under the
- * same link. A serial device stays. Done in the next bus_ports_listen(). */
+/* The adapter is pulled out: the pty goes away with its link, network clients are hung up; or put in again: a new pty with the
+ * group and mode of the old one under the same link. If there is no pty to be had (no free descriptor, no pty left), it is tried
+ * again every second. A serial device stays. Done in the next bus_ports_listen(). */
 void bus_ports_plug(struct bus *bus, bool plugged);
 
 /* How many clients are there; a device counts as none. */

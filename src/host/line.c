@@ -11,15 +11,22 @@
 #define CONTROL_OFF (CSIZE | PARENB | CSTOPB | CRTSCTS)
 #define CONTROL_ON (CS8 | CREAD | CLOCAL)
 
-bool line_make_raw(struct termios *settings)
+bool line_is_cooked(const struct termios *settings)
 {
-    struct termios old = *settings;
+    return (settings->c_iflag & INPUT_OFF) || (settings->c_oflag & OPOST) || (settings->c_lflag & LOCAL_OFF);
+}
+
+void line_make_uncooked(struct termios *settings)
+{
     settings->c_iflag &= ~(tcflag_t)INPUT_OFF;
     settings->c_oflag &= ~(tcflag_t)OPOST;
     settings->c_lflag &= ~(tcflag_t)LOCAL_OFF;
+}
+
+void line_make_raw(struct termios *settings)
+{
+    line_make_uncooked(settings);
     settings->c_cflag = (settings->c_cflag & ~(tcflag_t)CONTROL_OFF) | CONTROL_ON;
-    return settings->c_iflag != old.c_iflag || settings->c_oflag != old.c_oflag || settings->c_lflag != old.c_lflag ||
-           settings->c_cflag != old.c_cflag;
 }
 
 ssize_t line_read(struct line *line, uint8_t *bytes, size_t room)
@@ -28,6 +35,8 @@ ssize_t line_read(struct line *line, uint8_t *bytes, size_t room)
     ssize_t length = read(line->fd, bytes, room);
     if (length > 0)
         return length;
+    if (length < 0 && errno == EIO && line->watch && line->slave < 0)
+        return 0; /* a pty on which nobody is, nor are we (line_pty.c) */
     return length < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
 }
 
@@ -57,7 +66,7 @@ void line_close(struct line *line)
     line_serial_restore(line);
     int *fds[] = {&line->slave, &line->fd};
     if (line->watch && line->mark >= 0)
-        inotify_rm_watch(line->watch->fd, line->mark);
+        inotify_rm_watch(line->watch->notices, line->mark);
     for (struct line **at = line->watch ? &line->watch->lines : NULL; at && *at; at = &(*at)->next) {
         if (*at == line) {
             *at = line->next;

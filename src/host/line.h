@@ -15,13 +15,15 @@ enum line_news {
     LINE_DETACHED, /* the last client has closed the line */
     LINE_ATTACHED, /* the first client has opened it */
     LINE_SHARED,   /* one more client has opened it */
-    LINE_FAILED    /* the pty is lost (reported) */
+    LINE_FAILED    /* nobody is there, and nobody can open the pty any more: it is to be closed, but not within the call */
 };
 typedef void line_tell(void *context, enum line_news news);
 
 /* Who opens and closes ptys, for all of a process: the system gives a user few such watches. */
 struct line_watch {
-    int fd;             /* inotify; -1: not open */
+    int fd;             /* readable: line_watch_follow() is due; -1: not open */
+    int notices;        /* inotify; -1: there is none for us */
+    int timer;          /* goes off regularly if there is a line that inotify does not watch; -1: there is none */
     struct line *lines; /* those being watched */
 };
 
@@ -33,10 +35,11 @@ enum line_rts {
 
 struct line {
     int fd;           /* for bytes: master of the pty, or the device; non-blocking; -1: neither */
-    int slave;        /* held open, so that the master never sees a hang-up; -1: a device */
+    int slave;        /* held open, so that the master never sees a hang-up; -1: a device, or a client keeps us out */
     struct line_watch *watch; /* NULL: a device */
     struct line *next; /* being watched */
-    int mark;         /* the watch's, for this pty */
+    int mark;         /* inotify's, for this pty; -1: none, it is looked at now and then */
+    bool left;        /* by a client: its settings have not been looked at yet */
     bool doubtful;    /* notices were lost: `clients` may be wrong */
     unsigned closings; /* notices of clients that have closed it, not counted yet */
     unsigned clients; /* have the line open; a device counts as one */
@@ -50,12 +53,13 @@ struct line {
     void *context;
 };
 
-/* Begin to watch; end it. Failures are reported. Returns false if it did not work. */
+/* Begin to watch; end it. Without inotify (its watches or instances are used up) the lines are looked at ten times a second: who
+ * comes and goes between two looks is not noticed then. Failures are reported. Returns false if it did not work. */
 bool line_watch_open(struct line_watch *watch);
 void line_watch_close(struct line_watch *watch);
 
-/* Follow what clients of any line did since the last call: count them, make the line raw again, forget what the last one left
- * unread. */
+/* Follow what clients of any line did since the last call: count them, forget what the last one left unread, make a line raw that
+ * it left cooked. */
 void line_watch_follow(struct line_watch *watch);
 
 /* A line that is not open. */
@@ -86,7 +90,13 @@ size_t line_write(struct line *line, const uint8_t *bytes, size_t length);
 
 void line_close(struct line *line);
 
-/* Settings of a raw line with 8N1. Leaves speed and control characters alone. Returns false if nothing had to change. */
-bool line_make_raw(struct termios *settings);
+/* Does the terminal do more than pass bytes: echo, edit lines, translate, obey XON and XOFF? */
+bool line_is_cooked(const struct termios *settings);
+
+/* No longer; all else stays. */
+void line_make_uncooked(struct termios *settings);
+
+/* Settings of a raw line with 8N1. Leaves speed and control characters alone. */
+void line_make_raw(struct termios *settings);
 
 #endif

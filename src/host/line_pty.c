@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* The emulator's own pty. It holds one slave descriptor itself, so the master never reports a hang-up (which would make
- * poll() return at once, for ever) and the settings stay within reach; who comes and goes is told by inotify.
+ * poll() return at once, for ever) and the settings stay within reach; inotify reports who opens and closes it.
  *
  * inotify merges equal notices that follow each other, so counting them may err when two clients come or go together. Hence
- * whether anybody is left is looked up whenever one closes it: with our own slave closed for a moment, the master tells by a
- * hang-up whether anybody else has the slave open. */
+ * whether a client is left is looked up whenever one closes it: with our own slave closed for a moment, the master tells by a
+ * hang-up whether anybody else has the slave open. A client that takes the pty for itself (TIOCEXCL) in that moment keeps our
+ * slave out until it has gone: then the line is without one, and the master's hang-up is taken for nothing to read.
+ *
+ * Settings are as on a serial port: they outlive the client. The next client may open the pty and make its own settings at any
+ * moment, and one tcsetattr() cannot be told from another, so nothing that a client may have meant is ever reset. Only a line
+ * that was left cooked is made raw again, and only while no notice of another client has come. */
 #include "line.h"
 
 #include <errno.h>
@@ -13,13 +18,18 @@
 #include <pty.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/inotify.h>
 #include <sys/ioctl.h>
+#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include "log.h"
 
 #define COUNT_TRIES 5
+#define NOTICE_READS 16 /* at once, of 4 KiB each; the rest is read in the next turn */
+#define UNREAD_READS 64 /* KiB; a pty holds less */
+#define LOOK_MS 100 /* between two looks at a line that inotify does not watch */
 
 static bool set_flags(int fd)
 {
@@ -35,20 +45,60 @@ static void fresh_settings(struct termios *settings)
     settings->c_cc[VTIME] = 0;
 }
 
+/* ---- The watch ------------------------------------------------------------------------------------------------------ */
+
+static bool add_to_watch(struct line_watch *watch, int fd)
+{
+    struct epoll_event event = {.events = EPOLLIN};
+    return fd >= 0 && epoll_ctl(watch->fd, EPOLL_CTL_ADD, fd, &event) == 0;
+}
+
+/* There is no inotify for a line: look at it now and then. Returns false if that does not work either (errno). */
+static bool begin_to_look(struct line_watch *watch)
+{
+    struct itimerspec spec = {.it_interval.tv_nsec = LOOK_MS * 1000000l, .it_value.tv_nsec = LOOK_MS * 1000000l};
+    if (watch->timer >= 0)
+        return true;
+    watch->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    return add_to_watch(watch, watch->timer) && timerfd_settime(watch->timer, 0, &spec, NULL) == 0;
+}
+
 bool line_watch_open(struct line_watch *watch)
 {
     watch->lines = NULL;
-    watch->fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (watch->fd < 0)
-        log_error("cannot watch who opens the line: %s; too many inotify instances in use?", strerror(errno));
-    return watch->fd >= 0;
+    watch->timer = -1;
+    watch->fd = epoll_create1(EPOLL_CLOEXEC);
+    watch->notices = watch->fd < 0 ? -1 : inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (watch->notices >= 0 && add_to_watch(watch, watch->notices))
+        return true;
+    int why = errno;
+    if (watch->fd >= 0 && begin_to_look(watch)) {
+        log_error("no inotify: %s (fs.inotify.max_user_instances?); looking every %d ms who uses the line", strerror(why), LOOK_MS);
+        return true;
+    }
+    log_error("cannot watch who opens the line: %s", strerror(errno));
+    return false;
 }
 
 void line_watch_close(struct line_watch *watch)
 {
-    if (watch->fd >= 0)
-        close(watch->fd);
-    watch->fd = -1;
+    int *fds[] = {&watch->fd, &watch->notices, &watch->timer};
+    for (size_t i = 0; watch->fd >= 0 && i < sizeof fds / sizeof fds[0]; i++) {
+        if (*fds[i] >= 0)
+            close(*fds[i]);
+        *fds[i] = -1;
+    }
+}
+
+/* Have the new line watched. Returns false if it is not possible in any way (errno). */
+static bool begin_to_watch(struct line_watch *watch, struct line *line)
+{
+    if (watch->notices >= 0)
+        line->mark = inotify_add_watch(watch->notices, line->path, IN_OPEN | IN_CLOSE);
+    if (line->mark < 0 && watch->notices >= 0 && watch->timer < 0)
+        log_error("inotify does not watch %s: %s; looking every %d ms who uses the line", line->path,
+                  errno == ENOSPC ? "too many watches in use (fs.inotify.max_user_watches)" : strerror(errno), LOOK_MS);
+    return line->mark >= 0 || begin_to_look(watch);
 }
 
 bool line_pty_open(struct line *line, struct line_watch *watch, line_tell *tell, void *context)
@@ -59,12 +109,14 @@ bool line_pty_open(struct line *line, struct line_watch *watch, line_tell *tell,
     struct termios settings = {0};
     fresh_settings(&settings);
     if (openpty(&line->fd, &line->slave, NULL, &settings, NULL) != 0) {
-        log_error("cannot make a pty: %s; is /dev/pts mounted?", strerror(errno));
+        log_error("cannot make a pty: %s%s", strerror(errno),
+                  errno == ENOSPC                      ? "; too many ptys in use (kernel.pty.max)?"
+                  : errno == EMFILE || errno == ENFILE ? "; `ulimit -n' allows more"
+                                                       : "; is /dev/pts mounted?");
         return false;
     }
     int failed = ptsname_r(line->fd, line->path, sizeof line->path);
-    if (failed != 0 || !set_flags(line->fd) || !set_flags(line->slave) ||
-        (line->mark = inotify_add_watch(watch->fd, line->path, IN_OPEN | IN_CLOSE)) < 0) {
+    if (failed != 0 || !set_flags(line->fd) || !set_flags(line->slave) || !begin_to_watch(watch, line)) {
         log_error("cannot use the pty %s: %s", line->path, strerror(failed ? failed : errno));
         line_close(line);
         return false;
@@ -75,37 +127,26 @@ bool line_pty_open(struct line *line, struct line_watch *watch, line_tell *tell,
     return true;
 }
 
-/* Nobody listens any more: what the unit sent and nobody read is lost, as on a line; the next client finds a fresh pty. */
-static void forget_client(struct line *line)
+/* ---- Who comes and goes --------------------------------------------------------------------------------------------- */
+
+/* Nobody listens any more: what the unit sent and nobody read is lost, as on a line. */
+static void drop_unread(struct line *line)
 {
     uint8_t bytes[1024];
     ssize_t length;
-    struct termios settings;
-    ioctl(line->slave, TIOCNXCL); /* a client's TIOCEXCL outlives it and would keep the next one out */
-    if (tcgetattr(line->slave, &settings) == 0) {
-        fresh_settings(&settings);
-        tcsetattr(line->slave, TCSANOW, &settings);
-    }
+    if (line->slave < 0)
+        return;
     tcflow(line->slave, TCOON);
-    while ((length = read(line->slave, bytes, sizeof bytes)) > 0)
+    for (unsigned i = 0; i < UNREAD_READS && (length = read(line->slave, bytes, sizeof bytes)) > 0; i++)
         line->dropped += (uint64_t)length;
     tcflush(line->fd, TCOFLUSH);    /* what is still on its way to the slave; what the client wrote stays */
     tcflush(line->slave, TCIFLUSH);
 }
 
-/* A client has come. It may already have made its own settings, so only what is not raw is touched. */
-static void greet_client(struct line *line)
-{
-    struct termios settings;
-    if (tcgetattr(line->slave, &settings) == 0 && line_make_raw(&settings))
-        tcsetattr(line->slave, TCSANOW, &settings);
-}
-
 static void opened(struct line *line)
 {
     line->clients++;
-    if (line->clients == 1)
-        greet_client(line);
+    line->left = false;
     line->tell(line->context, line->clients == 1 ? LINE_ATTACHED : LINE_SHARED);
 }
 
@@ -113,7 +154,8 @@ static void opened(struct line *line)
 static void deserted(struct line *line)
 {
     line->clients = 0;
-    forget_client(line);
+    line->left = true;
+    drop_unread(line);
     line->tell(line->context, LINE_DETACHED);
 }
 
@@ -139,74 +181,135 @@ static struct line *marked(const struct line_watch *watch, int mark)
     return line;
 }
 
-/* Read the notices that are waiting, and follow them, but not those of line `ignored`. Returns the number of the latter. */
-static unsigned read_notices(struct line_watch *watch, const struct line *ignored)
+/* Notices of one line. */
+struct notices {
+    unsigned all, opens;
+};
+
+/* Read the notices that are waiting, and follow them, but not those of line `ignored`, which are counted. */
+static void read_notices(struct line_watch *watch, const struct line *ignored, struct notices *counted)
 {
     _Alignas(struct inotify_event) char buffer[4096];
-    unsigned number = 0;
     ssize_t length;
-    while ((length = read(watch->fd, buffer, sizeof buffer)) > 0) {
+    for (unsigned i = 0; i < NOTICE_READS && (length = read(watch->notices, buffer, sizeof buffer)) > 0; i++) {
         for (ssize_t at = 0; at < length;) {
             const struct inotify_event *event = (const void *)(buffer + at);
-            struct line *line = marked(watch, event->wd);
-            if (event->mask & IN_Q_OVERFLOW)
+            struct line *line = event->wd >= 0 ? marked(watch, event->wd) : NULL;
+            if (event->mask & IN_Q_OVERFLOW) {
                 for (line = watch->lines; line; line = line->next)
                     line->doubtful = true;
-            else if (line && line == ignored)
-                number++;
-            else if (line)
+            } else if (line && line == ignored) {
+                counted->all++;
+                counted->opens += (event->mask & IN_OPEN) != 0;
+            } else if (line) {
                 follow(line, event->mask);
+            }
             at += (ssize_t)(sizeof *event + event->len);
         }
     }
-    return number;
 }
 
-/* Does anybody else have the slave open? Returns 1 or 0; -1: the slave is lost (reported). */
-static int anybody_else(struct line *line)
+static bool hung_up(const struct line *line)
 {
     struct pollfd master = {.fd = line->fd};
-    int exclusive = 0;
-    /* TIOCEXCL would keep us out as well, unless we are root. */
-    ioctl(line->slave, TIOCGEXCL, &exclusive);
-    ioctl(line->slave, TIOCNXCL);
-    close(line->slave);
-    bool others = poll(&master, 1, 0) >= 0 && !(master.revents & POLLHUP);
-    line->slave = open(line->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (line->slave < 0) {
-        log_error("a client has locked the pty %s for good: %s; start the emulator again", line->path, strerror(errno));
-        return -1;
+    return poll(&master, 1, 0) > 0 && (master.revents & POLLHUP);
+}
+
+/* Does anybody else have the slave open? Returns 1 or 0; -1: our own slave cannot be had any more, and nobody else is there. */
+static int anybody_else(struct line *line)
+{
+    if (line->slave >= 0)
+        close(line->slave);
+    for (unsigned tries = 0; tries < COUNT_TRIES; tries++) {
+        bool others = !hung_up(line);
+        line->slave = open(line->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+        if (line->slave >= 0)
+            return others;
+        if (!hung_up(line))
+            return 1; /* and keeps us out */
     }
-    if (others && exclusive)
-        ioctl(line->slave, TIOCEXCL);
-    return others;
+    return -1;
+}
+
+/* A client has the pty for itself, or has left it so. Then nobody else could open it since, and the notices of those who have
+ * closed it are enough. Returns true if they were. */
+static bool count_exclusive(struct line *line)
+{
+    int exclusive = 0;
+    if (line->slave < 0 || ioctl(line->slave, TIOCGEXCL, &exclusive) != 0 || !exclusive)
+        return false;
+    bool known = line->mark >= 0 && !line->doubtful && line->closings > 0;
+    read_notices(line->watch, NULL, NULL); /* whose it is may have come after the others had gone */
+    if (known && !line->doubtful && line->closings < line->clients) {
+        line->clients -= line->closings;
+        line->closings = 0;
+        return true;
+    }
+    ioctl(line->slave, TIOCNXCL); /* would keep out the next client, and us */
+    if (!known || line->doubtful)
+        return false;
+    line->closings = 0;
+    deserted(line);
+    return true;
 }
 
 void line_pty_count_again(struct line *line)
 {
     int others = 0;
+    unsigned reopened = 0;
+    struct notices counted = {0}, one = {0};
+    if (count_exclusive(line))
+        return;
     /* Our own close and open give two notices; if there are more, somebody came or went meanwhile. */
-    for (unsigned tries = 0, notices = 0; tries < COUNT_TRIES && notices != 2; tries++) {
+    for (unsigned tries = 0; tries < COUNT_TRIES && (tries == 0 || (one.all != 2 && line->mark >= 0 && line->slave >= 0)); tries++) {
+        one = (struct notices){0};
         others = anybody_else(line);
-        notices = read_notices(line->watch, line);
+        reopened += line->slave >= 0;
+        read_notices(line->watch, line, &one);
+        counted.opens += one.opens;
     }
     unsigned closings = line->closings;
+    bool somebody_came = counted.opens > reopened;
     line->doubtful = false;
     line->closings = 0;
-    if (others < 0)
+    if (others < 0) {
         line->tell(line->context, LINE_FAILED);
-    else if (others && line->clients == 0)
+        return;
+    }
+    if (line->clients > 0 && (!others || (closings >= line->clients && somebody_came)))
+        deserted(line);
+    if (others && line->clients == 0)
         opened(line);
     else if (others)
         line->clients = line->clients > closings ? line->clients - closings : 1;
-    else if (line->clients > 0)
-        deserted(line);
+}
+
+/* A client that has gone may have left the line cooked. Made raw as long as nobody has come, who might have meant it. */
+static void make_raw_again(struct line *line)
+{
+    struct termios settings;
+    int waiting = 0;
+    if (line->slave < 0 || tcgetattr(line->slave, &settings) != 0)
+        return;
+    if (line_is_cooked(&settings)) {
+        line_make_uncooked(&settings);
+        if (line->watch->notices >= 0 && (ioctl(line->watch->notices, FIONREAD, &waiting) != 0 || waiting > 0))
+            return; /* of this line or another: they are read first */
+        tcsetattr(line->slave, TCSANOW, &settings);
+    }
+    line->left = false;
 }
 
 void line_watch_follow(struct line_watch *watch)
 {
-    read_notices(watch, NULL);
-    for (struct line *line = watch->lines; line; line = line->next)
-        if (line->doubtful || line->closings > 0)
+    uint64_t expired;
+    bool look = watch->timer >= 0 && read(watch->timer, &expired, sizeof expired) > 0;
+    read_notices(watch, NULL, NULL);
+    for (struct line *line = watch->lines, *next; line; line = next) {
+        next = line->next;
+        if (line->doubtful || line->closings > 0 || line->slave < 0 || (look && line->mark < 0))
             line_pty_count_again(line);
+        if (line->left)
+            make_raw_again(line);
+    }
 }
