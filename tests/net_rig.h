@@ -20,7 +20,7 @@ struct net_rig {
     const char *owner;
     uint8_t heard[HEARD_MAX]; /* by the units */
     size_t heard_count;
-    char story[2000];      /* news and what RFC 2217 brought, in words */
+    char story[20000];      /* news and what RFC 2217 brought, in words */
 };
 extern struct net_rig line;
 extern const struct net_port_calls net_rig_calls;

@@ -216,6 +216,101 @@ START_TEST(what_a_client_has_written_reaches_the_units_after_it_has_gone)
 }
 END_TEST
 
+/* ---- Clients that have gone */
+
+START_TEST(a_client_that_has_sent_much_and_gone_gives_way_at_once)
+{
+    uint8_t much[60000];
+    memset(much, _i ? 0xff : 'm', sizeof much); /* FF FF is one byte of data with RFC 2217 */
+    open_line(_i ? NET_RFC2217 : NET_RAW, "0");
+    line.room = 100; /* and no more: the units are slow */
+    int first = _i ? attach_rfc2217() : attach_client();
+    send_all(first, much, sizeof much);
+    close(first);
+    line.story[0] = '\0';
+    int second = connect_client();
+    AWAIT(strstr(line.story, "attached") || strstr(line.story, "refused"));
+    ck_assert_str_eq(line.story, "detached attached ");
+    size_t data = _i ? sizeof much / 2 : sizeof much;
+    size_t taken = 100 + line.port.to_line_count;
+    ck_assert_uint_le(taken, 100 + NET_TO_LINE);
+    ck_assert_uint_gt(line.port.unheard, 0);
+    if (_i == 0)
+        ck_assert_uint_eq(taken + line.port.unheard, data);
+    close(second);
+    close_line();
+}
+END_TEST
+
+START_TEST(a_client_that_comes_again_at_once_is_not_refused_by_itself)
+{
+    open_line(_i ? NET_RFC2217 : NET_RAW, "0");
+    for (unsigned i = 0; i < 100; i++) {
+        int fd = _i ? attach_rfc2217() : attach_client();
+        for (unsigned turns = 0; turns < 3; turns++)
+            uv_run(&line.loop, UV_RUN_NOWAIT); /* it is being listened to */
+        send_all(fd, "to all", 6);
+        close(fd);
+    }
+    close(attach_client());
+    ck_assert(!strstr(line.story, "refused"));
+    AWAIT(line.heard_count == 600);
+    for (size_t i = 0; i < 600; i++)
+        ck_assert_int_eq(line.heard[i], "to all"[i % 6]);
+    close_line();
+}
+END_TEST
+
+START_TEST(a_client_that_was_torn_away_behind_much_gives_way_at_once)
+{
+    struct linger now = {.l_onoff = 1, .l_linger = 0};
+    uint8_t much[20000] = {0};
+    open_line(NET_RAW, "0");
+    line.room = 0;
+    int fd = attach_client();
+    send_all(fd, much, sizeof much);
+    setsockopt(fd, SOL_SOCKET, SO_LINGER, &now, sizeof now);
+    close(fd);
+    line.story[0] = '\0';
+    fd = connect_client();
+    AWAIT(strstr(line.story, "attached") || strstr(line.story, "refused"));
+    ck_assert_str_eq(line.story, "detached attached ");
+    close(fd);
+    close_line();
+}
+END_TEST
+
+static size_t count_refused(void)
+{
+    size_t count = 0;
+    for (const char *at = line.story; (at = strstr(at, "refused")) != NULL; at++)
+        count++;
+    return count;
+}
+
+/* Each of them would be waited for, a second long. */
+START_TEST(a_crowd_that_is_sent_away_and_stays_delays_nobody)
+{
+    enum { CROWD = 12 * NET_PEERS };
+    int crowd[CROWD];
+    open_line(NET_RAW, "0");
+    line.owner = "the pty";
+    uint64_t begun = now_ms();
+    for (size_t i = 0; i < CROWD; i++)
+        crowd[i] = connect_client();
+    AWAIT(count_refused() == CROWD);
+    line.owner = NULL;
+    int fd = attach_client();
+    send_all(fd, "x", 1);
+    is_heard("x");
+    ck_assert_uint_lt(now_ms() - begun, 8000);
+    for (size_t i = 0; i < CROWD; i++)
+        close(crowd[i]);
+    close(fd);
+    close_line();
+}
+END_TEST
+
 START_TEST(a_client_that_does_not_read_loses_bytes_which_are_counted)
 {
     uint8_t bytes[8192];
@@ -416,6 +511,10 @@ int main(void)
     tcase_add_test(clients, what_a_client_has_written_reaches_the_units_after_it_has_gone);
     tcase_add_loop_test(clients, a_client_that_does_not_read_loses_bytes_which_are_counted, 0, 2);
     tcase_add_loop_test(clients, a_client_that_is_torn_away_leaves_the_line_to_the_next, 0, 2);
+    tcase_add_loop_test(clients, a_client_that_has_sent_much_and_gone_gives_way_at_once, 0, 2);
+    tcase_add_loop_test(clients, a_client_that_comes_again_at_once_is_not_refused_by_itself, 0, 2);
+    tcase_add_test(clients, a_client_that_was_torn_away_behind_much_gives_way_at_once);
+    tcase_add_test(clients, a_crowd_that_is_sent_away_and_stays_delays_nobody);
     tcase_add_test(clients, closing_the_line_lets_go_of_everybody);
     suite_add_tcase(suite, clients);
     tcase_add_test(rfc2217, a_dialogue_is_the_same_however_it_is_cut);

@@ -12,6 +12,7 @@
 #define NS_PER_SECOND 1000000000u
 #define NS_PER_BYTE 520834u       /* 10 bits at 19200 baud */
 #define NS_PER_LOOK 200000u       /* between two looks whether a device has sent all */
+#define REFUSED_TOLD 100u         /* network clients that were sent away, in the log */
 #define AGAIN_MS 1000u            /* between two tries to have a new pty */
 
 unsigned bus_ports_clients(const struct bus *bus)
@@ -293,19 +294,46 @@ static const char *net_owner(void *context)
     return !owner && ports->rfc2217 ? net_port_client(ports->rfc2217) : owner;
 }
 
+/* Bytes of the client that has gone just now, which gave way to another one before there was room for them. */
+static uint64_t take_unheard(struct bus_ports *ports)
+{
+    struct net_port *each[] = {ports->tcp, ports->rfc2217};
+    uint64_t unheard = 0;
+    for (size_t i = 0; i < sizeof each / sizeof each[0]; i++) {
+        if (each[i]) {
+            unheard += each[i]->unheard;
+            each[i]->unheard = 0;
+        }
+    }
+    return unheard;
+}
+
+/* Whoever knocks without an end must not fill the log. */
+static void tell_refused(struct bus *bus, const char *peer)
+{
+    if (++bus->ports.refused <= REFUSED_TOLD)
+        bus_log(bus, "the client %s was sent away: another one has the line", peer);
+    if (bus->ports.refused == REFUSED_TOLD)
+        bus_log(bus, "many were sent away: no more of it is told until the line has another client");
+}
+
 static void net_told(void *context, enum net_news news, const char *peer)
 {
     struct bus *bus = context;
+    uint64_t unheard = take_unheard(&bus->ports);
     switch (news) {
     case NET_DETACHED:
         bus_log_detail(bus, "the client %s has closed the line", peer);
+        if (unheard > 0)
+            bus_log(bus, "it gives way to another client: %" PRIu64 " bytes that it had sent were dropped", unheard);
         break;
     case NET_ATTACHED:
+        bus->ports.refused = 0;
         bus_log_detail(bus, "the client %s has opened the line", peer);
         bus->ports.known = bus->ports.net = line_settings_unit;
         break;
     case NET_REFUSED:
-        bus_log(bus, "the client %s was sent away: another one has the line", peer);
+        tell_refused(bus, peer);
         break;
     }
     bus->calls->presence(bus->context);

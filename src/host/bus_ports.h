@@ -21,6 +21,7 @@ struct bus_ports {
     bool reading;               /* it is being polled */
     struct net_port *tcp, *rfc2217; /* NULL: none */
     uint64_t told;              /* of line.dropped, those in the log already */
+    unsigned refused;           /* network clients, since one had the line */
 
     struct line_settings known; /* of the client, as told last */
     struct line_settings net;   /* of the RFC 2217 client */

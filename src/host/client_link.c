@@ -66,8 +66,41 @@ static bool wait_for(const struct dialogue *d, short events)
     }
 }
 
-static enum client_outcome lost(const struct client *client)
+/* Read what has come. Returns as read(2). What came first is kept. */
+static ssize_t read_bytes(struct client *client, uint8_t *bytes, size_t room)
 {
+    ssize_t n = read(client->fd, bytes, room);
+    for (ssize_t i = 0; i < n && client->first_count < sizeof client->first - 1; i++)
+        client->first[client->first_count++] = (char)bytes[i];
+    return n;
+}
+
+/* The emulator has sent us away with a text instead of an answer. Returns the reason without line end; NULL: it has not. */
+static const char *find_refusal(struct client *client)
+{
+    static const char begin[] = "rkm04: refused: ";
+    char *reason = client->first + sizeof begin - 1;
+    client->first[client->first_count] = '\0';
+    if (strncmp(client->first, begin, sizeof begin - 1) != 0)
+        return NULL;
+    for (char *at = reason; *at; at++)
+        if (*at < ' ' || *at > '~')
+            *at = '\0';
+    return reason;
+}
+
+static enum client_outcome lost(struct client *client)
+{
+    uint8_t bytes[256];
+    int why = errno;
+    for (unsigned i = 0; i < 4 && read_bytes(client, bytes, sizeof bytes) > 0; i++)
+        ; /* a text may have come before the line failed */
+    const char *reason = find_refusal(client);
+    errno = why;
+    if (reason) {
+        warnx("%s: refused: %s", client->port, reason);
+        return CLIENT_LOST;
+    }
     warnx("%s: the line was closed at its other end (%s)", client->port, errno != 0 ? strerror(errno) : "end of file");
     return CLIENT_LOST;
 }
@@ -79,7 +112,7 @@ static bool forget(struct client *client)
 {
     uint8_t bytes[512];
     ssize_t n;
-    while ((n = read(client->fd, bytes, sizeof bytes)) > 0)
+    while ((n = read_bytes(client, bytes, sizeof bytes)) > 0)
         ;
     memset(&client->receiver, 0, sizeof client->receiver);
     if (n == 0)
@@ -225,7 +258,7 @@ static enum client_outcome await_answer(struct dialogue *d)
 {
     uint8_t bytes[512];
     while (wait_for(d, POLLIN)) {
-        ssize_t n = read(d->client->fd, bytes, sizeof bytes);
+        ssize_t n = read_bytes(d->client, bytes, sizeof bytes);
         if (n == 0) {
             errno = 0;
             return lost(d->client);
@@ -255,7 +288,7 @@ enum client_outcome client_exchange(struct client *client, const uint8_t *reques
         return outcome;
     if (client->node == 0) {
         let_it_go_out(&d);
-        return CLIENT_SENT;
+        return forget(client) ? CLIENT_SENT : lost(client);
     }
     return await_answer(&d);
 }

@@ -36,6 +36,8 @@ struct client {
     size_t length;
 
     struct rkm04_receiver receiver;
+    size_t first_count;
+    char first[256];  /* bytes that came: a text, if we are refused */
     uint32_t heard;   /* bytes that came since the request */
     uint32_t strange; /* whole messages among them that were not the answer */
     uint32_t echoed;  /* of these, the request itself */

@@ -11,15 +11,20 @@
  * serial port; replies that the client does not read stop it from being heard, so that none is lost. */
 #include "net_port.h"
 
+#include <errno.h>
 #include <netdb.h>
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
 
 #include "log.h"
 
 #define DEFAULT_HOST "127.0.0.1"
 #define HOST_SIZE 256
-#define BACKLOG 8
+#define BACKLOG 128     /* connections that the system keeps until the next turn of the loop */
+#define LAST_READS 8    /* of NET_IN bytes each: what is still read of a client that gives way */
 #define KEEPALIVE_S 30  /* a client that has vanished gives the line free */
 #define LINGER_MS 1000  /* how long one that only sends no more is kept without a byte, and one that is sent away at most */
 
@@ -120,6 +125,10 @@ static void close_peer(struct net_peer *peer)
 static void detach(struct net_port *port)
 {
     struct net_peer *peer = port->client;
+    int fd, more = 0;
+    if (uv_fileno((uv_handle_t *)&peer->tcp, &fd) != 0 || ioctl(fd, FIONREAD, &more) != 0)
+        more = 0;
+    port->unheard = port->in_length - port->in_at + (more > 0 ? (size_t)more : 0);
     port->client = NULL;
     port->attached = port->reading = false;
     port->dropped += port->to_client_count;
@@ -415,16 +424,47 @@ static void refuse(struct net_port *port, struct net_peer *peer, const char *own
     port->calls->news(port->context, NET_REFUSED, peer->name);
 }
 
-const char *net_port_client(const struct net_port *port)
+/* The client may have closed its side behind more bytes than have been read. Then those that there is room for are read. */
+static void look_for_end(struct net_port *port)
 {
+    struct net_peer *peer = port->client;
+    struct pollfd end = {.events = POLLRDHUP};
+    ssize_t length;
+    if (!peer || peer->state != PEER_CLIENT || port->moving || uv_fileno((uv_handle_t *)&peer->tcp, &end.fd) != 0 ||
+        poll(&end, 1, 0) <= 0)
+        return;
+    for (unsigned i = 0; i < LAST_READS && port->in_at == port->in_length && port->client == peer; i++) {
+        if ((length = recv(end.fd, port->in, NET_IN, MSG_DONTWAIT)) <= 0) {
+            peer->failed = peer->failed || (length < 0 && errno != EAGAIN);
+            break;
+        }
+        port->in_at = 0;
+        port->in_length = (size_t)length;
+        move(port);
+    }
+    if (port->client == peer)
+        leave(peer);
+}
+
+const char *net_port_client(struct net_port *port)
+{
+    look_for_end(port);
     return port->client && port->client->state == PEER_CLIENT ? port->client->name : NULL;
 }
 
+/* A place for one more. NULL: there is one as soon as somebody has been closed. */
 static struct net_peer *free_peer(struct net_port *port)
 {
-    for (size_t i = 0; i < NET_PEERS; i++)
-        if (port->peers[i].state == PEER_FREE)
-            return &port->peers[i];
+    struct net_peer *oldest = NULL;
+    for (size_t i = 0; i < NET_PEERS; i++) {
+        struct net_peer *peer = &port->peers[i];
+        if (peer->state == PEER_FREE)
+            return peer;
+        if (peer->state == PEER_REFUSED && (!oldest || peer->number < oldest->number))
+            oldest = peer;
+    }
+    if (oldest)
+        close_peer(oldest);
     return NULL;
 }
 
@@ -444,7 +484,7 @@ static void accept_next(struct net_port *port)
     port->waiting = port->open && !peer;
     if (!peer)
         return;
-    *peer = (struct net_peer){.port = port, .open_handles = 2};
+    *peer = (struct net_peer){.port = port, .open_handles = 2, .number = port->arrived++};
     uv_tcp_init(loop, &peer->tcp);
     uv_timer_init(loop, &peer->timer);
     peer->tcp.data = peer->timer.data = peer->write.data = peer;
@@ -459,9 +499,9 @@ static void accept_next(struct net_port *port)
     uv_tcp_nodelay(&peer->tcp, 1);
     uv_tcp_keepalive(&peer->tcp, 1, KEEPALIVE_S);
     name_peer(peer);
-    if (port->client && port->client->state == PEER_LEAVING)
-        detach(port);
     const char *owner = net_port_client(port);
+    if (port->client && !owner)
+        detach(port); /* it gives way */
     if (!owner && port->calls->owner)
         owner = port->calls->owner(port->context);
     if (owner)

@@ -18,7 +18,8 @@
 #define NET_TO_CLIENT 20480u /* bytes that wait for a client to read; as many as with a pty */
 #define NET_REPLIES 1024u    /* bytes of RFC 2217 that wait likewise; when they are many, the client is not heard */
 #define NET_WIRE 2048u       /* bytes that have been given to the system */
-#define NET_PEERS 4u         /* connections at a time: the client, those that are being sent away */
+#define NET_PEERS 8u         /* connections at a time: the client, those that are being sent away; one more, and the one that has
+                                been told so first is closed at once, so nobody waits */
 #define NET_NAME_SIZE 80u
 
 enum net_kind {
@@ -62,6 +63,7 @@ struct net_peer {
     uint8_t open_handles;
     bool writing;
     bool failed; /* bytes for it go nowhere */
+    uint64_t number; /* of those that have come */
     uv_tcp_t tcp;
     uv_timer_t timer;
     uv_write_t write;
@@ -75,6 +77,7 @@ struct net_port {
     char address[NET_NAME_SIZE]; /* where it listens, with the real port: "127.0.0.1:40123", "[::1]:40123" */
     bool attached;               /* a client has the line */
     uint64_t dropped;            /* bytes that nobody was there for, or that a client did not read in time */
+    uint64_t unheard;            /* bytes that the last client has sent and nobody will hear: it gave way to another one */
     struct rfc2217 rfc2217;      /* of the client; read only */
 
     /* Inside. */
@@ -87,6 +90,7 @@ struct net_port {
     bool waiting;            /* a connection is to be accepted when another one has gone */
     bool moving;             /* in move() */
     bool reading;
+    uint64_t arrived;        /* connections so far */
     uint64_t moved;          /* ms of the loop: when bytes last passed */
     struct net_peer *client; /* NULL: none */
     struct net_peer peers[NET_PEERS];
@@ -108,8 +112,9 @@ bool net_address_valid(const char *address);
 bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, enum net_kind kind,
                    const struct net_port_calls *calls, void *context);
 
-/* The name of the client that has the line; NULL: nobody, or one that has closed its own side and gives way to any other. */
-const char *net_port_client(const struct net_port *port);
+/* The name of the client that has the line; NULL: nobody, or one that has closed its own side and gives way to any other. That it
+ * has done so is looked up, even if more has come from it than there is room for. Not to be called from within bytes(). */
+const char *net_port_client(struct net_port *port);
 
 /* There may be room() again. Not needed after bytes(). */
 void net_port_wake(struct net_port *port);

@@ -133,4 +133,35 @@ test_random_bytes_do_no_harm() {
     done
 }
 
+# A broadcast, or so much that the units have not heard half of it; then the same client comes again at once.
+test_a_client_that_comes_again_at_once_is_served() {
+    serve_tcp --tcp 0
+    exits 0 timeout "$limit" python3 "$(dirname "$0")/tcp_client.py" again "${address##*:}"
+    holds "$(<"$folder/bus.err")" "bytes that it had sent were dropped" "the log"
+    same 0 "$(grep -c 'was sent away' "$folder/bus.err")" "clients sent away"
+}
+
+# serve_occupied: a unit with pty and TCP whose pty has a client, as descriptor 3.
+serve_occupied() {
+    serve bus --tcp 127.0.0.1:0
+    address=$(sed -n 's/^READY .*"tcp":"\([^"]*\)".*/\1/p' "$folder/bus.out")
+    exec 3<>"$folder/bus"
+    dialogue 3 "7e 01 00 08 58 10 7e" "7e 00 01 ff 08 00 00 db ff 7e" "the client of the pty"
+}
+
+test_a_refused_client_reads_why() {
+    local node
+    serve_occupied
+    for node in 1 0; do
+        exits 1 "$RKMCTL" -p "tcp:$address" -n "$node" set 'F1 R'
+        holds "$complained" "refused: the line is in use by a client of the pty" "the message, unit $node"
+    done
+}
+
+test_clients_without_number_do_not_fill_the_log() {
+    serve_occupied
+    exits 0 timeout "$limit" python3 "$(dirname "$0")/tcp_client.py" refused "${address##*:}"
+    same 100 "$(grep -c 'was sent away' "$folder/bus.err")" "lines of the log"
+}
+
 run_cases "$@"
