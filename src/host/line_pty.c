@@ -73,7 +73,8 @@ bool line_watch_open(struct line_watch *watch)
         return true;
     int why = errno;
     if (watch->fd >= 0 && begin_to_look(watch)) {
-        log_error("no inotify: %s (fs.inotify.max_user_instances?); looking every %d ms who uses the line", strerror(why), LOOK_MS);
+        log_error("no inotify: %s (fs.inotify.max_user_instances?); looking every %d ms who uses the line", strerror(why),
+                  LOOK_MS);
         return true;
     }
     log_error("cannot watch who opens the line: %s", strerror(errno));
@@ -83,7 +84,9 @@ bool line_watch_open(struct line_watch *watch)
 void line_watch_close(struct line_watch *watch)
 {
     int *fds[] = {&watch->fd, &watch->notices, &watch->timer};
-    for (size_t i = 0; watch->fd >= 0 && i < sizeof fds / sizeof fds[0]; i++) {
+    if (watch->fd < 0)
+        return; /* it was never opened */
+    for (size_t i = 0; i < sizeof fds / sizeof fds[0]; i++) {
         if (*fds[i] >= 0)
             close(*fds[i]);
         *fds[i] = -1;
@@ -261,12 +264,14 @@ void line_pty_count_again(struct line *line)
     if (count_exclusive(line))
         return;
     /* Our own close and open give two notices; if there are more, somebody came or went meanwhile. */
-    for (unsigned tries = 0; tries < COUNT_TRIES && (tries == 0 || (one.all != 2 && line->mark >= 0 && line->slave >= 0)); tries++) {
+    for (unsigned tries = 0; tries < COUNT_TRIES; tries++) {
         one = (struct notices){0};
         others = anybody_else(line);
         reopened += line->slave >= 0;
         read_notices(line->watch, line, &one);
         counted.opens += one.opens;
+        if (one.all == 2 || line->mark < 0 || line->slave < 0)
+            break;
     }
     unsigned closings = line->closings;
     bool somebody_came = counted.opens > reopened;

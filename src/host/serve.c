@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* rkm04 serve: lines with their units (bus.c) in one event loop, from the options to the exit status. */
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <signal.h>
@@ -21,6 +22,7 @@
 #include "subcommands.h"
 
 #define FILES_A_LINE 8u  /* descriptors, beside those of flash images */
+#define FILES_SPARE 8u   /* descriptors that are still free when all is open: for clients, traces, an adapter plugged in again */
 #define FILES_BESIDE 64u /* descriptors that have nothing to do with lines */
 
 static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
@@ -140,6 +142,24 @@ static void allow_files(const struct serve_options *options)
     setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+/* Without a free descriptor a connection cannot even be refused, and would wake the loop for ever. */
+static bool has_spare_files(void)
+{
+    int spare[FILES_SPARE];
+    unsigned count = 0;
+    struct rlimit limit = {0};
+    while (count < FILES_SPARE && (spare[count] = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0)
+        count++;
+    for (unsigned i = 0; i < count; i++)
+        close(spare[i]);
+    if (count == FILES_SPARE)
+        return true;
+    getrlimit(RLIMIT_NOFILE, &limit);
+    log_error("too few file descriptors: `ulimit -n' is %ju, expected at least %ju", (uintmax_t)limit.rlim_cur,
+              (uintmax_t)limit.rlim_cur + FILES_SPARE - count);
+    return false;
+}
+
 static bool start_watch(struct serve *serve)
 {
     if (!serve->options.pty)
@@ -223,7 +243,7 @@ static bool start(struct serve *serve)
     serve->idle.data = serve;
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
         !start_signals(serve) || !start_control(serve) ||
-        !serve_report_ready(options, serve->bus, control_path(serve->control)))
+        !has_spare_files() || !serve_report_ready(options, serve->bus, control_path(serve->control)))
         return false;
     on_presence(serve);
     return true;

@@ -146,6 +146,30 @@ test_an_unplugged_adapter_is_a_pty_that_goes_away_and_another_one_under_the_same
     [[ ! -e $folder/bus.lock ]] || fail "the lock is left"
 }
 
+test_an_adapter_is_plugged_in_again_when_there_are_descriptors_for_it() {
+    ulimit -n 40
+    begin
+    fault unplugged
+    soon "the link goes" gone
+    exec 3>&-
+    exits 0 timeout "$limit" python3 "$here/descriptors_client.py" "$folder/bus.control" "$folder/bus.err"
+    soon "the link comes back" back
+    exec 3<>"$folder/bus"
+    dialogue 3 "$unknown" "$answer" "the new pty"
+}
+
+test_the_new_pty_has_the_group_and_mode_of_the_old_one() {
+    local group
+    begin
+    group=$(id -G | tr ' ' '\n' | tail -n 1)
+    [[ $(id -u) != 0 ]] || group=65534
+    chgrp "$group" "$(readlink "$folder/bus")"
+    chmod 664 "$(readlink "$folder/bus")"
+    fault unplugged duration=1ms
+    soon "another pty" grep -q 'plugged in again' "$folder/bus.err"
+    same "$group 664" "$(stat -L -c '%g %a' "$folder/bus")" "group and mode"
+}
+
 test_a_unit_that_ends_while_its_adapter_is_unplugged_leaves_nothing() {
     begin
     fault unplugged

@@ -3,6 +3,7 @@
 # The unit's own pty: what a client meets who opens, closes and opens it again, and what is left when the unit ends.
 
 . "$(dirname "$0")/lib.sh"
+: "${PTY_CLIENT:=pty_client}" "${CC:=cc}"
 
 version="01.02,06.03.2009"
 
@@ -81,6 +82,96 @@ test_the_motors_run_while_no_client_is_attached() {
     exits 0 ctl bus set 'F5000 R'
     soon "the motor has arrived" position_is bus 1 5000
 }
+
+# many WHAT TIMES: sessions of pty_client.c, one after the other; all are as they should be.
+many() {
+    serve bus --baud 0
+    exits 0 timeout 100 "$PTY_CLIENT" "$1" "$folder/bus" "$2"
+    same "$2 of $2" "$said" "sessions"
+    exits 0 ctl bus version
+    holds "$said" "$version" "afterwards"
+}
+
+test_clients_that_take_the_pty_for_themselves_come_and_go_at_once() { many exclusive 4000; }
+test_clients_that_leave_the_pty_locked_do_not_keep_out_the_next() { many careless 1000; }
+test_a_client_keeps_its_settings_though_another_has_just_gone() { many settings 4000; }
+
+test_settings_outlive_the_client() {
+    serve bus
+    stty 9600 cstopb min 0 time 7 <"$folder/bus"
+    soon "it has gone" grep -q 'has closed the line' "$folder/bus.err"
+    holds "$(stty -a <"$folder/bus")" "speed 9600" "the next client finds"
+    holds "$(stty -a <"$folder/bus")" " cstopb" "the next client finds"
+    holds "$(stty -a <"$folder/bus")" "min = 0; time = 7" "the next client finds"
+}
+
+# A client takes the pty for itself, and is killed, in the moment in which the emulator has none of it.
+test_a_pty_that_was_locked_for_good_is_replaced() {
+    [[ $(id -u) != 0 ]] || return 0 # nothing is locked for root
+    shim "$(dirname "$0")/pty_lock_shim.c"
+    local old
+    LD_PRELOAD=$folder/shim.so ASAN_OPTIONS=verify_asan_link_order=0 serve bus
+    old=$(readlink "$folder/bus")
+    exits 0 ctl bus version
+    soon "it is locked, and replaced" grep -q 'locked the pty .* for good' "$folder/bus.err"
+    soon "the link is there" test -L "$folder/bus"
+    exits 0 ctl bus version
+    holds "$said" "$version" "on another pty than $old"
+}
+
+shim() {
+    $CC -std=c11 -D_GNU_SOURCE -Wall -Wextra -Werror -shared -fPIC -o "$folder/shim.so" "$1" -ldl || fail "$1 cannot be compiled"
+}
+
+# without_inotify WHAT: the emulator looks who is there, and everything works.
+without_inotify() {
+    shim "$(dirname "$0")/notify_shim.c"
+    NOTIFY_SHIM=$1 LD_PRELOAD=$folder/shim.so ASAN_OPTIONS=verify_asan_link_order=0 serve bus
+    holds "$(<"$folder/bus.err")" "$2" "what is said"
+    local i
+    for i in 1 2 3; do
+        exec 3<>"$folder/bus"
+        dialogue 3 "7e 01 00 08 58 10 7e" "7e 00 01 ff 08 00 00 db ff 7e" "time $i"
+        soon "the client is seen" seen 'opened the line' "$i"
+        exec 3>&-
+        soon "it is seen to go" seen 'closed the line' "$i"
+    done
+    stty echo icanon icrnl ixon <"$folder/bus"
+    soon "the next client finds it raw" raw_again
+    idle_cost_is_small "with nobody there"
+}
+
+seen() { [[ $(grep -c "$1" "$folder/bus.err") == "$2" ]]; }
+
+test_without_inotify_watches_the_emulator_goes_on() { without_inotify watches "fs.inotify.max_user_watches"; }
+test_without_inotify_instances_the_emulator_goes_on() { without_inotify instances "fs.inotify.max_user_instances"; }
+
+# With too few file descriptors it says so, or it works and rests; what it never does is to turn without a rest.
+test_too_few_descriptors_are_an_error_or_enough() {
+    local number works=0 refused=0
+    for number in 8 12 14 16 17 18 20 40; do
+        (ulimit -n "$number"; exec "$RKM04" serve --link "$folder/bus" >"$folder/bus.out" 2>"$folder/bus.err" </dev/null) &
+        started=$!
+        soon "it is ready or has ended, $number descriptors" ready_or_ended
+        if ended "$started"; then
+            status_of "$started"
+            same 1 "$status" "exit status with $number descriptors"
+            grep -qiE 'too (many open|few) files|too few file descriptors' "$folder/bus.err" || fail "with $number descriptors"
+            refused=1
+            continue
+        fi
+        processes=("$started")
+        exits 0 "$RKMCTL" -c "$folder/bus.control" state
+        exits 0 ctl bus version
+        idle_cost_is_small "$number descriptors"
+        works=1
+        kill "$started"
+        status_of "$started"
+    done
+    same "1 1" "$works $refused" "some numbers are enough, some are too few"
+}
+
+ready_or_ended() { grep -qs '^READY ' "$folder/bus.out" || ended "$started"; }
 
 ends_cleanly_on() {
     serve bus --flash "$folder/flash"

@@ -59,6 +59,11 @@ test_pyserial_forgets_what_has_come_in() {
     for way in $ways; do py 0 reset "$way"; done
 }
 
+test_clients_that_keep_others_out_come_and_go_at_once() {
+    serve_all --baud 0
+    exits 0 "$python" -W ignore "$client" exclusive "$(url pty)"
+}
+
 test_rfc2217_acknowledges_every_setting_of_pyserial() {
     serve_all
     py 0 settings rfc2217

@@ -90,5 +90,20 @@ def slow(url):
             print(port.read(len(POSITION[1])).hex(), flush=True)
 
 
+def exclusive(url):
+    """A client that keeps others out comes again at once, many times; a second one beside it is kept out."""
+    for _ in range(1000):
+        with opened(url, exclusive=True) as port:
+            ask(port, UNKNOWN)
+    with opened(url, exclusive=True) as port:
+        try:
+            opened(url, exclusive=True)
+        except serial.SerialException:
+            ask(port, POSITION)
+        else:
+            raise AssertionError("two have it for themselves")
+
+
 what, where = sys.argv[1:]
-{"talk": talk, "reset": reset, "settings": settings, "lines": lines, "keep": keep, "slow": slow}[what](where)
+cases = {"talk": talk, "reset": reset, "settings": settings, "lines": lines, "keep": keep, "slow": slow, "exclusive": exclusive}
+cases[what](where)
