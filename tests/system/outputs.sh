@@ -21,7 +21,7 @@ scenario() {
 refused() {
     local what=$1
     shift
-    exits 1 "$@"
+    exits 1 timeout "$limit" "$@" # one that is not refused serves for ever
     holds "$complained" "cannot write" "'$*'"
     holds "$complained" "$what" "'$*'"
     holds "$complained" "choose another name" "'$*'"
@@ -261,6 +261,10 @@ test_a_snapshot_replaces_regular_files_alone() {
     exits 1 control snapshot file=target
     holds "$complained" "target: it exists and is not a recording" "the snapshot on another file"
     is precious target
+    exits 2 control state --force
+    holds "$complained" "--force is for snapshot and trace start" "where there is nothing to force"
+    exits 2 control call snapshot '{"file": "target", "force": 1}'
+    holds "$complained" "force: expected true or false" "a wrong parameter"
     exits 0 control snapshot --force file=target
     holds "$(<target)" '{"rkm04_record"' "the forced snapshot"
     exits 0 control snapshot file=target
