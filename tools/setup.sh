@@ -5,11 +5,16 @@
 
 # Needed to build and run the emulator and its client.
 run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libyaml-dev libncurses-dev)
+# Needed on top of that to make the Debian package.
+package_packages=(dpkg-dev file)
 # Needed on top of that by the tests.
-test_packages=(check libgmp-dev socat procps dpkg-dev file clang cppcheck python3-serial python3-pyte gensio-bin tshark
-    sigrok-cli gtkwave)
+test_packages=("${package_packages[@]}" check libgmp-dev socat procps clang cppcheck g++ python3-serial python3-pyte gensio-bin tshark
+    sigrok-cli gtkwave lintian systemd)
+# Needed by the test of node-serialport, if the machine has no node and npm of its own.
+node_packages=(nodejs npm)
 # Needed by the tests that are about another processor than this machine's, which `quick` leaves out.
-foreign_packages=(gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm)
+foreign_packages=(gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
+    gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf qemu-system-misc)
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
@@ -72,7 +77,10 @@ install_packages() {
 
 setup_packages() {
     local packages=("${run_packages[@]}") missing
-    [[ $1 != run ]] && packages+=("${test_packages[@]}")
+    if [[ $1 != run ]]; then
+        packages+=("${test_packages[@]}")
+        command -v node >/dev/null && command -v npm >/dev/null || packages+=("${node_packages[@]}")
+    fi
     [[ $1 == test ]] && packages+=("${foreign_packages[@]}")
     if ! is_debian; then
         say "this is not Debian 12 or later; needed are what these Debian packages hold: ${packages[*]}"
@@ -85,6 +93,25 @@ setup_packages() {
         say "could not install ${missing[*]}"
         check_tools "$1"
     }
+}
+
+# setup_serialport FOLDER: node-serialport, as tests/system/node/package-lock.json has it, in the folder; nothing is compiled.
+setup_serialport() {
+    local source
+    source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/system/node" && pwd) || return
+    command -v node >/dev/null && command -v npm >/dev/null || return
+    NODE_PATH=$1/node_modules node -e 'require("serialport")' 2>/dev/null && cmp -s "$source/package-lock.json" "$1/package-lock.json" &&
+        return
+    mkdir -p "$1" && cp "$source/package.json" "$source/package-lock.json" "$1" &&
+        timeout 120 npm ci --prefix "$1" --no-audit --no-fund --ignore-scripts </dev/null >"$1/npm.log" 2>&1 &&
+        NODE_PATH=$1/node_modules node -e 'require("serialport")' 2>>"$1/npm.log"
+}
+
+# list_skips LOG: what the tests in ctest's log have left out, and why, a line each.
+list_skips() {
+    awk '/^[0-9]+\/[0-9]+ Testing: / { test = $3 }
+        sub(/^ *skipped: /, "") { print (count++ ? "" : "Skipped:\n") "  " test ": " $0 }
+        END { if (!count) print "Nothing was skipped." }' "$1"
 }
 
 # Hand the output of a build on as progress: one line that changes on a terminal, otherwise a line for each quarter.

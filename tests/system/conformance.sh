@@ -9,8 +9,7 @@ for python in python3 /usr/bin/python3 none; do # a python3 of one's own does no
     "$python" -c 'import serial' 2>/dev/null && break
 done
 if [[ $python == none ]]; then
-    echo "skipped: there is no pyserial; apt-get install python3-serial"
-    exit 77
+    skip_all "there is no pyserial; apt-get install python3-serial"
 fi
 
 # conforms STATUS OPTIONS...: what the kit says of the unit on $folder/bus. A busy machine may be late by seconds.

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# The container file. Where no engine runs the image cannot be built; so its text is checked, by hadolint where that is installed,
-# and what the container would start is started here.
+# The container file. The image is built where podman or buildah is there; everywhere its text and its packages are checked, and
+# what the container would start is started.
 
 . "$(dirname "$0")/lib.sh"
 source=$(cd "$(dirname "$0")/../.." && pwd)
@@ -71,9 +71,24 @@ test_what_is_built_in_the_source_stays_out_of_the_image() {
     grep -qx build/ "$source/.dockerignore" || fail "the image would take the build folder along"
 }
 
-test_hadolint_has_nothing_to_say() {
-    command -v hadolint >/dev/null || { echo "  (hadolint is not installed: not asked)"; return; }
-    hadolint "$file" >"$folder/hadolint.err" 2>&1 || fail "hadolint"
+# A list of packages that is not the one with which the tree builds makes no image.
+test_the_image_is_built_with_the_packages_that_the_set_up_installs() {
+    local wanted listed
+    wanted=$(. "$source/tools/setup.sh" && printf '%s\n' "${run_packages[@]}" "${package_packages[@]}" | sort)
+    listed=$(instructions | sed -n '/ AS build$/,/^FROM [^ ]*$/s/.*apt-get install [^&]*--no-install-recommends *\([^&]*\)&&.*/\1/p' |
+        tr -s ' ' '\n' | grep . | sort)
+    same "$wanted" "$listed" "packages of the stage that builds"
+}
+
+test_the_image_can_be_built_where_there_is_an_engine() {
+    local engine image=rkm04-test-$$
+    for engine in podman buildah; do
+        command -v "$engine" >/dev/null && break
+        engine=
+    done
+    [[ -n $engine ]] || return 0 # the packages are compared above, the command is started above
+    "$engine" build -t "$image" -f "$file" "$source" >"$folder/build.err" 2>&1 || fail "$engine build"
+    "$engine" rmi "$image" >"$folder/rmi.out" 2>&1 || fail "$engine rmi"
 }
 
 run_cases "$@"

@@ -3,7 +3,7 @@
 # The control socket: every example of docs/CONTROL.md, and clients that behave badly.
 . "${0%/*}/lib.sh"
 
-command -v python3 >/dev/null || { echo "python3 is not there"; exit 77; }
+command -v python3 >/dev/null || skip_all "python3 is not there"
 here=$(cd "${0%/*}" && pwd)
 export RKM04 RKMCTL PYTHONDONTWRITEBYTECODE=1
 

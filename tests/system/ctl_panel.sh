@@ -10,8 +10,7 @@ for python in python3 /usr/bin/python3 none; do # a python3 of one's own does no
     "$python" -c 'import pyte' 2>/dev/null && break
 done
 if [[ $python == none ]]; then
-    echo "skipped: there is no terminal in Python; apt-get install python3-pyte"
-    exit 77
+    skip_all "there is no terminal in Python; apt-get install python3-pyte"
 fi
 
 # emulator OPTIONS...: units whose clock stands until it is moved on.

@@ -4,7 +4,7 @@
 
 . "$(dirname "$0")/lib.sh"
 
-command -v python3 >/dev/null || { echo "python3 is not there"; exit 77; }
+command -v python3 >/dev/null || skip_all "python3 is not there"
 here=$(cd "${0%/*}" && pwd)
 export RKM04 RKMCTL PYTHONDONTWRITEBYTECODE=1
 

@@ -20,6 +20,18 @@ fail() {
     exit 1
 }
 
+# skip_all REASON: out, before any case: the tests of this file need what is not there. tools/test shows the reason.
+skip_all() {
+    echo "skipped: $*"
+    exit 77
+}
+
+# skip_case REASON: out of a case that needs what is not there.
+skip_case() {
+    echo "  skipped: ${FUNCNAME[1]}: $*"
+    exit 0
+}
+
 # same WANTED GOT WHAT: both texts are equal.
 same() {
     [[ $1 == "$2" ]] || fail "$3: expected '$1', got '$2'"

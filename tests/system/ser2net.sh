@@ -5,8 +5,7 @@
 . "$(dirname "$0")/lib.sh"
 
 if ! command -v gensiot >/dev/null; then
-    echo "skipped: there is no gensiot; apt-get install gensio-bin"
-    exit 77
+    skip_all "there is no gensiot; apt-get install gensio-bin"
 fi
 
 has_answered() { [[ $(od -An -v -tx1 "$folder/client.out" | tr -d ' \n') == "$1" ]]; }

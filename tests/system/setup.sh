@@ -78,6 +78,33 @@ test_another_system_is_told_what_is_needed() {
     same "" "$(<"$folder/calls")" "calls of apt-get"
 }
 
+test_what_is_skipped_is_named_with_its_reason() {
+    list() { bash -c '. "$1/setup.sh"; list_skips "$2"' tools "$tools" "$folder/log"; }
+    printf '%s\n' '1/2 Testing: system_a' 'ok test_x' '2/2 Testing: system_b' 'skipped: there is no foo' >"$folder/log"
+    exits 0 list
+    same $'Skipped:\n  system_b: there is no foo' "$said" "one skipped"
+    printf '%s\n' '1/1 Testing: system_a' '  skipped: test_x: no bar' 'ok test_x' >"$folder/log"
+    exits 0 list
+    same $'Skipped:\n  system_a: test_x: no bar' "$said" "a case skipped"
+    printf '%s\n' '1/1 Testing: system_a' 'ok test_x' >"$folder/log"
+    exits 0 list
+    same "Nothing was skipped." "$said" "none skipped"
+}
+
+test_node_is_installed_only_where_the_machine_has_none() {
+    stand_ins npm 0 debian
+    printf '#!/bin/sh\n' | tee "$folder/bin/node" >"$folder/bin/npm"
+    chmod +x "$folder/bin/node" "$folder/bin/npm"
+    exits 0 set_up test
+    same "" "$(<"$folder/calls")" "calls of apt-get with a node"
+    rm "$folder/bin/npm"
+    local tool
+    for tool in bash id dirname sed awk grep cat env mktemp; do ln -s "$(command -v $tool)" "$folder/bin"; done
+    OS_RELEASE=$folder/os-release PATH=$folder/bin exits 0 \
+        bash -c '. "$1/setup.sh"; setup_packages "$2"; echo "went on"' tools "$tools" test
+    holds "$(<"$folder/calls")" "install npm" "calls of apt-get without npm"
+}
+
 test_the_tools_explain_themselves_and_refuse_what_they_do_not_know() {
     exits 0 "$tools/run" --help
     holds "$said" "Usage: tools/run" "stdout"

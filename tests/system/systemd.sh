@@ -25,7 +25,7 @@ analyze() {
 }
 
 test_systemd_understands_the_unit_of_the_system() {
-    command -v systemd-analyze >/dev/null || { echo "  (systemd is not installed: not asked)"; return; }
+    command -v systemd-analyze >/dev/null || skip_case "systemd is not installed"
     install_root
     local instance
     for instance in 3 press; do
@@ -35,7 +35,7 @@ test_systemd_understands_the_unit_of_the_system() {
 
 # For users the checker takes no other root, and would look for the program in /usr.
 test_systemd_understands_the_unit_of_a_user() {
-    command -v systemd-analyze >/dev/null || { echo "  (systemd is not installed: not asked)"; return; }
+    command -v systemd-analyze >/dev/null || skip_case "systemd is not installed"
     install_root
     mkdir "$folder/user"
     sed "s,^ExecStart=rkm04 ,ExecStart=$root/usr/bin/rkm04 ," "$root/usr/lib/systemd/user/rkm04@.service" \
@@ -44,7 +44,7 @@ test_systemd_understands_the_unit_of_a_user() {
 }
 
 test_the_service_of_the_system_has_few_rights() {
-    command -v systemd-analyze >/dev/null || { echo "  (systemd is not installed: not asked)"; return; }
+    command -v systemd-analyze >/dev/null || skip_case "systemd is not installed"
     install_root
     analyze security --offline=true --threshold=20 --root="$root" --no-pager rkm04@3.service # 0 none … 100 all
 }
@@ -118,10 +118,8 @@ test_an_instance_with_a_name_and_no_file_says_what_is_missing() {
 
 # The pty belongs to the service; those who may use serial ports may use it too.
 test_the_group_of_serial_ports_may_use_pty_and_control_socket_of_the_service() {
-    if [[ $(id -u) != 0 ]] || ! getent group dialout >/dev/null; then
-        echo "  (not root, or no group dialout: not tried)"
-        return
-    fi
+    [[ $(id -u) == 0 ]] || skip_case "it needs root"
+    getent group dialout >/dev/null || skip_case "there is no group dialout"
     local scope=system instance=3 post
     install_root
     start_instance

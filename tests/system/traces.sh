@@ -7,8 +7,7 @@
 
 for tool in vcd2fst fst2vcd sigrok-cli python3; do
     if ! command -v $tool >/dev/null; then
-        echo "skipped: there is no $tool (packages gtkwave, sigrok-cli, python3)"
-        exit 77
+        skip_all "there is no $tool (packages gtkwave, sigrok-cli, python3)"
     fi
 done
 

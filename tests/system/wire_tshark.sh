@@ -5,8 +5,7 @@
 . "$(dirname "$0")/lib.sh"
 
 if ! command -v tshark >/dev/null; then
-    echo "skipped: there is no tshark; apt-get install tshark"
-    exit 77
+    skip_all "there is no tshark; apt-get install tshark"
 fi
 
 # look OPTIONS...: tshark on the capture file. It complains of a file that is not as it should be.

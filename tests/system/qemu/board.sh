@@ -9,8 +9,7 @@ firmware() {
     local port=$1 packages=$2 tool
     for tool in "${@:3}"; do
         command -v "$tool" >/dev/null && continue
-        echo "skipped: $tool not found: apt-get install $packages"
-        exit 77
+        skip_all "$tool not found: apt-get install $packages"
     done
     firmware=${BUILD:-/tmp}/firmware_$port
     make -s -C "$tree/src/port/$port" OUT="$firmware" >/dev/null || exit 1
