@@ -8,8 +8,8 @@ run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev liby
 # Needed on top of that to make the Debian package.
 package_packages=(dpkg-dev file)
 # Needed on top of that by the tests.
-test_packages=("${package_packages[@]}" check libgmp-dev socat procps clang cppcheck g++ python3-serial python3-pyte gensio-bin tshark
-    sigrok-cli gtkwave lintian systemd)
+test_packages=("${package_packages[@]}" check libgmp-dev socat procps clang cppcheck g++ python3-serial python3-pyte gensio-bin
+    tshark sigrok-cli gtkwave lintian systemd)
 # Needed by the test of node-serialport, if the machine has no node and npm of its own.
 node_packages=(nodejs npm)
 # Needed by the tests that are about another processor than this machine's, which `quick` leaves out.
@@ -100,8 +100,8 @@ setup_serialport() {
     local source
     source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/system/node" && pwd) || return
     command -v node >/dev/null && command -v npm >/dev/null || return
-    NODE_PATH=$1/node_modules node -e 'require("serialport")' 2>/dev/null && cmp -s "$source/package-lock.json" "$1/package-lock.json" &&
-        return
+    cmp -s "$source/package-lock.json" "$1/package-lock.json" &&
+        NODE_PATH=$1/node_modules node -e 'require("serialport")' 2>/dev/null && return
     mkdir -p "$1" && cp "$source/package.json" "$source/package-lock.json" "$1" &&
         timeout 120 npm ci --prefix "$1" --no-audit --no-fund --ignore-scripts </dev/null >"$1/npm.log" 2>&1 &&
         NODE_PATH=$1/node_modules node -e 'require("serialport")' 2>>"$1/npm.log"

@@ -75,7 +75,7 @@ test_what_is_built_in_the_source_stays_out_of_the_image() {
 test_the_image_is_built_with_the_packages_that_the_set_up_installs() {
     local wanted listed
     wanted=$(. "$source/tools/setup.sh" && printf '%s\n' "${run_packages[@]}" "${package_packages[@]}" | sort)
-    listed=$(instructions | sed -n '/ AS build$/,/^FROM [^ ]*$/s/.*apt-get install [^&]*--no-install-recommends *\([^&]*\)&&.*/\1/p' |
+    listed=$(instructions | sed -n '/ AS build$/,/^FROM [^ ]*$/s/.* install [^&]*--no-install-recommends *\([^&]*\)&&.*/\1/p' |
         tr -s ' ' '\n' | grep . | sort)
     same "$wanted" "$listed" "packages of the stage that builds"
 }
