@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "control_inside.h"
+#include "readings.h"
 
 /* ---- Answers -------------------------------------------------------------------------------------------------------- */
 
@@ -49,8 +50,8 @@ static json_t *units(struct control_context *context, struct refusal *refusal)
     json_t *list = json_array();
     for (unsigned number = 1; number <= sim_units(sim); number++)
         json_array_append_new(list, json_string(sim->unit[number - 1].name));
-    return json_pack("{s:I, s:i, s:o}", "t_us", (json_int_t)sim_now(sim), "lines", (int)context->peer->control->lines, "units",
-                     list);
+    return json_pack("{s:I, s:i, s:o, s:o}", "t_us", (json_int_t)sim_now(sim), "lines", (int)context->peer->control->lines,
+                     "units", list, "readings", readings_json(&sim->config.unit.readings));
 }
 
 /* Of one line, or of all: then of none if one of them is being advanced. */

@@ -13,6 +13,7 @@
 #include "exec_report.h"
 #include "exec_run.h"
 #include "output_file.h"
+#include "readings_option.h"
 #include "stimulus.h"
 #include "subcommands.h"
 #include "time_value.h"
@@ -29,14 +30,17 @@ struct options {
     uint64_t until;
     bool json;
     unsigned output_flags; /* of output_file.h */
+    struct rkm04_readings readings;
+    readings_set named; /* by --readings */
 };
 
-enum option_key { KEY_FORCE = 256 };
+enum option_key { KEY_FORCE = 256, KEY_READINGS };
 
 static const struct argp_option option_table[] = {
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"stimulus", 's', "FILE", 0, "What comes from outside while the programs run", 0},
     {"trace", 't', "FILE", 0, "Write all that happens: .vcd, .jsonl, any other name CSV; - is standard output, CSV", 0},
+    {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
     {"force", KEY_FORCE, NULL, 0,
      "Overwrite a file of another kind with the trace, too; never one that is also read or written otherwise", 0},
@@ -65,6 +69,7 @@ static const char doc[] =
     "  rkm04 exec drill.rks\n"
     "  rkm04 exec 1=x.rks 2=y.rks --until 10s --trace run.csv\n"
     "  echo 'F1000 R' | rkm04 exec --json -\n"
+    "  rkm04 exec --readings planning=20ms drill.rks\n"
     "\n"
     "Exit status: 0 well; 1 a text was refused, a motor ended in a fault, a file could not be read or written, or the run was "
     "interrupted; 2 wrong usage; 124 --until was reached with a motor still running.";
@@ -110,6 +115,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case 't':
         options->trace = text;
+        return 0;
+    case KEY_READINGS:
+        readings_option_read(&options->readings, &options->named, text, state);
         return 0;
     case 'j':
         options->json = true;
@@ -306,6 +314,7 @@ static int run_programs(struct exec_run *run, const struct options *options, con
     run->stimuli = &inputs->stimuli;
     run->stimulus_name = inputs->stimulus_file.name;
     run->until = options->until;
+    run->readings = options->readings;
     run->progress = isatty(STDERR_FILENO) != 0;
     run->answered = report_answer;
     run->context = &report;

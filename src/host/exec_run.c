@@ -29,7 +29,7 @@ void exec_run_interrupt(int signal_number)
 
 bool exec_run_begin(struct exec_run *run)
 {
-    static const struct sim_config config = {.nodes = {.count = 1, .node = {1}}};
+    struct sim_config config = {.nodes = {.count = 1, .node = {1}}, .unit.readings = run->readings};
     return sim_begin(&run->sim, &config);
 }
 

@@ -23,6 +23,7 @@ struct exec_run {
     const char *stimulus_name;      /* for messages */
     const struct trace_file *trace; /* the run ends when it fails; NULL: none */
     uint64_t until;                 /* last tick to be done; RKM04_NEVER: no limit */
+    struct rkm04_readings readings; /* of the unit */
     bool progress;                  /* show a line on stderr while it takes long */
     /* Called with what the unit answered to a message of the stimulus; length 0: nothing. */
     void (*answered)(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);

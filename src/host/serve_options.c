@@ -11,11 +11,11 @@
 #include "net_port.h"
 #include "notify.h"
 #include "output_file.h"
+#include "readings_option.h"
 #include "segment.h"
 #include "trace_file.h"
 #include "wire_file.h"
 
-#define LATENCY_MAX 2000 /* ms (C4) */
 #define VERSION_TEXT_MAX 255
 #define IDLE_DEFAULT 10u /* s */
 #define IDLE_MAX 86400   /* s */
@@ -31,6 +31,7 @@ enum key {
     KEY_BAUD,
     KEY_CLOCK,
     KEY_VERSION_TEXT,
+    KEY_READINGS,
     KEY_LATENCY,
     KEY_LINES,
     KEY_TCP,
@@ -63,8 +64,8 @@ static const struct argp_option table[] = {
      "Without it stored programs live as long as the emulator", 0},
     {"version-text", KEY_VERSION_TEXT, "TEXT", 0,
      "What the units answer to Version, up to 255 characters; default " RKM04_VERSION_TEXT, 0},
-    {"speed-change-latency", KEY_LATENCY, "MS", 0,
-     "How long a unit takes to obey a V during a motion, 0 to 2000 ms; default 0", 0},
+    {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
+    {"speed-change-latency", KEY_LATENCY, "MS", 0, "The same as --readings speed-change=MS", 0},
     {NULL, 0, NULL, 0, "The line:", 2},
     {"link", KEY_LINK, "PATH", 0,
      "Name of the symbolic link to the pty; default $XDG_RUNTIME_DIR/rkm04/bus0, else rkm04-UID/bus0 in the temporary "
@@ -133,6 +134,7 @@ static const char doc[] =
     "  rkm04 serve --tcp 4000 --rfc2217 4001\n"
     "  rkm04 serve --port /dev/ttyUSB0 --framing plain\n"
     "  rkm04 serve --clock x20 --baud 0\n"
+    "  rkm04 serve --readings hold-exit=latch,speed-change=500ms\n"
     "  rkm04 serve --clock stepped --control test.control --plant axis.yaml\n"
     "  rkm04 serve --trace pulses.vcd --wire line.pcapng --record session.record\n"
     "  rkm04 serve --exit-when-idle=2 --coverage covered.txt --min-coverage 80\n"
@@ -319,9 +321,11 @@ static error_t read_unit_option(int key, char *text, struct argp_state *state)
         if (!node_list_read(&options->nodes, text))
             argp_error(state, "--node: `%s' is wrong: expected " NODE_LIST_EXPECTED, text);
         return 0;
+    case KEY_READINGS:
+        readings_option_read(&options->config.readings, &options->readings_named, text, state);
+        return 0;
     case KEY_LATENCY:
-        options->config.readings.speed_change =
-            (uint16_t)number("speed-change-latency", text, 0, LATENCY_MAX, " of ms", state);
+        readings_option_latency(&options->config.readings, &options->readings_named, text, state);
         return 0;
     case KEY_FRAMING:
         set_framing(options, text, state);

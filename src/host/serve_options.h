@@ -8,6 +8,7 @@
 #include <rkm04/unit.h>
 
 #include "line.h"
+#include "readings.h"
 #include "serve_names.h"
 #include "virtual_clock.h"
 
@@ -15,7 +16,8 @@
 #define SERVE_FILES_MAX 8u /* traces, and logs of the wires */
 
 struct serve_options {
-    struct rkm04_config config; /* --framing, --version-text, --speed-change-latency; node: of the first unit */
+    struct rkm04_config config; /* --framing, --version-text, --readings; node: of the first unit */
+    readings_set readings_named; /* by --readings and --speed-change-latency */
     struct node_list nodes;     /* --node */
     unsigned lines;             /* --lines */
     bool pty;                   /* lines have a pty of their own */

@@ -10,6 +10,7 @@
 
 #include "log.h"
 #include "notify.h"
+#include "readings.h"
 
 #define NODES_TEXT_SIZE (NODE_LIST_MAX * NODE_NAME_SIZE)
 
@@ -59,8 +60,11 @@ static void tell_flash(struct bus *bus)
 
 void serve_report_start(const struct serve_options *options, struct bus *const *buses)
 {
+    char readings[READINGS_TEXT_SIZE];
     for (unsigned i = 0; i < options->lines; i++)
         tell_ports(buses[i]);
+    if (readings_text(&options->config.readings, readings)[0] != '\0')
+        log_at(0, "readings %s", readings);
     if (options->baud == 0 || options->clock.stands)
         log_at(0, "framing %s, bytes take no time, clock %s", options->config.framing->name, options->clock_text);
     else
@@ -100,10 +104,10 @@ static json_t *ports_json(const struct bus *bus)
 static json_t *ready_json(const struct serve_options *options, struct bus *const *buses, const char *control)
 {
     json_t *ready = ports_json(buses[0]), *lines = NULL;
-    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:s?, s:s?}", "node", (int)options->config.node, "nodes",
+    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:o, s:s?, s:s?}", "node", (int)options->config.node, "nodes",
                              nodes_json(&options->nodes), "framing", options->config.framing->name, "baud", (int)options->baud,
-                             "turnaround", (int)options->turnaround, "clock", options->clock_text, "flash", options->flash,
-                             "control", control);
+                             "turnaround", (int)options->turnaround, "clock", options->clock_text, "readings",
+                             readings_json(&options->config.readings), "flash", options->flash, "control", control);
     bool well = ready && rest && json_object_update(ready, rest) == 0;
     json_decref(rest);
     if (well && options->lines > 1) {

@@ -8,17 +8,22 @@
 #include <unistd.h>
 
 #include "output_file.h"
+#include "readings_option.h"
 #include "subcommands.h"
 #include "test_case.h"
+#include "test_readings.h"
 #include "test_report.h"
 
-enum option_key { KEY_NO_RECORDS = 256, KEY_FORCE };
+enum option_key { KEY_NO_RECORDS = 256, KEY_FORCE, KEY_READINGS, KEY_STRICT };
 
 struct options {
     const char **path; /* in the order of the command line */
     size_t paths;
-    bool stdin_taken, json, no_records;
     unsigned output_flags; /* of output_file.h */
+    bool stdin_taken, json, no_records, strict;
+    struct rkm04_readings readings;
+    readings_set named; /* by --readings */
+    enum test_readings_mode mode;
     const char *junit, *records;
 };
 
@@ -29,6 +34,11 @@ static const struct argp_option option_table[] = {
     {"no-records", KEY_NO_RECORDS, NULL, 0, "Keep no records", 0},
     {"force", KEY_FORCE, NULL, 0,
      "Overwrite files of another kind with the report and records, too; never one that is also read or written otherwise", 0},
+    {"readings", KEY_READINGS, "NAME=VALUE,...", 0,
+     "Run under these readings (docs/READINGS.md). `all': run under the defaults and under each other value of each reading, one "
+     "at a time, and tell on which the result depends; `pairs': and under each two; `list' lists them. May be given several times: "
+     "what is named is kept, the others change. What a scenario names itself is kept, too", 0},
+    {"strict", KEY_STRICT, NULL, 0, "With --readings all or pairs: a scenario that depends on a reading has failed", 0},
     {0},
 };
 
@@ -52,12 +62,16 @@ static const char doc[] =
     "A line for each, \"pass FILE: NAME (TIME)\" or \"FAIL FILE:LINE:COLUMN: NAME: expected ...; seen ...; at tick ...\". What "
     "went in and out of a scenario that fails is kept in NAME.record, which `rkm04 replay' repeats.\n"
     "\n"
+    "With --readings all a second line says \"FILE: passes under 22 of 23; depends on hold-exit\", and one for each run that "
+    "ended otherwise says how. A scenario that means one reading names it: readings: {hold-exit: latch}.\n"
+    "\n"
     "Examples:\n"
     "  rkm04 test homing.yaml\n"
     "  rkm04 test --junit report.xml --records build scenarios/*.yaml\n"
+    "  rkm04 test --readings all --strict scenarios/*.yaml\n"
     "  rkm04 replay --trace homing.vcd homing.record\n"
     "\n"
-    "Exit status: 0 all passed; 3 any failed; 1 a file could not be read or written, or the run was interrupted; 2 wrong usage, "
+    "Exit status: 0 all passed; 3 any failed, or, with --strict, depends on a reading; 1 a file could not be read or written, or the run was interrupted; 2 wrong usage, "
     "or a file that is no scenario: each error is a line FILE:LINE:COLUMN: error: ..., and nothing is run.";
 
 /* ---- Command line --------------------------------------------------------------------------------------------------- */
@@ -69,6 +83,17 @@ static void take_path(struct argp_state *state, struct options *options, const c
         argp_error(state, "standard input (-) can be read only once");
     options->stdin_taken = options->stdin_taken || standard;
     options->path[options->paths++] = path;
+}
+
+static void take_readings(struct argp_state *state, struct options *options, const char *text)
+{
+    bool all = strcmp(text, "all") == 0, pairs = strcmp(text, "pairs") == 0;
+    if (!all && !pairs)
+        readings_option_read(&options->readings, &options->named, text, state);
+    else if (options->mode != TEST_READINGS_ONE)
+        argp_error(state, "--readings: expected all or pairs once");
+    else
+        options->mode = all ? TEST_READINGS_ALL : TEST_READINGS_PAIRS;
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state)
@@ -90,6 +115,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case KEY_FORCE:
         options->output_flags |= OUTPUT_FORCE;
         return 0;
+    case KEY_READINGS:
+        take_readings(state, options, text);
+        return 0;
+    case KEY_STRICT:
+        options->strict = true;
+        return 0;
     case ARGP_KEY_ARG:
         take_path(state, options, text);
         return 0;
@@ -98,6 +129,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
             argp_error(state, "no scenario given");
         if (options->no_records && options->records != NULL)
             argp_error(state, "expected either --records or --no-records");
+        if (options->strict && options->mode == TEST_READINGS_ONE)
+            argp_error(state, "--strict: expected --readings all or pairs with it");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -134,6 +167,20 @@ static int read_all(struct test_case *tests, const struct options *options)
     return status;
 }
 
+/* Under other readings, if that is wanted. Returns false if memory is short. */
+static bool run_under_others(struct test_case *test, const struct options *options, struct test_progress *progress)
+{
+    if (options->mode == TEST_READINGS_ONE || test->outcome == TEST_NOT_RUN || test->outcome == TEST_BROKEN)
+        return true;
+    test_readings_run(test, &options->readings, options->named, options->mode, progress);
+    if (!options->json)
+        test_report_readings(stdout, test);
+    if (test->under != NULL && !test->under->broken)
+        return true;
+    fprintf(stderr, "rkm04 test: %s: %s\n", test->file, strerror(ENOMEM));
+    return false;
+}
+
 /* Returns false if a record could not be written. *wrong: 0, or the errno with which a line could not. */
 static bool run_all(struct test_case *tests, const struct options *options, int *wrong)
 {
@@ -145,9 +192,11 @@ static bool run_all(struct test_case *tests, const struct options *options, int 
         for (size_t before = 0; before < i; before++)
             number += test_case_alike(&tests[before], &tests[i]);
         progress.at = i + 1;
+        scenario_set_readings(tests[i].scenario, &options->readings);
         well = test_case_run(&tests[i], folder, options->output_flags, number, &progress) && well;
         if (!options->json)
             test_report_line(stdout, &tests[i]);
+        well = run_under_others(&tests[i], options, &progress) && well;
         if (fflush(stdout) != 0 && *wrong == 0)
             *wrong = errno;
     }
@@ -172,7 +221,7 @@ static bool report_all(const struct test_case *tests, const struct options *opti
 {
     bool well = true;
     if (junit != NULL) {
-        test_report_junit(junit, tests, options->paths);
+        test_report_junit(junit, tests, options->paths, options->strict);
         well = finish(junit, options->junit, 0);
     }
     if (options->json)
@@ -203,9 +252,10 @@ static int run(struct test_case *tests, const struct options *options)
     well = report_all(tests, options, junit, wrong) && well;
     if (test_case_interrupted())
         fputs("rkm04 test: interrupted\n", stderr);
-    if (test_report_count(tests, options->paths, TEST_FAILED) > 0)
+    if (test_report_count(tests, options->paths, TEST_FAILED) > 0 ||
+        (options->strict && test_report_dependent(tests, options->paths) > 0))
         return STATUS_FAILED;
-    return well && test_report_count(tests, options->paths, TEST_PASSED) == options->paths ? STATUS_WELL : STATUS_FAILURE;
+    return well && !test_case_interrupted() && test_report_count(tests, options->paths, TEST_PASSED) == options->paths ? STATUS_WELL : STATUS_FAILURE;
 }
 
 int test_main(int argc, char **argv)

@@ -14,6 +14,7 @@
 #include "output_file.h"
 #include "program_text.h"
 #include "subcommands.h"
+#include "test_readings.h"
 
 #define TEXT_MAX ((size_t)4 << 20) /* bytes of a file */
 #define FIRST_ROOM 4096
@@ -105,6 +106,7 @@ void test_case_free(struct test_case *test)
     scenario_free(test->scenario);
     scenario_result_free(&test->result);
     free(test->record);
+    test_readings_free(test->under);
     *test = (struct test_case){0};
 }
 
@@ -195,7 +197,8 @@ static bool ask(void *context, uint64_t tick)
     return interrupted != 0;
 }
 
-bool test_case_run(struct test_case *test, const char *folder, unsigned flags, unsigned number, struct test_progress *progress)
+static enum test_outcome run_once(struct test_case *test, FILE *out, struct scenario_result *result,
+                                  struct test_progress *progress)
 {
     static const enum test_outcome outcomes[] = {
         [SCENARIO_PASSED] = TEST_PASSED,
@@ -203,18 +206,29 @@ bool test_case_run(struct test_case *test, const char *folder, unsigned flags, u
         [SCENARIO_INTERRUPTED] = TEST_NOT_RUN,
         [SCENARIO_NO_MEMORY] = TEST_BROKEN,
     };
+    double begin = now();
+    progress->test = test;
+    progress->next = begin + PROGRESS_AFTER;
+    enum test_outcome outcome = outcomes[scenario_run(test->scenario, out, ask, progress, result)];
+    test->seconds += now() - begin;
+    if (progress->shown)
+        fputs("\r\033[K", stderr);
+    progress->shown = false;
+    return outcome;
+}
+
+enum test_outcome test_case_try(struct test_case *test, struct scenario_result *result, struct test_progress *progress)
+{
+    return run_once(test, NULL, result, progress);
+}
+
+bool test_case_run(struct test_case *test, const char *folder, unsigned flags, unsigned number, struct test_progress *progress)
+{
     char *record = NULL;
     size_t length = 0;
     bool well = true;
     FILE *out = folder != NULL ? open_memstream(&record, &length) : NULL;
-    double begin = now();
-    progress->test = test;
-    progress->next = begin + PROGRESS_AFTER;
-    test->outcome = outcomes[scenario_run(test->scenario, out, ask, progress, &test->result)];
-    test->seconds = now() - begin;
-    if (progress->shown)
-        fputs("\r\033[K", stderr);
-    progress->shown = false;
+    test->outcome = run_once(test, out, &test->result, progress);
     if (out != NULL && fclose(out) != 0)
         test->result.record_error = errno;
     if (test->outcome == TEST_FAILED && folder != NULL)

@@ -15,6 +15,8 @@ enum test_outcome {
     TEST_BROKEN /* memory was short: it says nothing about the scenario */
 };
 
+struct test_readings; /* test_readings.h */
+
 struct test_case {
     const char *file;         /* as given, "<stdin>" for "-" */
     struct scenario *scenario;
@@ -22,6 +24,7 @@ struct test_case {
     struct scenario_result result;
     double seconds;           /* of real time */
     char *record;             /* where the record of the failure is; NULL: nowhere */
+    struct test_readings *under; /* what came of it under other readings; NULL: it was run once */
 };
 
 /* Where a run tells a person how far it is. */
@@ -40,6 +43,9 @@ int test_case_read(struct test_case *test, const char *path);
  * `number`: 2, 3, … for the second, third of a run whose files are called alike. A record that cannot be written is reported on
  * stderr: then false. */
 bool test_case_run(struct test_case *test, const char *folder, unsigned flags, unsigned number, struct test_progress *progress);
+
+/* Run it once more, under the readings that it has now, and keep nothing but *result. */
+enum test_outcome test_case_try(struct test_case *test, struct scenario_result *result, struct test_progress *progress);
 
 /* Would the records of both have the same name? */
 bool test_case_alike(const struct test_case *left, const struct test_case *right);

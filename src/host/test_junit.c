@@ -4,6 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "test_readings.h"
 #include "test_report.h"
 
 /* The length of the UTF-8 character at `text` if it is one that XML 1.0 may have; 0: it is not. */
@@ -74,7 +75,34 @@ static void print_failure(FILE *out, const struct test_case *test)
     fputs("</failure>\n", out);
 }
 
-static void print_case(FILE *out, const struct test_case *test)
+/* A failure of its own kind: the scenario passes, but not under all readings. */
+static void print_dependence(FILE *out, const struct test_case *test)
+{
+    char text[TEST_READINGS_TEXT_SIZE];
+    fprintf(out, "      <failure type=\"readings\" message=\"%s\"/>\n", test_readings_text(test->under, text));
+}
+
+static void print_readings(FILE *out, const struct test_case *test)
+{
+    char text[TEST_READINGS_TEXT_SIZE];
+    fprintf(out, "\nreadings: %s", test_readings_text(test->under, text));
+    for (size_t i = 0; i < test->under->variants; i++) {
+        const struct test_variant *variant = &test->under->variant[i];
+        fprintf(out, "\n%s: ", test_variant_text(variant, text));
+        if (variant->outcome == TEST_FAILED) {
+            print_escaped(out, test->file);
+            fprintf(out, ":%zu:%zu: expected ", variant->result.line, variant->result.column);
+            print_escaped(out, variant->result.expected);
+            fputs("; seen ", out);
+            print_escaped(out, variant->result.seen);
+            fprintf(out, "; at tick %" PRIu64, variant->result.tick);
+        } else {
+            fputs("pass", out);
+        }
+    }
+}
+
+static void print_case(FILE *out, const struct test_case *test, bool strict)
 {
     fputs("    <testcase classname=\"rkm04\"", out);
     print_attribute(out, "name", test_case_name(test));
@@ -86,26 +114,34 @@ static void print_case(FILE *out, const struct test_case *test)
         fputs("      <error type=\"memory\" message=\"memory is short\"/>\n", out);
     else if (test->outcome == TEST_NOT_RUN)
         fputs("      <skipped message=\"interrupted\"/>\n", out);
-    fprintf(out, "      <system-out>virtual time: %" PRIu64 " us</system-out>\n    </testcase>\n", test->result.tick);
+    else if (strict && test_readings_depends(test))
+        print_dependence(out, test);
+    fprintf(out, "      <system-out>virtual time: %" PRIu64 " us", test->result.tick);
+    if (test->under != NULL)
+        print_readings(out, test);
+    fputs("</system-out>\n    </testcase>\n", out);
 }
 
-static void print_counts(FILE *out, const struct test_case *tests, size_t count)
+static void print_counts(FILE *out, const struct test_case *tests, size_t count, bool strict)
 {
     double seconds = 0;
-    for (size_t i = 0; i < count; i++)
+    size_t failures = test_report_count(tests, count, TEST_FAILED);
+    for (size_t i = 0; i < count; i++) {
         seconds += tests[i].seconds;
+        failures += strict && tests[i].outcome == TEST_PASSED && test_readings_depends(&tests[i]);
+    }
     fprintf(out, " name=\"rkm04 test\" tests=\"%zu\" failures=\"%zu\" errors=\"%zu\" skipped=\"%zu\" time=\"%.6f\">\n", count,
-            test_report_count(tests, count, TEST_FAILED), test_report_count(tests, count, TEST_BROKEN),
+            failures, test_report_count(tests, count, TEST_BROKEN),
             test_report_count(tests, count, TEST_NOT_RUN), seconds);
 }
 
-void test_report_junit(FILE *out, const struct test_case *tests, size_t count)
+void test_report_junit(FILE *out, const struct test_case *tests, size_t count, bool strict)
 {
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites", out);
-    print_counts(out, tests, count);
+    print_counts(out, tests, count, strict);
     fputs("  <testsuite", out);
-    print_counts(out, tests, count);
+    print_counts(out, tests, count, strict);
     for (size_t i = 0; i < count; i++)
-        print_case(out, &tests[i]);
+        print_case(out, &tests[i], strict);
     fputs("  </testsuite>\n</testsuites>\n", out);
 }

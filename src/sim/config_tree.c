@@ -61,6 +61,15 @@ bool config_error(const struct config_node *node, const char *format, ...)
     return false;
 }
 
+bool config_key_error(const struct config_node *map, size_t at, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    report(map->tree, map->item[at]->key_line, map->item[at]->key_column, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
 __attribute__((format(printf, 3, 4))) static bool error_at(const struct config_tree *tree, const yaml_mark_t *mark,
                                                            const char *format, ...)
 {

@@ -41,6 +41,9 @@ size_t config_column(const struct config_node *node);
 /* Report an error at a node. Always returns false. */
 bool config_error(const struct config_node *node, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* The same at key `at` of a map. */
+bool config_key_error(const struct config_node *map, size_t at, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
 /* Read what a node is to be. Reported and false if it is something else; `what` names it in the message. */
 bool config_integer(const struct config_node *node, const char *what, int64_t low, int64_t high, int64_t *value);
 bool config_time(const struct config_node *node, const char *what, uint64_t *ticks); /* time_value.h */

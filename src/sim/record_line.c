@@ -4,6 +4,8 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "readings.h"
+
 void record_hex(FILE *out, const uint8_t *bytes, size_t length)
 {
     static const char digits[] = "0123456789abcdef";
@@ -51,7 +53,7 @@ static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
            put(head, "nodes", nodes) &&
            put(head, "framing", json_string(config->unit.framing ? config->unit.framing->name : rkm04_hdlc.name)) &&
            put_text(head, "version_text", config->unit.version_text ? config->unit.version_text : RKM04_VERSION_TEXT) &&
-           put(head, "speed_change_latency", json_integer(config->unit.readings.speed_change)) &&
+           put(head, "readings", readings_json(&config->unit.readings)) &&
            put(head, "timed", json_boolean(config->timed)) && put(head, "turnaround", json_integer(config->turnaround)) &&
            put(head, "seed", json_string(seed)) && (!sim->plant_text || put_text(head, "plant", sim->plant_text)) &&
            put(head, "outputs", json_boolean(outputs));

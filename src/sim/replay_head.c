@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "readings.h"
 #include "record_line.h"
 #include "replay_inside.h"
 
@@ -103,18 +104,29 @@ static bool read_seed(struct replay *replay, uint64_t *seed)
     return (end && *end == '\0') || replay_wrong(replay, "seed", "expected \"seed\", a string with a number from 0 to 2^64 - 1");
 }
 
+/* Recordings without them were made under the defaults, but for speed_change_latency, the older name of speed-change. */
+static bool read_readings(struct replay *replay, struct rkm04_readings *readings)
+{
+    char error[READINGS_ERROR_SIZE];
+    uint64_t latency;
+    const json_t *json = json_object_get(replay->json, "readings");
+    if (!replay_number(replay, "speed_change_latency", 0, LATENCY_MAX, 0, &latency))
+        return false;
+    readings->speed_change = (uint16_t)latency;
+    return !json || readings_read_json(readings, json, error) || replay_wrong(replay, "readings", "\"readings\": %s", error);
+}
+
 static bool read_settings(struct replay *replay, struct sim_config *config)
 {
-    uint64_t latency, turnaround;
+    uint64_t turnaround;
     bool well = read_nodes(replay, &config->nodes) && read_framing(replay, &config->unit.framing) &&
                 replay_text_of(replay, "version_text", TEXT_MAX, &replay->version_text) &&
-                replay_number(replay, "speed_change_latency", 0, LATENCY_MAX, 0, &latency) &&
+                read_readings(replay, &config->unit.readings) &&
                 replay_flag(replay, "timed", true, &config->timed) &&
                 replay_number(replay, "turnaround", 0, SEGMENT_TURNAROUND_MAX, 0, &turnaround) &&
                 read_seed(replay, &config->seed) && replay_flag(replay, "outputs", false, &replay->outputs);
     if (!well)
         return false;
-    config->unit.readings.speed_change = (uint16_t)latency;
     config->unit.version_text = replay->version_text;
     config->turnaround = (uint32_t)turnaround;
     return true;
@@ -123,8 +135,8 @@ static bool read_settings(struct replay *replay, struct sim_config *config)
 static bool read_head(struct replay *replay, struct sim_config *config, char **plant)
 {
     static const char *const keys[] = {"rkm04_record", "program",  "nodes", "framing", "version_text", "version_text_hex",
-                                       "speed_change_latency", "timed", "turnaround", "seed", "plant", "plant_hex", "outputs",
-                                       NULL};
+                                       "speed_change_latency", "readings", "timed", "turnaround", "seed", "plant",
+                                       "plant_hex", "outputs", NULL};
     uint64_t version;
     if (!replay_next_line(replay))
         return replay->ended || replay_wrong(replay, NULL, "expected a record, which begins with {\"rkm04_record\":1,");

@@ -9,6 +9,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "readings.h"
+
 struct scenario;
 
 /* How the files are read that a scenario names: plants and programs. */
@@ -31,6 +33,12 @@ void scenario_free(struct scenario *scenario);
 
 /* What it is called: its `name`, or NULL if it has none. */
 const char *scenario_name(const struct scenario *scenario);
+
+/* Run it under these readings from now on; those that it names itself stay as it has them. */
+void scenario_set_readings(struct scenario *scenario, const struct rkm04_readings *readings);
+
+/* The readings that it names itself. */
+readings_set scenario_named(const struct scenario *scenario);
 
 enum scenario_end {
     SCENARIO_PASSED,

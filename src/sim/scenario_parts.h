@@ -6,6 +6,7 @@
 
 #include "condition.h"
 #include "config_tree.h"
+#include "readings.h"
 #include "scenario.h"
 #include "scenario_bytes.h"
 
@@ -72,6 +73,7 @@ struct scenario {
     struct config_tree *tree;
     const char *name;
     struct sim_config config;
+    readings_set named;      /* readings that it fixes itself */
     char *plant;             /* text of the plant; NULL: none */
     char *plant_name;        /* for messages */
     size_t plant_length;

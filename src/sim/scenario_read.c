@@ -12,7 +12,7 @@
 #define VERSION_MAX 255u
 
 static const char *const known[] = {
-    "name",    "description", "units", "framing", "baud",    "turnaround",   "speed_change_latency", "version_text", "seed",
+    "name",    "description", "units", "framing", "baud",    "turnaround",   "speed_change_latency", "readings", "version_text", "seed",
     "plant",   "di",          "timeout", "allow_faults", "always", "stimuli", "steps", NULL,
 };
 
@@ -40,10 +40,30 @@ static bool read_time_up_to(const struct config_node *map, const char *key, uint
            config_error(node, "expected %s of at most %llu us", key, (unsigned long long)most);
 }
 
+/* speed_change_latency is the older name of the reading speed-change. */
+static bool read_readings(struct scenario *scenario, const struct config_node *root)
+{
+    uint64_t latency = 0;
+    char text[32], error[READINGS_ERROR_SIZE];
+    const struct config_node *map = config_get(root, "readings"), *node = config_get(root, "speed_change_latency");
+    struct rkm04_readings *readings = &scenario->config.unit.readings;
+    bool well = map == NULL || readings_read_map(readings, &scenario->named, map);
+    if (node == NULL)
+        return well;
+    if (!read_time_up_to(root, "speed_change_latency", LATENCY_MAX, &latency))
+        return false;
+    if (latency % 1000 != 0)
+        return config_error(node, "expected speed_change_latency in whole ms");
+    snprintf(text, sizeof text, "speed-change=%u", (unsigned)(latency / 1000));
+    if (!readings_read(readings, &scenario->named, text, error))
+        return config_error(node, "%s", error);
+    return well;
+}
+
 static bool read_line(struct scenario *scenario, const struct config_node *root)
 {
     bool well = true;
-    uint64_t turnaround = SEGMENT_TURNAROUND, latency = 0;
+    uint64_t turnaround = SEGMENT_TURNAROUND;
     struct sim_config *config = &scenario->config;
     const char *units = text_of(root, "units", &well), *framing = text_of(root, "framing", &well);
     const char *baud = text_of(root, "baud", &well);
@@ -56,11 +76,8 @@ static bool read_line(struct scenario *scenario, const struct config_node *root)
     if (baud != NULL && strcmp(baud, "0") != 0 && strcmp(baud, "19200") != 0)
         well = config_error(config_get(root, "baud"), "expected baud, 19200 or 0, found \"%.20s\"", baud);
     well = read_time_up_to(root, "turnaround", SEGMENT_TURNAROUND_MAX, &turnaround) && well;
-    well = read_time_up_to(root, "speed_change_latency", LATENCY_MAX, &latency) && well;
-    if (latency % 1000 != 0)
-        well = config_error(config_get(root, "speed_change_latency"), "expected speed_change_latency in whole ms");
+    well = read_readings(scenario, root) && well;
     config->turnaround = (uint32_t)turnaround;
-    config->unit.readings.speed_change = (uint16_t)(latency / 1000);
     return well;
 }
 
@@ -299,6 +316,18 @@ void scenario_free(struct scenario *scenario)
     free(scenario->plant_name);
     config_free(scenario->tree);
     free(scenario);
+}
+
+void scenario_set_readings(struct scenario *scenario, const struct rkm04_readings *readings)
+{
+    for (unsigned at = 0; at < READINGS; at++)
+        if (!(scenario->named >> at & 1u))
+            readings_put(&scenario->config.unit.readings, at, readings_get(readings, at));
+}
+
+readings_set scenario_named(const struct scenario *scenario)
+{
+    return scenario->named;
 }
 
 const char *scenario_name(const struct scenario *scenario)

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "readings.h"
+
 #define FLASH_SIZE (RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE)
 
 struct snapshot {
@@ -158,8 +160,8 @@ const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapsh
         const struct rkm04_config *here = &a->unit[at].unit.config, *there = &b->unit[at].unit.config;
         if (framing_of(here) != framing_of(there))
             return "the framing";
-        if (here->readings.speed_change != there->readings.speed_change)
-            return "the speed change latency";
+        if (!readings_same(&here->readings, &there->readings))
+            return "the readings";
         if (strcmp(text_of(here), text_of(there)) != 0)
             return "the version text";
     }
