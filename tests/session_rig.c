@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sim/wire_monitor.h"
+#include "sim/readings.h"
 
 static const char axis[] =
     "motors:\n"
@@ -15,9 +16,14 @@ static const char axis[] =
     "  - {input: 1, motor: 1, at_most: 0, hysteresis: 3, bounce: 30ms}\n"
     "  - {input: 2, motor: 2, at_least: 50}\n";
 
+/* Every reading otherwise. */
+static const char others[] = "label=fault,fault-exit=new,hold-exit=latch,x-after=once,guard-start=step,v-alone=first,"
+                             "y-eleventh=y,reset-t41=clear,negative-position=no,speed-change=40,planning=3,input-filter=2,store-time=20";
+
 const struct session_kind session_kinds[] = {
-    {"1", true, false, NULL}, {"1", false, false, NULL}, {"1,2,7", true, false, NULL}, {"3,3", true, false, NULL},
-    {"4", true, false, axis}, {"2", false, true, axis},
+    {"1", true, false, NULL, NULL}, {"1", false, false, NULL, NULL}, {"1,2,7", true, false, NULL, NULL},
+    {"3,3", true, false, NULL, NULL}, {"4", true, false, axis, NULL}, {"2", false, true, axis, NULL},
+    {"6", true, false, axis, others},
 };
 const size_t session_kind_count = sizeof session_kinds / sizeof session_kinds[0];
 
@@ -276,6 +282,9 @@ void session_begin(struct session *session, const struct session_kind *kind)
         .out = hear,
         .context = session,
     };
+    char error[READINGS_ERROR_SIZE];
+    readings_set named = 0;
+    ck_assert(!kind->readings || readings_read(&config.unit.readings, &named, kind->readings, error));
     *session = (struct session){.dice = 88172645463325252u};
     ck_assert(node_list_read(&config.nodes, kind->nodes));
     ck_assert(sim_begin(&session->sim, &config));

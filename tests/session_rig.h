@@ -28,6 +28,7 @@ struct session_kind {
     const char *nodes;
     bool timed, plain;
     const char *plant; /* NULL: none */
+    const char *readings; /* NULL: the defaults */
 };
 
 extern const struct session_kind session_kinds[];

@@ -45,8 +45,8 @@ static const char *read_map(const char *text)
     return well ? readings_text(&readings, out) : said;
 }
 
-#define ALL                                                                                                                       \
-    "label=fault,fault-exit=new,hold-exit=latch,x-after=once,guard-start=step,v-alone=first,y-eleventh=y,reset-t41=clear,"        \
+#define ALL \
+    "label=fault,fault-exit=new,hold-exit=latch,x-after=once,guard-start=step,v-alone=first,y-eleventh=y,reset-t41=clear," \
     "negative-position=no,speed-change=2000ms,planning=2000ms,input-filter=100ms,store-time=1000ms"
 
 START_TEST(each_reading_has_its_member)
@@ -99,7 +99,8 @@ START_TEST(a_wrong_name_or_value_is_answered_with_what_is_legal)
         {"planning=-1", "planning: expected whole ms from 0 to 2000, as in 5 or 5ms, found `-1'"},
         {"planning=", "planning: expected whole ms from 0 to 2000, as in 5 or 5ms, found `'"},
         {"planning=4294967297", "planning: expected whole ms from 0 to 2000, as in 5 or 5ms, found `4294967297'"},
-        {"planning=18446744073709551617", "planning: expected whole ms from 0 to 2000, as in 5 or 5ms, found `18446744073709551617'"},
+        {"planning=18446744073709551617",
+         "planning: expected whole ms from 0 to 2000, as in 5 or 5ms, found `18446744073709551617'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         ck_assert_str_eq(read_text(cases[i][0]), cases[i][1]);

@@ -116,6 +116,42 @@ START_TEST(a_record_does_not_depend_on_how_time_was_cut)
 }
 END_TEST
 
+START_TEST(readings_are_part_of_a_record)
+{
+    static const struct session_kind kind = {"5", false, false, NULL, "speed-change=300,hold-exit=latch"};
+    struct taken taken;
+    session_end(&session);
+    session_begin(&session, &kind);
+    begin_record(&taken);
+    session_set(&session, 5, '1', "S100 V100 F1000 R");
+    sim_advance(&session.sim, SECOND);
+    session_set(&session, 5, '1', "V1000");
+    sim_advance(&session.sim, 3 * SECOND);
+    end_record(&taken);
+    ck_assert_ptr_nonnull(strstr(taken.text, "\"readings\":{\"hold-exit\":\"latch\",\"speed-change\":300}"));
+    expect(taken.text, taken.length, "same: ");
+    char *at = strstr(taken.text, "\"speed-change\":300");
+    memcpy(at, "\"speed-change\":900", 18);
+    expect(taken.text, taken.length, "different: ");
+    memcpy(at, "\"speed-change\":9e9", 18);
+    expect(taken.text, taken.length, "wrong: ");
+    free(taken.text);
+}
+END_TEST
+
+START_TEST(a_record_of_before_the_readings_has_a_latency)
+{
+    static const char text[] = "{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\","
+                               "\"speed_change_latency\":300,\"seed\":\"1\"}\n";
+    FILE *in = fmemopen((void *)text, sizeof text - 1, "r");
+    struct replay *replay = replay_open("x", in);
+    replay_run(replay, NULL, NULL);
+    ck_assert_uint_eq(sim_core(replay_sim(replay), 1)->config.readings.speed_change, 300);
+    replay_free(replay);
+    fclose(in);
+}
+END_TEST
+
 START_TEST(what_is_left_of_a_killed_process_is_replayed)
 {
     struct taken taken;
@@ -140,7 +176,7 @@ static struct taken simple;
 /* A move of 300 steps from 4 ms on, Get Position at 100 ms, an output at 1.5 s. */
 static void simple_setup(void)
 {
-    static const struct session_kind kind = {"5", false, false, NULL};
+    static const struct session_kind kind = {"5", false, false, NULL, NULL};
     session_begin(&session, &kind);
     begin_record(&simple);
     session_set(&session, 5, '2', "F300 R T03");
@@ -285,7 +321,7 @@ END_TEST
 START_TEST(the_flash_and_the_plant_at_the_beginning_are_part_of_a_record)
 {
     static uint8_t memory[RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE];
-    static const struct session_kind kind = {"5", false, false, NULL};
+    static const struct session_kind kind = {"5", false, false, NULL, NULL};
     session_end(&session);
     session_begin(&session, &kind);
     session_set(&session, 5, '1', "F4 R T05");
@@ -344,6 +380,8 @@ static Suite *make_suite(void)
     tcase_add_test(differences, a_replay_ends_where_it_is_told_to);
     tcase_add_test(differences, a_replay_can_be_interrupted);
     tcase_add_test(differences, the_flash_and_the_plant_at_the_beginning_are_part_of_a_record);
+    tcase_add_test(differences, readings_are_part_of_a_record);
+    tcase_add_test(differences, a_record_of_before_the_readings_has_a_latency);
     suite_add_tcase(suite, stories);
     suite_add_tcase(suite, differences);
     return suite;

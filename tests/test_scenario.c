@@ -337,6 +337,35 @@ START_TEST(C4_the_latency_of_a_change_of_speed_can_be_set)
 }
 END_TEST
 
+START_TEST(readings_can_be_set_and_are_kept)
+{
+    static const char text[] = "baud: 0\nreadings: {speed-change: 1.5s}\nsteps:\n"
+                               "  - set: 'V100 F2000 R'\n  - {set: 'V1000', at: 1s}\n"
+                               "  - {stays: {motor: 1, position: {\"<=\": 250}}, for: 1.5s}\n";
+    struct rkm04_readings readings = {.hold_exit = RKM04_HOLD_EXIT_LATCH};
+    expect_pass(text);
+    struct scenario *scenario = read_bytes(text, strlen(text));
+    scenario_set_readings(scenario, &readings);
+    ck_assert_int_eq(scenario_run(scenario, NULL, NULL, NULL, &result), SCENARIO_PASSED);
+    ck_assert_uint_eq(scenario_named(scenario), 1u << 9);
+    scenario_free(scenario);
+}
+END_TEST
+
+START_TEST(a_run_is_under_the_readings_that_were_set)
+{
+    static const char text[] = "baud: 0\nsteps:\n  - set: 'V100 F2000 R'\n  - {set: 'V1000', at: 1s}\n"
+                               "  - {stays: {motor: 1, position: {\"<=\": 250}}, for: 1.5s}\n";
+    struct rkm04_readings readings = {.speed_change = 1500};
+    struct scenario *scenario = read_bytes(text, strlen(text));
+    ck_assert_int_eq(scenario_run(scenario, NULL, NULL, NULL, &result), SCENARIO_FAILED);
+    scenario_result_free(&result);
+    scenario_set_readings(scenario, &readings);
+    ck_assert_int_eq(scenario_run(scenario, NULL, NULL, NULL, &result), SCENARIO_PASSED);
+    scenario_free(scenario);
+}
+END_TEST
+
 /* ---- What is no scenario -------------------------------------------------------------------------------------------- */
 
 START_TEST(errors_name_the_place_and_what_was_expected)
@@ -352,6 +381,13 @@ START_TEST(errors_name_the_place_and_what_was_expected)
     expect_error("framing: x25\nsteps: [{advance: 1s}]\n", "1:10: error: expected framing, hdlc or plain");
     expect_error("turnaround: 2s\nsteps: [{advance: 1s}]\n", "1:13: error: expected turnaround of at most");
     expect_error("speed_change_latency: 3s\nsteps: [{advance: 1s}]\n", "1:23: error: expected speed_change_latency of at most");
+    expect_error("readings: latch\nsteps: [{advance: 1s}]\n", "1:11: error: expected readings, a map as in {hold-exit: latch}");
+    expect_error("readings: {hold-exti: latch}\nsteps: [{advance: 1s}]\n",
+                 "1:12: error: unknown reading `hold-exti'; did you mean");
+    expect_error("readings: {hold-exit: no}\nsteps: [{advance: 1s}]\n",
+                 "1:23: error: hold-exit: expected new or latch, found `no'");
+    expect_error("readings: {speed-change: 1}\nspeed_change_latency: 1ms\nsteps: [{advance: 1s}]\n",
+                 "2:23: error: speed-change is given twice");
     expect_error("seed: -1\nsteps: [{advance: 1s}]\n", "1:7: error: expected seed");
     expect_error("plant: none.yaml\nsteps: [{advance: 1s}]\n", "1:8: error: cannot read folder/none.yaml: it is not there");
     expect_error("plant: {foo: 1}\nsteps: [{advance: 1s}]\n", "1:8: error: ");
@@ -524,6 +560,8 @@ static Suite *scenario_suite(void)
     tcase_add_test(around, two_units_of_one_address_can_be_told_apart);
     tcase_add_test(around, L2_another_framing_can_be_chosen);
     tcase_add_test(around, C4_the_latency_of_a_change_of_speed_can_be_set);
+    tcase_add_test(around, readings_can_be_set_and_are_kept);
+    tcase_add_test(around, a_run_is_under_the_readings_that_were_set);
     add_tests(around, suite);
 
     TCase *reading = tcase_create("reading");

@@ -344,7 +344,7 @@ END_TEST
 /* What is seen of 300 ms in pieces of so many ticks; to be freed. */
 static char *seen_of(const char *const (*commands)[2], const char *program, bool stored, uint64_t piece)
 {
-    static const struct session_kind kind = {"1", true, false, NULL};
+    static const struct session_kind kind = {"1", true, false, NULL, NULL};
     static const uint8_t store[] = {3, '0'};
     session_begin(&session, &kind);
     for (; (*commands)[0]; commands++)

@@ -269,6 +269,20 @@ START_TEST(a_line_with_another_time_of_bytes_is_refused)
 }
 END_TEST
 
+START_TEST(a_line_with_other_readings_is_refused)
+{
+    static const struct session_kind kind = {"1", false, false, NULL, "hold-exit=latch"};
+    static struct session other;
+    session_begin(&other, &session_kinds[1]);
+    session_command(&other, "snapshot", "{\"name\": \"a\"}");
+    session_begin(&here, &kind);
+    struct snapshot *snapshot = snapshot_take(&other.sim);
+    ck_assert_str_eq(snapshot_misfit(&here.sim, snapshot), "one of the readings (--readings)");
+    snapshot_free(snapshot);
+    session_end(&other);
+}
+END_TEST
+
 /* ---- Files ---------------------------------------------------------------------------------------------------------- */
 
 static char path[64], params[100];
@@ -380,6 +394,18 @@ START_TEST(too_long_a_past_is_refused_until_it_is_shorter)
 }
 END_TEST
 
+START_TEST(a_file_of_a_line_with_other_readings_is_refused)
+{
+    static const struct session_kind kind = {"1", true, false, NULL, "planning=3"};
+    session_begin(&here, &session_kinds[0]);
+    ck_assert(snapshots_keep_journal(&here.sim));
+    session_command(&here, "snapshot", params);
+    session_end(&here);
+    session_begin(&here, &kind);
+    refused("restore", params, "the snapshot is of another line: one of the readings (--readings) is different");
+}
+END_TEST
+
 START_TEST(a_file_of_another_line_is_refused_and_changes_nothing)
 {
     session_begin(&here, &session_kinds[0]);
@@ -415,11 +441,13 @@ static Suite *make_suite(void)
     tcase_add_test(commands, what_is_wrong_with_parameters_is_said);
     tcase_add_test(commands, there_is_room_for_64_names);
     tcase_add_test(commands, a_line_with_another_time_of_bytes_is_refused);
+    tcase_add_test(commands, a_line_with_other_readings_is_refused);
     tcase_set_timeout(files, 120);
     tcase_add_checked_fixture(files, file_setup, file_teardown);
     tcase_add_test(files, a_file_brings_another_line_to_the_same_place);
     tcase_add_test(files, coming_back_shortens_the_past);
     tcase_add_test(files, too_long_a_past_is_refused_until_it_is_shorter);
+    tcase_add_test(files, a_file_of_a_line_with_other_readings_is_refused);
     tcase_add_test(files, a_file_of_another_line_is_refused_and_changes_nothing);
     suite_add_tcase(suite, stories);
     suite_add_tcase(suite, commands);

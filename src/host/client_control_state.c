@@ -83,13 +83,28 @@ static enum exit_status show_state(struct client_job *job, const char *unit)
     return status == STATUS_WELL ? client_job_done(job, result) : status;
 }
 
+/* Readings that are not at their default, on a line; nothing if there are none. */
+static void print_readings(const json_t *readings)
+{
+    static const char *const none[] = {NULL};
+    if (json_object_size(readings) == 0)
+        return;
+    fputs("readings", stdout);
+    client_job_print_members(readings, none);
+    putchar('\n');
+}
+
 enum exit_status client_control_state(struct client_job *job)
 {
     size_t i;
     json_t *units, *unit;
-    if (job->unit != NULL)
-        return show_state(job, job->unit);
     enum exit_status status = client_job_call(job, "units", NULL, false, &units);
+    if (status == STATUS_WELL && !job->json)
+        print_readings(json_object_get(units, "readings"));
+    if (status == STATUS_WELL && job->unit != NULL) {
+        json_decref(units);
+        return show_state(job, job->unit);
+    }
     json_array_foreach(json_object_get(units, "units"), i, unit) {
         if (i > 0 && !job->json)
             putchar('\n');

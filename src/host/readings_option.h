@@ -7,9 +7,9 @@
 
 #include "readings.h"
 
-#define READINGS_OPTION_HELP                                                                                                      \
-    "How the units read what the manual leaves open, as in hold-exit=latch,speed-change=500ms; `list' lists all readings with "   \
-    "their values (docs/READINGS.md)"
+#define READINGS_OPTION_HELP \
+    "How the units read what the manual leaves open, as in hold-exit=latch,speed-change=500ms; `list' lists all readings " \
+    "with their values (docs/READINGS.md)"
 
 /* Read a value of --readings into *readings; *named are those that were given before. `list' prints the table and ends the
  * program with status 0; what is wrong ends it with a usage error. */

@@ -36,8 +36,8 @@ static const struct argp_option option_table[] = {
      "Overwrite files of another kind with the report and records, too; never one that is also read or written otherwise", 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0,
      "Run under these readings (docs/READINGS.md). `all': run under the defaults and under each other value of each reading, one "
-     "at a time, and tell on which the result depends; `pairs': and under each two; `list' lists them. May be given several times: "
-     "what is named is kept, the others change. What a scenario names itself is kept, too", 0},
+     "at a time, and tell on which the result depends; `pairs': and under each two; `list' lists them. May be given several "
+     "times: what is named is kept, the others change. What a scenario names itself is kept, too", 0},
     {"strict", KEY_STRICT, NULL, 0, "With --readings all or pairs: a scenario that depends on a reading has failed", 0},
     {0},
 };
@@ -71,8 +71,9 @@ static const char doc[] =
     "  rkm04 test --readings all --strict scenarios/*.yaml\n"
     "  rkm04 replay --trace homing.vcd homing.record\n"
     "\n"
-    "Exit status: 0 all passed; 3 any failed, or, with --strict, depends on a reading; 1 a file could not be read or written, or the run was interrupted; 2 wrong usage, "
-    "or a file that is no scenario: each error is a line FILE:LINE:COLUMN: error: ..., and nothing is run.";
+    "Exit status: 0 all passed; 3 any failed, or, with --strict, depends on a reading; 1 a file could not be read or "
+    "written, or the run was interrupted; 2 wrong usage, or a file that is no scenario: each error is a line "
+    "FILE:LINE:COLUMN: error: ..., and nothing is run.";
 
 /* ---- Command line --------------------------------------------------------------------------------------------------- */
 
@@ -172,6 +173,7 @@ static bool run_under_others(struct test_case *test, const struct options *optio
 {
     if (options->mode == TEST_READINGS_ONE || test->outcome == TEST_NOT_RUN || test->outcome == TEST_BROKEN)
         return true;
+    fflush(stdout); /* who waits sees the first result */
     test_readings_run(test, &options->readings, options->named, options->mode, progress);
     if (!options->json)
         test_report_readings(stdout, test);
@@ -255,7 +257,8 @@ static int run(struct test_case *tests, const struct options *options)
     if (test_report_count(tests, options->paths, TEST_FAILED) > 0 ||
         (options->strict && test_report_dependent(tests, options->paths) > 0))
         return STATUS_FAILED;
-    return well && !test_case_interrupted() && test_report_count(tests, options->paths, TEST_PASSED) == options->paths ? STATUS_WELL : STATUS_FAILURE;
+    well = well && !test_case_interrupted() && test_report_count(tests, options->paths, TEST_PASSED) == options->paths;
+    return well ? STATUS_WELL : STATUS_FAILURE;
 }
 
 int test_main(int argc, char **argv)

@@ -212,12 +212,12 @@ static bool read_one(struct rkm04_readings *readings, readings_set *named, const
 {
     const char *equals = memchr(text, '=', length);
     if (equals == NULL) {
+        const char *quote = length > 0 ? "`" : "nothing", *end = length > 0 ? "'" : "";
         int shown = length < FOUND_MAX ? (int)length : FOUND_MAX;
-        snprintf(error, READINGS_ERROR_SIZE, length > 0 ? "expected NAME=VALUE, found `%.*s'" : "expected NAME=VALUE, found nothing",
-                 shown, text);
+        snprintf(error, READINGS_ERROR_SIZE, "expected NAME=VALUE, found %s%.*s%s", quote, shown, text, end);
         return false;
     }
-    size_t name = (size_t)(equals - text);
+    size_t name = (size_t)(equals - text), rest = length - name - 1;
     unsigned at = find(text, name);
     if (at == READINGS)
         return unknown_name(text, name, error);
@@ -226,7 +226,7 @@ static bool read_one(struct rkm04_readings *readings, readings_set *named, const
         return false;
     }
     *named = *named | 1u << at;
-    return read_value(readings, at, equals + 1, length - name - 1) || wrong_value(&table[at], equals + 1, length - name - 1, error);
+    return read_value(readings, at, equals + 1, rest) || wrong_value(&table[at], equals + 1, rest, error);
 }
 
 bool readings_read(struct rkm04_readings *readings, readings_set *named, const char *text, char error[READINGS_ERROR_SIZE])

@@ -12,8 +12,8 @@
 #define VERSION_MAX 255u
 
 static const char *const known[] = {
-    "name",    "description", "units", "framing", "baud",    "turnaround",   "speed_change_latency", "readings", "version_text", "seed",
-    "plant",   "di",          "timeout", "allow_faults", "always", "stimuli", "steps", NULL,
+    "name",  "description", "units", "framing", "baud", "turnaround", "speed_change_latency", "readings", "version_text",
+    "seed", "plant",   "di",          "timeout", "allow_faults", "always", "stimuli", "steps", NULL,
 };
 
 /* ---- Values --------------------------------------------------------------------------------------------------------- */

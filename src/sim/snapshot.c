@@ -161,7 +161,7 @@ const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapsh
         if (framing_of(here) != framing_of(there))
             return "the framing";
         if (!readings_same(&here->readings, &there->readings))
-            return "the readings";
+            return "one of the readings (--readings)";
         if (strcmp(text_of(here), text_of(there)) != 0)
             return "the version text";
     }
