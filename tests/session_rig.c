@@ -18,7 +18,8 @@ static const char axis[] =
 
 /* Every reading otherwise. */
 static const char others[] = "label=fault,fault-exit=new,hold-exit=latch,x-after=once,guard-start=step,v-alone=first,"
-                             "y-eleventh=y,reset-t41=clear,negative-position=no,speed-change=40,planning=3,input-filter=2,store-time=20";
+                             "y-eleventh=y,reset-t41=clear,negative-position=no,"
+                             "speed-change=40,planning=3,input-filter=2,store-time=20";
 
 const struct session_kind session_kinds[] = {
     {"1", true, false, NULL, NULL}, {"1", false, false, NULL, NULL}, {"1,2,7", true, false, NULL, NULL},
