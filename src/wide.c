@@ -1,19 +1,43 @@
 /* SPDX-License-Identifier: MIT */
 #include "wide.h"
 
+#ifndef __SIZEOF_INT128__
+uint64_t wide_high(uint64_t a, uint64_t b)
+{
+    uint64_t a0 = (uint32_t)a, a1 = a >> 32, b0 = (uint32_t)b, b1 = b >> 32;
+    uint64_t middle = a1 * b0 + (a0 * b0 >> 32);
+    uint64_t other = a0 * b1 + (uint32_t)middle;
+    return a1 * b1 + (middle >> 32) + (other >> 32);
+}
+#endif
+
+/* The next digit of 32 bits of a quotient (Knuth, The Art of Computer Programming, 4.3.1, algorithm D): *left * 2^32 + next by a
+ * divisor >= 2^63; *left < divisor becomes the remainder. */
+static uint32_t next_digit(uint64_t *left, uint32_t next, uint64_t divisor)
+{
+    const uint32_t high = (uint32_t)(divisor >> 32), low = (uint32_t)divisor;
+    uint64_t digit = *left / high, rest = *left % high;
+    while (digit >> 32 || (uint32_t)digit * (uint64_t)low > (rest << 32 | next)) { /* at most twice */
+        digit--;
+        rest += high;
+        if (rest >> 32)
+            break;
+    }
+    *left = (*left << 32 | next) - digit * divisor;
+    return (uint32_t)digit;
+}
+
 uint64_t wide_divide(struct wide number, uint64_t divisor, uint64_t *rest)
 {
-    uint64_t quotient = 0, left = number.high;
-    for (unsigned i = 64; i-- > 0;) {
-        left = left << 1 | (number.low >> i & 1);
-        quotient <<= 1;
-        if (left >= divisor) {
-            left -= divisor;
-            quotient |= 1;
-        }
-    }
-    *rest = left;
-    return quotient;
+    unsigned shift = 0;
+    for (; !(divisor >> 63); divisor <<= 1)
+        shift++;
+    if (shift > 0)
+        number = wide_shifted(number, shift);
+    uint64_t left = number.high, high = next_digit(&left, (uint32_t)(number.low >> 32), divisor);
+    uint64_t low = next_digit(&left, (uint32_t)number.low, divisor);
+    *rest = left >> shift;
+    return high << 32 | low;
 }
 
 struct wide wide_fraction(uint64_t rest, uint64_t divisor, bool *inexact)
@@ -25,24 +49,72 @@ struct wide wide_fraction(uint64_t rest, uint64_t divisor, bool *inexact)
     return places;
 }
 
-struct wide wide_root(struct wide radicand, unsigned places, bool *inexact)
+/* Square root of a number below 2^62, rounded down, bit by bit. */
+static uint64_t root_of_half(uint64_t number)
 {
-    struct wide root = {0, 0}, rest = {0, 0};
-    for (unsigned i = 0; i < 64 + places; i++) {
-        /* Digit by digit: two more bits of the radicand, one more of the root. */
-        rest = wide_shifted(rest, 2);
-        rest.low |= radicand.high >> 62;
-        radicand = wide_shifted(radicand, 2);
-        struct wide trial = wide_shifted(root, 2);
-        trial.low |= 1;
-        root = wide_shifted(root, 1);
-        if (!wide_less(rest, trial)) {
-            rest = wide_difference(rest, trial);
-            root.low |= 1;
+    uint64_t root = 0;
+    for (uint64_t digit = UINT64_C(1) << 60; digit != 0; digit >>= 2) {
+        uint64_t trial = root + digit;
+        root >>= 1;
+        if (number >= trial) {
+            number -= trial;
+            root += digit;
         }
     }
-    *inexact = (rest.high | rest.low) != 0;
     return root;
+}
+
+/* Square root, rounded down, of 2^124 <= number < 2^126: that of its upper half, and a quotient for the rest, which may be
+ * 2 too much. */
+static uint64_t root_of_whole(struct wide number)
+{
+    uint64_t high = root_of_half(number.high), rest = number.high - high * high;
+    uint64_t root = (high << 32) + (rest << 31 | number.low >> 33) / high;
+    while (wide_less(number, wide_product(root, root)))
+        root--;
+    return root;
+}
+
+/* number / 2^shift; *inexact becomes true if something is cut off. */
+static struct wide shifted_down(struct wide number, unsigned shift, bool *inexact)
+{
+    if (shift >= 64) {
+        *inexact = *inexact || number.low != 0;
+        number = (struct wide){0, number.high};
+        shift -= 64;
+    }
+    if (shift > 0) {
+        *inexact = *inexact || number.low << (64 - shift) != 0;
+        number = (struct wide){number.high >> shift, number.low >> shift | number.high << (64 - shift)};
+    }
+    return number;
+}
+
+struct wide wide_root(struct wide radicand, unsigned places, bool *inexact)
+{
+    unsigned shift = 64 - places;
+    *inexact = false;
+    if ((radicand.high | radicand.low) == 0)
+        return radicand;
+    for (; !(radicand.high >> 60); radicand = wide_shifted(radicand, 2))
+        shift++;
+    /* Root * 2^64 has the digits `high` and `low`: low = rest * 2^64 / (2 * high), or a little less, as low^2 must fit, too, into
+     * what is over. */
+    uint64_t high = root_of_whole(radicand), low = UINT64_MAX, over = high;
+    uint64_t rest = wide_difference(radicand, wide_product(high, high)).low;
+    if (rest >> 1 < high)
+        low = wide_divide((struct wide){rest >> 1, rest << 63}, high, &over);
+    over *= 2;
+    struct wide square = wide_product(low, low);
+    bool plenty = false; /* 2^64 and more is over */
+    while (!plenty && wide_less((struct wide){over, 0}, square)) {
+        low--;
+        square = wide_product(low, low);
+        over += 2 * high;
+        plenty = over < 2 * high;
+    }
+    *inexact = plenty || over != square.high || square.low != 0;
+    return shifted_down((struct wide){high, low}, shift, inexact);
 }
 
 uint32_t wide_root_of(uint32_t number)
