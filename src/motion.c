@@ -98,7 +98,7 @@ static void set_off(struct rkm04_unit *unit, struct rkm04_motor *motor)
     write_led(unit, motor, unit->now, RKM04_LED_ON);
     report_event(unit, motor, unit->now, RKM04_EVENT_MOTION, 1);
     profile_plan(motion);
-    ramp_begin(&motion->ramp, &motion->profile, unit->now);
+    ramp_begin(&motion->ramp, &motion->profile, unit->now, RKM04_TICKS_PER_SECOND);
     motion->moving = true;
     motion->stopping = false;
     motor->after = RKM04_AFTER_GO_ON;
@@ -207,12 +207,6 @@ void motion_resume(struct rkm04_unit *unit, struct rkm04_motor *motor)
 
 /* ---- Pulses ----------------------------------------------------------------------------------------------------------- */
 
-/* Is there anybody to see single pulses? */
-static bool pulses_are_seen(const struct rkm04_unit *unit)
-{
-    return unit->port->step && !unit->simulation;
-}
-
 static void count_pulses(struct rkm04_motor *motor, uint32_t count)
 {
     uint32_t position = (uint32_t)motor->position;
@@ -229,8 +223,7 @@ static void run_pulses(struct rkm04_unit *unit, struct rkm04_motor *motor, uint6
     size_t count = ramp_pulses(&motion->ramp, &motion->profile, limit, tick, room < most ? room : most);
     if (count > 0) {
         motor->last_pulse = tick[count - 1];
-        if (pulses_are_seen(unit))
-            report_steps(unit, motor, tick, count);
+        report_steps(unit, motor, tick, count);
         count_pulses(motor, (uint32_t)count);
     }
     if (motion->ramp.next == RKM04_NEVER)

@@ -295,7 +295,7 @@ static struct wide square_of(struct rkm04_fixed w)
 static void look_behind_step(const struct rkm04_motion *motion, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
 {
     ramp_look(&motion->ramp, tick, y, w);
-    y->whole += RAMP_STEP;
+    y->whole += motion->ramp.step;
 }
 
 /* The place and speed at `tick`, from the pulse generator. */
@@ -305,11 +305,11 @@ static struct state present(const struct rkm04_motion *motion, uint64_t tick)
     look_behind_step(motion, tick, &y, &w);
     uint64_t rest;
     /* y / RAMP_STEP, which may be 1, with 127 places. */
-    uint64_t high = wide_divide((struct wide){(uint64_t)y.whole, y.part}, 2 * RAMP_STEP, &rest);
-    uint64_t low = wide_divide((struct wide){rest, 0}, 2 * RAMP_STEP, &rest);
+    uint64_t high = wide_divide((struct wide){(uint64_t)y.whole, y.part}, 2 * (uint64_t)motion->ramp.step, &rest);
+    uint64_t low = wide_divide((struct wide){rest, 0}, 2 * (uint64_t)motion->ramp.step, &rest);
     struct state state = {.moving = true};
     state.at = (struct rkm04_place){((uint64_t)motion->done << 32) + (high >> 31), high << 33 | low >> 31};
-    state.q = wide_divide(wide_shifted(square_of(w), RAMP_SPEED2_BITS), RAMP_STEP, &rest);
+    state.q = wide_divide(wide_shifted(square_of(w), RAMP_SPEED2_BITS), (uint64_t)motion->ramp.step, &rest);
     state.segment = segment_at(motion, state.at);
     return state;
 }
@@ -360,7 +360,7 @@ struct stop {
 static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint16_t acceleration)
 {
     if (!motion->ramp.exact)
-        return (uint64_t)4 * acceleration * (uint64_t)RAMP_STEP / 1000000;
+        return (uint64_t)4 * acceleration * (uint64_t)motion->ramp.step / 1000000;
     if (!motion->changed)
         return 1;
     uint16_t least = acceleration;
@@ -372,7 +372,7 @@ static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint16_t ac
 /* Steps from stop->step to the end of the ramp at this acceleration, rounded up. */
 static uint32_t steps_of_stop(const struct rkm04_motion *motion, const struct stop *stop, uint16_t acceleration)
 {
-    const uint64_t unit = (uint64_t)4 * acceleration * (uint64_t)RAMP_STEP;
+    const uint64_t unit = (uint64_t)4 * acceleration * (uint64_t)motion->ramp.step;
     struct wide way = wide_sum(stop->energy, (struct wide){0, stop->offset});
     uint64_t rest, steps = wide_divide(way, unit, &rest);
     return (uint32_t)steps + (rest >= tolerance_of_stop(motion, acceleration));
@@ -395,7 +395,7 @@ static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, stru
         uint32_t end_step = ramp_step_of(end);
         if (last <= end_step || end_step == motion->total)
             return (uint32_t)lower(last, motion->total);
-        struct wide lost = wide_product(factor * (uint64_t)RAMP_STEP, end_step - stop.step);
+        struct wide lost = wide_product(factor * (uint64_t)motion->ramp.step, end_step - stop.step);
         lost = wide_difference(lost, (struct wide){0, stop.offset});
         stop.energy = wide_difference(stop.energy, lost);
         state->q = lowered(state->q, energy(acceleration, state->at, end));
@@ -410,7 +410,7 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
     struct rkm04_profile *profile = &motion->profile;
     if (on_final_ramp(motion))
         return true;
-    const int64_t w_end = RAMP_SPEED * motion->start_speed;
+    const int64_t w_end = ramp_speed_unit(&motion->ramp) * motion->start_speed;
     struct state state = present(motion, tick);
     struct stop stop = {.step = motion->done};
     struct rkm04_fixed y, w;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* ramp.h: break points -> the tick of every pulse. Whole numbers only, no I/O; knows nothing but break points (R1, R2).
  *
- *   speed                    A leg lies between two break points. On it, with y = 2e12 * (position - next pulse) and
- *     |      ____            w = 2e6 * speed, d ticks later: y + d * (w + slope * d). The next pulse is due at the first
+ *   speed                    A leg lies between two break points. On it, with y = 2 * rate^2 * (position - next pulse) and
+ *     |      ____            w = 2 * rate * speed, d ticks later: y + d * (w + slope * d). A pulse is due at the first
  *     |     /    \           tick with y >= 0. A rising or level leg is reckoned from its beginning, a falling one from its
  *     |    /      \          end, so that the last step of a motion is as exact as the first.
  *     |___/        \____
@@ -15,9 +15,13 @@
 
 #include "wide.h"
 
-#define RAMP_STEP INT64_C(2000000000000) /* y of one step */
-#define RAMP_SPEED INT64_C(2000000)      /* w of 1 step/s */
-#define RAMP_SPEED2_BITS 34              /* rkm04_break.speed2 = 2 * speed^2 * 2^34 */
+#define RAMP_SPEED2_BITS 34 /* rkm04_break.speed2 = 2 * speed^2 * 2^34 */
+
+/* w of 1 step/s. */
+static inline int64_t ramp_speed_unit(const struct rkm04_ramp *ramp)
+{
+    return 2 * (int64_t)ramp->rate;
+}
 
 /* Whole steps of a place. */
 static inline uint32_t ramp_step_of(struct rkm04_place place)
@@ -25,14 +29,15 @@ static inline uint32_t ramp_step_of(struct rkm04_place place)
     return (uint32_t)(place.high >> 32);
 }
 
-/* Begin at point[leg] of the profile, at `tick`, with the speed of that point. */
-void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick);
+/* Begin at point[leg] of the profile, at `tick`, with the speed of that point. rate: ticks a second, a million to 16 millions;
+ * pulses come at most once a tick. */
+void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick, uint32_t rate);
 
 /* Go on from the present position and speed at `tick` along a profile planned anew: point[leg] is the present place. */
 void ramp_go_on(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick);
 
-/* Put the ticks of the pulses due up to and including `limit` into `tick`, at most `room`. Moves profile->leg on.
- * Returns their number; fewer than `room` means there are no more up to `limit`. */
+/* Put the ticks of the next pulses due up to and including `limit` into `tick`, at most `room`, of one leg. Moves profile->leg
+ * on. Returns their number; there are more while ramp->next <= limit. */
 size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t limit, uint64_t *tick, size_t room);
 
 /* Pass over pulses that nobody wants to see one by one: most of those of the present leg that are due up to `limit`, which the
@@ -45,8 +50,5 @@ void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed 
 
 /* A tick before which the motion does not end; RKM04_NEVER if it has no end of its own. */
 uint64_t ramp_quiet_until(const struct rkm04_ramp *ramp);
-
-/* w of a speed given as 2 * speed^2 * 2^34. *exact becomes false if it is irrational. */
-struct rkm04_fixed ramp_w(uint64_t speed2, bool *exact);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "report.h"
 
-void report_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count)
+void report_single_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count)
 {
     void (*step)(void *, uint64_t, unsigned, int32_t) = unit->port->step;
     void *context = unit->context;

@@ -18,9 +18,31 @@ static inline void report_event(struct rkm04_unit *unit, const struct rkm04_moto
         unit->port->event(unit->context, tick, motor ? motor_number(unit, motor) : 0, what, value);
 }
 
-/* The next `count` steps of the present motion, at these ticks; the port must have `step`. A function of its own file: it is
- * the one loop that is run for every pulse, and deserves the registers. */
-void report_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count);
+/* Is there anybody to see single pulses? */
+static inline bool pulses_are_seen(const struct rkm04_unit *unit)
+{
+    return (unit->port->steps || unit->port->step) && !unit->simulation;
+}
+
+/* The same for a port that takes them one by one. A function of its own file: it is the one loop that is run for every pulse,
+ * and deserves the registers. */
+void report_single_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count);
+
+/* The next `count` steps of the present motion, at these ticks, if somebody wants to see them. */
+static inline void report_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick,
+                                size_t count)
+{
+    if (unit->simulation)
+        return;
+    if (unit->port->steps) {
+        const bool forward = motor->motion.forward;
+        uint32_t position = (uint32_t)motor->position;
+        unit->port->steps(unit->context, motor_number(unit, motor), tick, count,
+                          (int32_t)(forward ? position + 1 : position - 1), forward);
+    } else if (unit->port->step) {
+        report_single_steps(unit, motor, tick, count);
+    }
+}
 
 /* What the direction terminal shows: held at 0 in simulation mode (C11). */
 static inline void report_direction(struct rkm04_unit *unit, const struct rkm04_motor *motor, uint64_t tick, bool forward)

@@ -259,7 +259,7 @@ bool rkm04_motor_state(const struct rkm04_unit *unit, unsigned number, struct rk
     if (motion->moving) {
         struct rkm04_fixed y, w;
         ramp_look(&motion->ramp, unit->now, &y, &w);
-        state->speed = (uint32_t)(w.whole / RAMP_SPEED);
+        state->speed = (uint32_t)(w.whole / ramp_speed_unit(&motion->ramp));
     }
     return true;
 }

@@ -66,7 +66,12 @@ void ref_use_blocks(void)
  *      |rising|constant|falling                       a t + 10^6 s >= 2 sqrt(10^12 p^2) - sqrt X
  */
 
-#define MILLION 1000000ul
+static unsigned long rate = 1000000; /* ticks a second; 10^6 in the formulas above */
+
+void ref_use_rate(unsigned long ticks_per_second)
+{
+    rate = ticks_per_second;
+}
 
 /* whole = 10^12 (s^2 + 2 a steps) */
 static void set_radicand(mpz_t whole, unsigned s, unsigned a, uint64_t steps)
@@ -74,7 +79,7 @@ static void set_radicand(mpz_t whole, unsigned s, unsigned a, uint64_t steps)
     mpz_set_ui(whole, 2ul * a);
     mpz_mul_ui(whole, whole, steps);
     mpz_add_ui(whole, whole, (unsigned long)s * s);
-    mpz_mul_ui(whole, whole, MILLION * MILLION);
+    mpz_mul_ui(whole, whole, rate * rate);
 }
 
 /* root = sqrt(x), rounded up */
@@ -134,7 +139,7 @@ static void tick_rising(mpz_t t, unsigned s, const struct ref_segment *m, uint64
     mpz_init(x);
     set_radicand(x, s, m->acceleration, k);
     root_up(t, x);
-    mpz_sub_ui(t, t, MILLION * s);
+    mpz_sub_ui(t, t, rate * s);
     mpz_cdiv_q_ui(t, t, m->acceleration);
     mpz_clear(x);
 }
@@ -148,7 +153,7 @@ static void tick_constant(mpz_t t, unsigned s, const struct ref_segment *m, uint
         mpz_add_ui(t, t, 2 * v * (v - s));
         mpz_sub_ui(t, t, v * v - (unsigned long)s * s);
     }
-    mpz_mul_ui(t, t, MILLION);
+    mpz_mul_ui(t, t, rate);
     mpz_cdiv_q_ui(t, t, 2 * a * v);
 }
 
@@ -165,7 +170,7 @@ static void tick_falling(mpz_t t, unsigned s, const struct ref_segment *m, uint6
     mpz_mul_ui(sum, sum, m->steps);
     mpz_add_ui(sum, sum, 2 * v * (v - s) + s * v);
     mpz_sub_ui(sum, sum, v * v - (unsigned long)s * s);
-    mpz_mul_ui(sum, sum, MILLION);
+    mpz_mul_ui(sum, sum, rate);
     mpz_sub(sum, sum, x);
     mpz_cdiv_q_ui(t, sum, a * v);
     mpz_clear(x);
@@ -181,7 +186,7 @@ static void tick_falling_triangle(mpz_t t, unsigned s, const struct ref_segment 
     mpz_set_ui(x, m->acceleration);
     mpz_mul_ui(x, x, m->steps);
     mpz_add_ui(x, x, (unsigned long)s * s);
-    mpz_mul_ui(x, x, 4 * MILLION * MILLION);
+    mpz_mul_ui(x, x, 4 * rate * rate);
     set_radicand(y, s, m->acceleration, m->steps - k);
     mpz_sqrt(t, x);
     mpz_sqrt(root, y);
@@ -189,7 +194,7 @@ static void tick_falling_triangle(mpz_t t, unsigned s, const struct ref_segment 
     mpz_sub_ui(t, t, 2);
     while (!reaches(t, x, y))
         mpz_add_ui(t, t, 1);
-    mpz_sub_ui(t, t, MILLION * s);
+    mpz_sub_ui(t, t, rate * s);
     mpz_cdiv_q_ui(t, t, m->acceleration);
     mpz_clear(x);
     mpz_clear(y);

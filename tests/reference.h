@@ -30,6 +30,9 @@ void ref_use_blocks(void);
 
 /* ---- R1, exact ---- */
 
+/* So many ticks make a second from now on, instead of a million. */
+void ref_use_rate(unsigned long ticks_per_second);
+
 /* Tick of pulse k, 1..N, of a motion from rest: the smallest whole number not below 10^6 T(k). */
 uint64_t ref_single_tick(unsigned start_speed, const struct ref_segment *motion, uint64_t k);
 

@@ -229,7 +229,7 @@ START_TEST(pulses_cost_nothing_while_nobody_wants_them)
     one = line(false, 1, WATCH_BIT(WATCH_MOTION));
     set(one, 1, '1', "S1000 V1000 F1000 R");
     sim_advance(&one->sim, 100000);
-    ck_assert_ptr_null(one->sim.unit[0].port.step);
+    ck_assert_ptr_null(one->sim.unit[0].port.steps);
     struct watcher watcher = {.kinds = WATCH_BIT(WATCH_STEP), .see = see, .context = one};
     sim_watch(&one->sim, &watcher);
     sim_advance(&one->sim, 102000);

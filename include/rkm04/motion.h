@@ -2,8 +2,8 @@
 /* rkm04/motion.h: what a motion is made of (specification section 6): its segments, its break points and the state of the
  * pulse generator. Types only: they are parts of struct rkm04_unit and are handled by profile.c and ramp.c.
  *
- * Units inside: position in whole steps and a part of a step; time in ticks of 1 us. With y = 2e12 * position and
- * w = 2e6 * speed a constant acceleration a [steps/s^2] gives, d ticks later,
+ * Units inside: position in whole steps and a part of a step; time in ticks, `rate` of which make a second. With
+ * y = 2 * rate^2 * position and w = 2 * rate * speed a constant acceleration a [steps/s^2] gives, d ticks later,
  *
  *     y' = y + d * (w + a * d)        w' = w + 2 * a * d
  *
@@ -58,15 +58,22 @@ struct rkm04_profile {
 /* The pulse generator of one motor. */
 struct rkm04_ramp {
     uint64_t next;            /* tick of the next pulse, or of the change to the next leg; RKM04_NEVER: no motion */
-    uint64_t at;              /* tick at which y and w stand; == next while pulses are left in the leg */
-    struct rkm04_fixed y;     /* 2e12 * (position - number of the next pulse) */
-    struct rkm04_fixed w;     /* 2e6 * speed */
+    uint64_t at;              /* tick at which y and w stand: that of the next pulse, or of the first of the present block */
+    struct rkm04_fixed y;     /* 2 * rate^2 * (position - number of that pulse) */
+    struct rkm04_fixed w;     /* 2 * rate * speed */
     struct rkm04_instant end; /* when the present leg ends; RKM04_NEVER: it does not */
     uint32_t left;            /* pulses left in the present leg */
     int32_t interval;         /* ticks between two pulses, about */
     int32_t change;           /* by how much it changes from pulse to pulse; 0: hardly */
     int32_t slope;            /* of the present leg */
+    uint32_t level;           /* speed of a level leg in whole steps/s; 0: it slopes, or its speed is no whole number */
+    uint32_t phase;           /* on a level leg: y / (2 * rate), rounded down */
+    uint64_t fast;            /* on a slope: w from which its pulses are worked out in blocks */
+    uint64_t due, due1, due2, due3; /* of a block: when the pulse behind the next one is due, and differences (ramp_pulses.c) */
+    uint8_t block, sent;      /* pulses of the block, and how many of them are out; 0: none under way */
     bool exact;               /* no irrational number has come in so far (R5) */
+    uint32_t rate;            /* ticks a second */
+    int64_t step;             /* y of one step: 2 * rate^2 */
 };
 
 enum rkm04_motion_kind {

@@ -8,7 +8,7 @@
  *     static struct rkm04_unit unit;
  *     rkm04_init(&unit, &config, &port, context);      // power-up: flash slots are loaded and start
  *     rkm04_receive(&unit, bytes, n);                  // a request came in at this tick
- *     rkm04_advance(&unit, 1000);                      // one millisecond: pulses through port.step
+ *     rkm04_advance(&unit, 1000);                      // one millisecond: pulses through port.steps or port.step
  *     n = rkm04_send(&unit, buffer, sizeof buffer);    // the answer
  *
  * Clauses in brackets refer to docs/SPEC.md. */
@@ -70,6 +70,10 @@ struct rkm04_port {
     /* A step pulse begins (10 us wide, R7). position: of the counter after it. Not called in simulation mode (T41). Must be
      * quick: up to 16 000 times a second and motor. */
     void (*step)(void *context, uint64_t tick, unsigned motor, int32_t position);
+    /* The same for `count` >= 1 pulses of one motor at once, at tick[0] to tick[count - 1]. position: of the counter after the
+     * first; each further one counts it up (forward) or down. Called instead of `step` where both are set; costs a third. The
+     * ticks are valid during the call. */
+    void (*steps)(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward);
     /* The direction output changes, at least 20 us before the first pulse. forward = output at 1. */
     void (*direction)(void *context, uint64_t tick, unsigned motor, bool forward);
     /* The outputs DO change; bit 0 is DO 01. All 0 in simulation mode. */

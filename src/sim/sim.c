@@ -59,13 +59,16 @@ static enum watch_phase phase_of(const struct sim_unit *unit)
     return unit->sim->segment.advancing ? WATCH_TURNS : WATCH_DELIVERED;
 }
 
-static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
+static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward)
 {
     struct sim_unit *unit = context;
-    tell(unit, tick, WATCH_PULSES, WATCH_STEP, motor, position);
-    if (unit->plant)
-        plant_step(unit->plant, segment_since(&unit->sim->segment, unit->number) + tick, motor,
-                   ((unsigned)unit->forward >> (motor - 1u) & 1u) != 0);
+    const uint64_t since = segment_since(&unit->sim->segment, unit->number);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t way = forward ? (uint32_t)i : 0u - (uint32_t)i;
+        tell(unit, tick[i], WATCH_PULSES, WATCH_STEP, motor, (int32_t)((uint32_t)position + way));
+        if (unit->plant)
+            plant_step(unit->plant, since + tick[i], motor, forward);
+    }
 }
 
 static void on_direction(void *context, uint64_t tick, unsigned motor, bool forward)
@@ -113,7 +116,7 @@ static void look_who_watches(struct sim *sim)
     for (unsigned number = 1; number <= sim->segment.units; number++) {
         struct sim_unit *unit = &sim->unit[number - 1u];
         bool pulses = (sim->watch.kinds & WATCH_BIT(WATCH_STEP)) != 0 || unit->plant;
-        unit->port.step = pulses ? on_step : NULL;
+        unit->port.steps = pulses ? on_steps : NULL;
     }
 }
 
@@ -337,7 +340,7 @@ static uint64_t leap_end(const struct sim *sim, uint64_t tick)
     if ((sim->faults.kinds >> FAULT_POWER & 1u) != 0)
         end = earlier(end, due > now ? due : now);
     for (unsigned number = 1; number <= sim->segment.units; number++) {
-        if (!sim->unit[number - 1u].port.step)
+        if (!sim->unit[number - 1u].port.steps)
             continue;
         if (event < end)
             end = earlier(end, slot_after(sim, number, event));

@@ -60,7 +60,7 @@ struct sim_unit {
     struct sim *sim;
     unsigned number;            /* on the line, 1..16 */
     char name[NODE_NAME_SIZE];  /* its address, as in "3"; with a suffix if it is not the only one with it, "3-2" */
-    struct rkm04_port port;     /* `step` is set while somebody wants pulses */
+    struct rkm04_port port;     /* `steps` is set while somebody wants pulses */
     uint8_t di;                 /* inputs set by hand: DI 01 in bit 0 */
     uint8_t forward;            /* direction outputs: motor 1 in bit 0 */
     struct plant *plant;        /* NULL: none. Who changes it calls sim_look_at_inputs() */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* bench.c: what the core costs. Prints one JSON object a line; every time is CPU time, the median of some runs.
  *
- *     bench [--quick] [--repeat N] [NAME]...
+ *     bench [--quick] [--single] [--repeat N] [NAME]...
  *
  * Instructions instead of times, which depend on the machine and its load: instructions.sh. */
 #include <getopt.h>
@@ -41,7 +41,17 @@ static void sink_step(void *context, uint64_t tick, unsigned motor, int32_t posi
     to->stamp[to->count++] = tick;
 }
 
-static const struct rkm04_port port = {.step = sink_step};
+static void sink_steps(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward)
+{
+    struct sink *to = context;
+    (void)motor;
+    (void)position;
+    (void)forward;
+    memcpy(to->stamp + to->count, tick, count * sizeof *tick);
+    to->count += count;
+}
+
+static struct rkm04_port port = {.steps = sink_steps};
 
 static _Noreturn void fail(const char *what)
 {
@@ -359,6 +369,7 @@ static _Noreturn void usage(FILE *to, int status)
     fprintf(to, "Usage: bench [--quick] [--repeat N] [NAME]...\n\n"
                 "Measure the core; one JSON object a line. Times are CPU times, each the median of the runs.\n\n"
                 "  -q, --quick       little work, one run: to see that it works\n"
+                "  -s, --single      take pulses one by one (port.step), not in blocks (port.steps)\n"
                 "  -r, --repeat N    runs of each, 1..99 (7)\n"
                 "  -h, --help        this text\n\n"
                 "NAME, all if none is given:\n");
@@ -383,11 +394,12 @@ static void read_options(int argc, char **argv)
 {
     static const struct option options[] = {
         {"quick", no_argument, NULL, 'q'},
+        {"single", no_argument, NULL, 's'},
         {"repeat", required_argument, NULL, 'r'},
         {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0},
     };
-    for (int option; (option = getopt_long(argc, argv, "qr:h", options, NULL)) != -1;) {
+    for (int option; (option = getopt_long(argc, argv, "qsr:h", options, NULL)) != -1;) {
         char *end = NULL;
         long number = option == 'r' ? strtol(optarg, &end, 10) : 0;
         if (option == 'h')
@@ -400,6 +412,8 @@ static void read_options(int argc, char **argv)
         }
         if (option == 'r')
             runs = (unsigned)number;
+        else if (option == 's')
+            port = (struct rkm04_port){.step = sink_step};
         else
             quick = true, runs = 1;
     }

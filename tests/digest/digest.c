@@ -88,10 +88,10 @@ static int on_flash_program(void *context, unsigned block, unsigned offset, cons
 }
 
 static const struct rkm04_port with_pulses = {
-    on_step, on_direction, on_outputs, on_event, on_flash_read, on_flash_erase, on_flash_program,
+    on_step, NULL, on_direction, on_outputs, on_event, on_flash_read, on_flash_erase, on_flash_program,
 };
 static const struct rkm04_port without_pulses = {
-    NULL, on_direction, on_outputs, on_event, on_flash_read, on_flash_erase, on_flash_program,
+    NULL, NULL, on_direction, on_outputs, on_event, on_flash_read, on_flash_erase, on_flash_program,
 };
 
 /* ---- A session ---------------------------------------------------------------------------------------------------- */

@@ -295,8 +295,10 @@ static int flash_program(void *context, unsigned block, unsigned offset, const v
     return 0;
 }
 
-static const struct rkm04_port seeing = {see_step, see_direction, see_outputs, see_event, flash_read, flash_erase, flash_program};
-static const struct rkm04_port skipping = {NULL, see_direction, see_outputs, see_event, flash_read, flash_erase, flash_program};
+static const struct rkm04_port seeing = {see_step,  NULL,       see_direction, see_outputs,
+                                        see_event, flash_read, flash_erase,   flash_program};
+static const struct rkm04_port skipping = {NULL,      NULL,       see_direction, see_outputs,
+                                          see_event, flash_read, flash_erase,   flash_program};
 
 /* ---- What happens to a unit ------------------------------------------------------------------------------------------- */
 
