@@ -11,14 +11,15 @@ if(RKM04_HOST)
 endif()
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN man EXCLUDE)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES packaging/debian/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES packaging/debian/copyright THIRD-PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The conformance kit finds its cases beside its own place: PREFIX/bin and PREFIX/share/rkm04/conformance.
 file(GLOB KIT CONFIGURE_DEPENDS tests/conformance/*.py tests/conformance/*.json)
 install(PROGRAMS tools/conformance DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME rkm04-conformance)
 install(FILES ${KIT} DESTINATION share/rkm04/conformance)
 
-set(RKM04_MAINTAINER "rkm04 maintainers <rkm04@example.invalid>" CACHE STRING "Whom the Debian package names as its maintainer")
+set(RKM04_MAINTAINER "the authors of the virtual RKM04 <maintainers@users.noreply.h-seed-2f7931ad.example>"
+  CACHE STRING "Whom the Debian package names as its maintainer")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rkm04)
