@@ -180,6 +180,22 @@ START_TEST(what_took_the_place_of_ours_is_not_removed_at_the_end)
 }
 END_TEST
 
+/* Somebody has cleaned the folder, and another emulator has taken the place. */
+START_TEST(a_successor_keeps_its_lock_file_and_socket)
+{
+    struct control_socket before;
+    ck_assert(control_socket_open(&before, path));
+    ck_assert_int_eq(unlink(path), 0);
+    ck_assert_int_eq(unlink(lock_path), 0);
+    ck_assert(control_socket_open(&ours, path));
+    ck_assert_int_eq(listen(ours.fd, 1), 0);
+    control_socket_release(&before);
+    close(before.fd);
+    ck_assert(exists(lock_path));
+    ck_assert(can_connect());
+}
+END_TEST
+
 START_TEST(a_lock_file_of_somebody_else_is_left_alone)
 {
     FILE *file = fopen(lock_path, "w");
@@ -243,6 +259,7 @@ int main(void)
     tcase_add_loop_test(tests, what_is_not_ours_is_never_removed, 0, 4);
     tcase_add_loop_test(tests, what_took_the_place_of_a_stale_one_is_never_removed, 0, 4);
     tcase_add_loop_test(tests, what_took_the_place_of_ours_is_not_removed_at_the_end, 0, 4);
+    tcase_add_test(tests, a_successor_keeps_its_lock_file_and_socket);
     tcase_add_test(tests, a_lock_file_of_somebody_else_is_left_alone);
     tcase_add_test(tests, no_link_is_followed_to_the_lock);
     tcase_add_test(tests, a_path_may_be_longer_than_the_address_of_a_socket);

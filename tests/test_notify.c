@@ -198,7 +198,7 @@ START_TEST(a_parent_reads_the_line_and_then_the_end)
     ck_assert_int_eq(pipe(ends), 0);
     int fd = read_number(ends[1]);
     ck_assert_int_eq(fd, ends[1]);
-    ck_assert(notify_ready(fd, "READY {\"pty\":\"/dev/pts/5\"}", NULL));
+    ck_assert(notify_ready(fd, "READY {\"pty\":\"/dev/pts/5\"}\n", NULL));
     ck_assert_str_eq(drain(ends[0]), "READY {\"pty\":\"/dev/pts/5\"}\n");
 }
 END_TEST
@@ -207,7 +207,7 @@ START_TEST(a_socket_serves_as_well_as_a_pipe)
 {
     int ends[2];
     ck_assert_int_eq(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
-    ck_assert(notify_ready(read_number(ends[1]), "READY {}", NULL));
+    ck_assert(notify_ready(read_number(ends[1]), "READY {}\n", NULL));
     ck_assert_str_eq(drain(ends[0]), "READY {}\n");
 }
 END_TEST
@@ -218,7 +218,7 @@ START_TEST(a_manager_and_a_parent_are_both_told)
     ck_assert_int_eq(pipe(ends), 0);
     listen_at(path, strlen(path) + 1);
     setenv("NOTIFY_SOCKET", path, 1);
-    ck_assert(notify_ready(read_number(ends[1]), "READY {}", NULL));
+    ck_assert(notify_ready(read_number(ends[1]), "READY {}\n", NULL));
     ck_assert_str_eq(drain(ends[0]), "READY {}\n");
     ck_assert_str_eq(heard(), "READY=1");
 }
@@ -234,12 +234,35 @@ START_TEST(the_descriptor_is_not_passed_on)
 }
 END_TEST
 
-START_TEST(a_parent_that_is_gone_is_a_failure)
+START_TEST(a_parent_that_is_gone_is_no_failure)
 {
     int ends[2];
     ck_assert_int_eq(pipe(ends), 0);
     close(ends[0]);
-    ck_assert(!notify_ready(read_number(ends[1]), "READY {}", NULL));
+    ck_assert(notify_ready(read_number(ends[1]), "READY {}\n", NULL));
+}
+END_TEST
+
+START_TEST(a_parent_that_does_not_read_is_no_failure)
+{
+    int ends[2];
+    ck_assert_int_eq(pipe(ends), 0);
+    ck_assert_int_ge(fcntl(ends[1], F_SETPIPE_SZ, 4096), 4096);
+    char *text = malloc(100000);
+    ck_assert_ptr_nonnull(text);
+    memset(text, 'x', 99999);
+    text[99999] = '\0';
+    ck_assert(notify_ready(read_number(ends[1]), text, NULL));
+    free(text);
+    close(ends[0]);
+}
+END_TEST
+
+START_TEST(a_descriptor_that_takes_nothing_is_a_failure)
+{
+    int fd = open("/dev/full", O_WRONLY);
+    ck_assert_int_ge(fd, 0);
+    ck_assert(!notify_ready(read_number(fd), "READY {}\n", NULL));
 }
 END_TEST
 
@@ -283,7 +306,9 @@ int main(void)
     tcase_add_test(descriptor, a_socket_serves_as_well_as_a_pipe);
     tcase_add_test(descriptor, a_manager_and_a_parent_are_both_told);
     tcase_add_test(descriptor, the_descriptor_is_not_passed_on);
-    tcase_add_test(descriptor, a_parent_that_is_gone_is_a_failure);
+    tcase_add_test(descriptor, a_parent_that_is_gone_is_no_failure);
+    tcase_add_test(descriptor, a_parent_that_does_not_read_is_no_failure);
+    tcase_add_test(descriptor, a_descriptor_that_takes_nothing_is_a_failure);
     tcase_add_test(descriptor, a_number_that_is_no_open_descriptor_is_refused);
     suite_add_tcase(suite, descriptor);
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "bus.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,10 +9,8 @@
 #include <unistd.h>
 
 #include "log.h"
-#include "output_file.h"
 #include "snapshot.h"
 
-#define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
 #define INJECTED_TOLD 100u /* acts of faults on demand in the log */
 
 /* ---- The log -------------------------------------------------------------------------------------------------------- */
@@ -175,41 +172,18 @@ static void gather(void *context, const uint8_t *bytes, size_t length)
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
-/* Read a whole plant. Returns a string to be freed; NULL: reported. */
-static char *read_text(const char *path)
-{
-    FILE *file = fopen(path, "re");
-    char *text = file ? malloc(PLANT_MAX + 1u) : NULL;
-    size_t length = text ? fread(text, 1, PLANT_MAX + 1u, file) : 0;
-    const char *wrong = NULL;
-    if (!text || ferror(file))
-        wrong = strerror(errno);
-    else if (length > PLANT_MAX)
-        wrong = "it is longer than 1 MiB";
-    else if (memchr(text, '\0', length))
-        wrong = "expected text without the character 0";
-    if (file)
-        fclose(file);
-    if (text && !wrong) {
-        text[length] = '\0';
-        return text;
-    }
-    log_error("cannot read %s: %s", path, wrong);
-    free(text);
-    return NULL;
-}
-
 static bool configure_plant(struct bus *bus)
 {
-    const char *path = bus->options->plant;
-    char *text = path ? read_text(path) : NULL;
-    if (text && !output_file_spare(path)) {
-        log_error("out of memory");
-        free(text);
-        return false;
-    }
-    bool well = !path || (text && plant_configure(&bus->sim, path, text, strlen(text), stderr));
-    free(text);
+    const char *text = bus->options->plant_text;
+    char *said = NULL;
+    size_t length;
+    FILE *errors = text ? open_memstream(&said, &length) : NULL;
+    bool well = !text || (errors && plant_configure(&bus->sim, bus->options->plant, text, strlen(text), errors));
+    if (errors)
+        fclose(errors);
+    if (said)
+        log_text(said);
+    free(said);
     return well;
 }
 

@@ -96,6 +96,7 @@ void lock_file_leave(int *fd)
 
 void lock_file_drop(const char *path, int *fd)
 {
-    unlink(path);
+    if (is_there(*fd, path)) /* not if it has been cleaned away, and is a successor's now */
+        unlink(path);
     lock_file_leave(fd);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* rkm04: the virtual RKM04. This file chooses the sub-command. */
 #include <argp.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 #include <rkm04/limits.h>
 
 #include "nearest.h"
+#include "process.h"
 #include "subcommands.h"
 
 #define NAMES "serve, exec, test or replay"
@@ -50,18 +50,9 @@ static const struct {
     {"replay", "rkm04 replay", replay_main},
 };
 
-/* Whoever starts us with a standard stream closed shall not have a device or file of ours in its place. Writing to the
- * substitute fails, as it would have. */
-static void fill_standard_streams(void)
-{
-    for (int fd = 0; fd <= 2; fd++)
-        if (fcntl(fd, F_GETFD) < 0)
-            (void)!open("/dev/null", O_RDONLY);
-}
-
 int main(int argc, char **argv)
 {
-    fill_standard_streams();
+    process_begin();
     signal(SIGXFSZ, SIG_IGN); /* writing says so, too */
     argp_err_exit_status = STATUS_USAGE;
     if (argc < 2) {

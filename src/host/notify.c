@@ -11,6 +11,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "delivery.h"
 #include "log.h"
 
 #define FD_FIRST 3 /* those below are stdin, stdout (which has the line anyway) and stderr */
@@ -77,43 +78,24 @@ int notify_fd_read(const char *text)
     return (int)fd;
 }
 
-/* Write all of the text. Returns false with errno. */
-static bool write_all(int fd, const char *text, size_t length)
+static bool tell_fd(int fd, const char *text)
 {
-    while (length > 0) {
-        ssize_t written = write(fd, text, length);
-        if (written < 0 && errno != EINTR)
-            return false;
-        if (written > 0) {
-            text += written;
-            length -= (size_t)written;
-        }
-    }
-    return true;
-}
-
-static bool tell_fd(int fd, const char *line)
-{
-    bool done = write_all(fd, line, strlen(line)) && write_all(fd, "\n", 1);
-    int why = errno;
-    if (close(fd) != 0 && done) {
-        done = false;
-        why = errno;
-    }
-    if (!done)
-        log_error("--ready-fd: cannot write the READY line to %d: %s", fd, strerror(why));
-    return done;
+    struct delivery *delivery = delivery_begin(fd, text, true);
+    int error = delivery ? delivery_wait(delivery, NOTIFY_WAIT_MS) : ENOMEM;
+    if (error != 0)
+        log_error("--ready-fd: cannot write the READY line to %d: %s", fd, strerror(error));
+    return error == 0;
 }
 
 /* ---- Both ----------------------------------------------------------------------------------------------------------- */
 
-bool notify_ready(int fd, const char *line, const char *status)
+bool notify_ready(int fd, const char *text, const char *status)
 {
     char state[1024] = "READY=1";
     if (status)
         snprintf(state, sizeof state, "READY=1\nSTATUS=%.*s", (int)strcspn(status, "\n"), status);
     tell_manager(state);
-    return fd < 0 || tell_fd(fd, line);
+    return fd < 0 || tell_fd(fd, text);
 }
 
 void notify_stopping(void)

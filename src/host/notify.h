@@ -14,12 +14,14 @@
  * message there is NOTIFY_FD_EXPECTED. */
 int notify_fd_read(const char *text);
 
-/* Say that everything is ready: `line` and a line end to `fd`, which is closed then, so that who reads to the end has the line;
- * and READY=1 to the service manager if there is one, with `status` (one line for `systemctl status`; NULL: none).
- * fd: from notify_fd_read; -1: none. line: without line end.
- * Returns false if `fd` did not take the line (reported). That the service manager cannot be told is reported only: the variable
- * may be left over from a service further up. */
-bool notify_ready(int fd, const char *line, const char *status);
+#define NOTIFY_WAIT_MS 300u /* how long it is waited for a failure of who is told; a reader may take longer */
+
+/* Say that everything is ready: `text` to `fd` in one piece; then it is closed, so that who reads to the end has the text; and
+ * READY=1 to the service manager if there is one, with `status` (one line for `systemctl status`; NULL: none).
+ * fd: from notify_fd_read; -1: none. text: with line end.
+ * Returns false if `fd` cannot take the text (reported); a reader that has gone, or reads later, is no failure. That the service
+ * manager cannot be told is reported only: the variable may be left over from a service further up. */
+bool notify_ready(int fd, const char *text, const char *status);
 
 /* Tell the service manager, if there is one, that the emulator is about to end. */
 void notify_stopping(void);

@@ -15,6 +15,7 @@
 #include "client_request.h"
 #include "client_usage.h"
 #include "nearest.h"
+#include "process.h"
 
 #define TIMEOUT_MS 1000
 #define TIMEOUT_MS_MAX 3600000
@@ -250,6 +251,7 @@ int main(int argc, char **argv)
         .request = {.framing = &rkm04_hdlc, .node = 1, .motor = 1, .timeout_ms = TIMEOUT_MS, .message_max = CLIENT_MESSAGE_MAX},
         .job = {.line = -1},
     };
+    process_begin();
     options.words = calloc((size_t)argc + 1, sizeof *options.words);
     if (options.words == NULL)
         err(STATUS_FAILURE, "memory");

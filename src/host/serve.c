@@ -17,12 +17,15 @@
 #include "coverage.h"
 #include "log.h"
 #include "notify.h"
+#include "output_file.h"
 #include "serve_options.h"
 #include "serve_report.h"
 #include "subcommands.h"
 
+#define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
 #define FILES_A_LINE 8u  /* descriptors, beside those of flash images */
 #define FILES_SPARE 8u   /* descriptors that are still free when all is open: for clients, traces, an adapter plugged in again */
+#define LOG_WAIT_MS 200u /* how long it is waited for whoever reads the log, at the start and at the end */
 #define FILES_BESIDE 64u /* descriptors that have nothing to do with lines */
 
 static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
@@ -235,15 +238,56 @@ static bool start_control(struct serve *serve)
     return serve->control || !options->control;
 }
 
+/* Read a whole plant. Returns a string to be freed; NULL: reported. */
+static char *read_text(const char *path)
+{
+    FILE *file = fopen(path, "re");
+    char *text = file ? malloc(PLANT_MAX + 1u) : NULL;
+    size_t length = text ? fread(text, 1, PLANT_MAX + 1u, file) : 0;
+    const char *wrong = NULL;
+    if (!text || ferror(file))
+        wrong = strerror(errno);
+    else if (length > PLANT_MAX)
+        wrong = "it is longer than 1 MiB";
+    else if (memchr(text, '\0', length))
+        wrong = "expected text without the character 0";
+    if (file)
+        fclose(file);
+    if (text && !wrong) {
+        text[length] = '\0';
+        return text;
+    }
+    log_error("cannot read %s: %s", path, wrong);
+    free(text);
+    return NULL;
+}
+
+/* The plant, for all buses. Before signals are handled: it may come through a pipe, and take its time. */
+static bool read_plant(struct serve_options *options)
+{
+    if (options->plant)
+        options->plant_text = read_text(options->plant);
+    if (options->plant_text && !output_file_spare(options->plant)) {
+        log_error("out of memory");
+        return false;
+    }
+    return !options->plant || options->plant_text;
+}
+
 static bool start(struct serve *serve)
 {
     const struct serve_options *options = &serve->options;
     allow_files(options);
+    if (!start_signals(serve)) /* before anything is made that would have to be removed */
+        return false;
     coverage_begin(&serve->coverage);
     serve->idle.data = serve;
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
-        !start_signals(serve) || !start_control(serve) ||
-        !has_spare_files() || !serve_report_ready(options, serve->bus, control_path(serve->control)))
+        !start_control(serve) || !has_spare_files())
+        return false;
+    log_start_thread();
+    log_flush(LOG_WAIT_MS); /* before READY, if somebody reads both */
+    if (!serve_report_ready(options, serve->bus, control_path(serve->control)))
         return false;
     on_presence(serve);
     return true;
@@ -290,25 +334,34 @@ static void end(struct serve *serve)
     coverage_close(&serve->coverage_files);
 }
 
+static enum exit_status run(struct serve *serve)
+{
+    serve->status = STATUS_FAILURE;
+    if (!read_plant(&serve->options) || !check("make an event loop", uv_loop_init(&serve->loop)))
+        return STATUS_FAILURE;
+    if (start(serve)) {
+        serve->status = STATUS_WELL;
+        uv_run(&serve->loop, UV_RUN_DEFAULT);
+        notify_stopping();
+        for (unsigned i = 0; i < serve->options.lines; i++)
+            serve_report_end(serve->bus[i]);
+        if (wants_coverage(serve))
+            report_coverage(serve);
+    }
+    end(serve);
+    free(serve->options.plant_text);
+    return serve->status;
+}
+
 int serve_main(int argc, char **argv)
 {
     static struct serve serve; /* too large for the stack of some systems */
     serve.watch.fd = -1;
     serve_options_read(&serve.options, argc, argv);
     signal(SIGPIPE, SIG_IGN);
-    setvbuf(stderr, NULL, _IOLBF, 0);
-    if (!check("make an event loop", uv_loop_init(&serve.loop)))
-        return STATUS_FAILURE;
-    serve.status = STATUS_FAILURE;
-    if (start(&serve)) {
-        serve.status = STATUS_WELL;
-        uv_run(&serve.loop, UV_RUN_DEFAULT);
-        notify_stopping();
-        for (unsigned i = 0; i < serve.options.lines; i++)
-            serve_report_end(serve.bus[i]);
-        if (wants_coverage(&serve))
-            report_coverage(&serve);
-    }
-    end(&serve);
-    return serve.status;
+    log_begin();
+    enum exit_status status = run(&serve);
+    log_start_thread();
+    log_flush(LOG_WAIT_MS);
+    return status;
 }

@@ -39,6 +39,7 @@ struct serve_options {
     bool late_skips;            /* --late */
     uint64_t seed;              /* of faults on demand */
     const char *plant;          /* file; NULL: none */
+    char *plant_text;           /* what stands in it, from read_plant() */
     const char *trace[SERVE_FILES_MAX], *wire[SERVE_FILES_MAX]; /* patterns; NULL: no more */
     const char *record;         /* pattern; NULL: none */
     unsigned output_flags;      /* of output_file.h: --force */

@@ -7,7 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "delivery.h"
 #include "log.h"
 #include "notify.h"
 #include "readings.h"
@@ -128,17 +130,18 @@ bool serve_report_ready(const struct serve_options *options, struct bus *const *
     char *text = ready ? json_dumps(ready, JSON_COMPACT) : NULL, *line = NULL;
     char units[NODES_TEXT_SIZE], status[NODES_TEXT_SIZE + 32];
     json_decref(ready);
-    if (!text || asprintf(&line, "READY %s", text) < 0) {
+    if (!text || asprintf(&line, "READY %s\n", text) < 0) {
         log_error("out of memory");
         free(text);
         return false;
     }
     snprintf(status, sizeof status, "%s on %u line%s", units_text(&options->nodes, units), options->lines,
              options->lines > 1 ? "s" : "");
-    bool done = puts(line) >= 0 && fflush(stdout) == 0;
-    if (!done)
-        log_error("cannot print the READY line on stdout: %s", strerror(errno));
-    done = done && notify_ready(options->ready_fd, line, status);
+    struct delivery *delivery = delivery_begin(STDOUT_FILENO, line, false);
+    int error = delivery ? delivery_wait(delivery, NOTIFY_WAIT_MS) : ENOMEM;
+    if (error != 0)
+        log_error("cannot print the READY line on stdout: %s", strerror(error));
+    bool done = error == 0 && notify_ready(options->ready_fd, line, status);
     free(line);
     free(text);
     return done;

@@ -272,6 +272,11 @@ void log_at(uint64_t tick, const char *format, ...)
     va_end(list);
 }
 
+void log_text(const char *text)
+{
+    FUZZ_CHECK(strchr(text, '\n'), "a line without its end: %s", text);
+}
+
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
 void machine_begin(uint64_t look)

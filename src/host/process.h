@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* process.h: what a program must not inherit from whoever starts it. */
+#ifndef RKM04_HOST_PROCESS_H
+#define RKM04_HOST_PROCESS_H
+
+/* The first thing in main(): standard streams that are closed become /dev/null, so that no file or device of ours takes their
+ * numbers, and messages for people do not go there; SIGINT, SIGTERM and SIGHUP are let through, whatever the parent had blocked.
+ * Ends the program with status 1 if there is no /dev/null. */
+void process_begin(void);
+
+#endif
