@@ -10,6 +10,8 @@
 
 #include <rkm04/limits.h>
 
+#include "number.h"
+
 enum { HEAD = 2 /* message number and motor, or length */, TEXT_MAX = 16384 };
 
 /* ---- Parts of messages -------------------------------------------------------------------------------------------- */
@@ -66,7 +68,7 @@ static bool copy_text(const struct client_answer *answer, char text[TEXT_MAX])
 }
 
 /* One field of a position: length byte and a decimal number, right-aligned with blanks. Returns the bytes it takes; 0: none. */
-static size_t read_position(const uint8_t *bytes, size_t left, long *position)
+static size_t read_position(const uint8_t *bytes, size_t left, int64_t *position)
 {
     char text[16];
     size_t length = left > 0 ? bytes[0] : 0;
@@ -74,10 +76,7 @@ static size_t read_position(const uint8_t *bytes, size_t left, long *position)
         return 0;
     memcpy(text, bytes + 1, length);
     text[length] = '\0';
-    char *end;
-    errno = 0;
-    *position = strtol(text, &end, 10);
-    return end != text && *end == '\0' && errno == 0 ? 1 + length : 0;
+    return number_read_signed(text + strspn(text, " "), INT32_MIN, INT32_MAX, position) ? 1 + length : 0;
 }
 
 enum exit_status client_print_json(json_t *object)
@@ -133,7 +132,7 @@ enum exit_status client_show_store(const struct client_answer *answer)
 
 enum exit_status client_show_position(const struct client_answer *answer)
 {
-    long position[RKM04_MOTORS];
+    int64_t position[RKM04_MOTORS];
     bool all = answer->motor == '0';
     int count = all ? RKM04_MOTORS : 1;
     size_t at = HEAD;
@@ -153,7 +152,7 @@ enum exit_status client_show_position(const struct client_answer *answer)
         if (answer->json)
             json_array_append_new(motors, json_pack("{s:i,s:I}", "motor", first + i, "position", (json_int_t)position[i]));
         else
-            printf("motor %d: %ld\n", first + i, position[i]);
+            printf("motor %d: %" PRId64 "\n", first + i, position[i]);
     }
     return answer->json ? client_print_json(json_pack("{s:o}", "motors", motors)) : STATUS_WELL;
 }
@@ -177,12 +176,12 @@ static json_t *read_points(const char *text)
     unsigned long announced;
     int used = 0;
     json_t *points = json_array();
-    if (sscanf(text, " %lu;[%n", &announced, &used) != 1 || used == 0)
+    if (sscanf(text, " %19lu;[%n", &announced, &used) != 1 || used == 0)
         goto strange;
     for (text += used; *text == '('; text += *text == ',') {
         unsigned long step, speed;
         used = 0;
-        if (sscanf(text, "(%lu;%lu)%n", &step, &speed, &used) != 2 || used == 0)
+        if (sscanf(text, "(%19lu;%19lu)%n", &step, &speed, &used) != 2 || used == 0)
             goto strange;
         json_array_append_new(points, json_pack("{s:I,s:I}", "step", (json_int_t)step, "speed", (json_int_t)speed));
         text += used;
@@ -213,7 +212,7 @@ enum exit_status client_show_progress(const struct client_answer *answer)
     char text[TEXT_MAX];
     unsigned long steps, place;
     int used = 0;
-    if (!copy_text(answer, text) || sscanf(text, " %lu; %lu%n", &steps, &place, &used) != 2 || text[used] != '\0')
+    if (!copy_text(answer, text) || sscanf(text, " %19lu; %19lu%n", &steps, &place, &used) != 2 || text[used] != '\0')
         return strange(answer);
     if (answer->json)
         return client_print_json(json_pack("{s:i,s:I,s:I}", "motor", answer->motor - '0', "steps", (json_int_t)steps, "index",

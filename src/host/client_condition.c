@@ -10,6 +10,8 @@
 
 #include <rkm04/unit.h>
 
+#include "number.h"
+
 #define NAME_MAX_LENGTH 48
 #define VALUE_MAX_LENGTH 48
 #define NAME_CHARACTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
@@ -126,24 +128,20 @@ static bool take_term(struct reader *reader, struct term *term)
 
 /* ---- Values --------------------------------------------------------------------------------------------------------- */
 
-static bool read_number(const char *text, long long *number)
+static bool read_number(const char *text, int64_t *number)
 {
-    char *end;
-    errno = 0;
-    *number = strtoll(text, &end, 10);
-    return end != text && *end == '\0' && errno == 0;
+    return number_read_signed(text, INT64_MIN, INT64_MAX, number);
 }
 
 /* The number behind `word` in a name, low..high, at most two digits; -1: the name is another. */
 static int number_behind(const char *name, const char *word, int low, int high)
 {
-    size_t length = strlen(word), digits;
+    size_t length = strlen(word);
+    uint64_t number;
     if (strncmp(name, word, length) != 0)
         return -1;
     name += length;
-    digits = strspn(name, "0123456789");
-    int number = atoi(name);
-    return (digits == 1 || digits == 2) && name[digits] == '\0' && low <= number && number <= high ? number : -1;
+    return strlen(name) <= 2 && number_read(name, (uint64_t)low, (uint64_t)high, &number) ? (int)number : -1;
 }
 
 /* The value as it is, or {">=": value}. Takes the reference. */
@@ -154,7 +152,7 @@ static json_t *compared(const struct term *term, json_t *value)
 
 static json_t *read_integer(const struct reader *reader, const struct term *term)
 {
-    long long number;
+    int64_t number;
     if (term->compare[0] == '\0')
         return expected(reader, "a comparison behind %s, as in %s>=5000", term->name, term->name);
     if (!read_number(term->value, &number))
@@ -198,7 +196,7 @@ static json_t *word_term(const struct reader *reader, const struct term *term, c
 /* A time with its unit, or a number of us. */
 static json_t *read_time(const struct reader *reader, const struct term *term)
 {
-    long long number;
+    int64_t number;
     if (term->compare[0] == '\0')
         return expected(reader, "t>= and a time, as in t>=2.5s");
     return no_memory(reader, compared(term, read_number(term->value, &number) ? json_integer(number) : json_string(term->value)));
@@ -255,7 +253,7 @@ static json_t *bits_term(const struct reader *reader, const struct term *term, c
 /* A message that passes; `from` NULL: whoever sent it. */
 static json_t *message_term(const struct reader *reader, const struct term *term, const char *from)
 {
-    long long number;
+    int64_t number;
     json_t *message = json_object();
     if (term->compare[0] != '\0') {
         if (strcmp(term->compare, "=") != 0 || !read_number(term->value, &number) || number < 0 || number > 255) {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "client_watch.h"
+#include "number.h"
 
 #define WRONG_PARAMS (-32602) /* JSON-RPC 2.0 */
 
@@ -164,10 +165,9 @@ static enum exit_status power(struct client_job *job)
 
 static enum exit_status set_switch(struct client_job *job)
 {
-    char *end;
-    long node = strtol(job->words[0], &end, 10);
+    uint64_t node;
     bool and_reset = job->count == 2;
-    if (*end != '\0' || end == job->words[0] || node < 1 || node > 16)
+    if (!number_read(job->words[0], 1, 16, &node))
         return client_usage("switch: expected an address 1 to 16, found '%s'", job->words[0]);
     if (and_reset && strcmp(job->words[1], "reset") != 0)
         return client_usage("switch: expected reset behind the address, found '%s'", job->words[1]);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "client_job.h"
+#include "number.h"
 #include "program_text.h"
 
 /* ---- Plant ------------------------------------------------------------------------------------------------------------ */
@@ -134,9 +135,8 @@ static enum exit_status clear(struct client_job *job)
     if (job->count > 2)
         return client_usage("fault clear: expected one number, found '%s' behind it", job->words[2]);
     if (job->count == 2) {
-        char *end;
-        long id = strtol(job->words[1], &end, 10);
-        if (*end != '\0' || end == job->words[1] || id < 1)
+        uint64_t id;
+        if (!number_read(job->words[1], 1, INT32_MAX, &id))
             return client_usage("fault clear: expected the number of a fault, found '%s'", job->words[1]);
         params = json_pack("{s:I}", "id", (json_int_t)id);
     }

@@ -7,6 +7,7 @@
 
 #include "client_job.h"
 #include "client_panel.h"
+#include "number.h"
 
 #define TEXT_COLUMNS 100
 
@@ -140,11 +141,15 @@ static enum exit_status show_inputs(struct client_job *job)
 /* Read "3=1", "08=0", "di3=1". Returns false if it is wrong. */
 static bool read_input(const char *word, json_t *inputs)
 {
-    char name[3], *end;
+    char name[3], digits[3] = "";
+    uint64_t number;
     if (strncmp(word, "di", 2) == 0)
         word += 2;
-    long number = word[0] >= '0' && word[0] <= '9' ? strtol(word, &end, 10) : 0;
-    if (number < 1 || number > 8 || end[0] != '=' || (end[1] != '0' && end[1] != '1') || end[2] != '\0')
+    size_t length = strcspn(word, "=");
+    const char *end = word + length;
+    if (length < sizeof digits)
+        memcpy(digits, word, length);
+    if (!number_read(digits, 1, 8, &number) || end[0] != '=' || (end[1] != '0' && end[1] != '1') || end[2] != '\0')
         return false;
     snprintf(name, sizeof name, "%02d", (int)(number & 15));
     json_object_set_new(inputs, name, json_integer(end[1] - '0'));

@@ -10,16 +10,15 @@
 
 #include "client_condition.h"
 #include "client_job.h"
+#include "number.h"
 
 /* ---- Waiting ---------------------------------------------------------------------------------------------------------- */
 
 /* A time as the emulator takes it: a number of us, or a text with its unit. */
 static json_t *read_time(const char *text)
 {
-    char *end;
-    errno = 0;
-    long long number = strtoll(text, &end, 10);
-    return end != text && *end == '\0' && errno == 0 ? json_integer(number) : json_string(text);
+    uint64_t number;
+    return number_read(text, 0, INT64_MAX, &number) ? json_integer((json_int_t)number) : json_string(text);
 }
 
 /* All words as one text, blanks between them; to be freed. */
@@ -199,14 +198,13 @@ static json_t *read_choice(const struct client_job *job, uint64_t *count)
     json_t *params = json_object(), *kinds = json_array();
     for (size_t i = 0; i < job->count; i++) {
         const char *word = job->words[i], *equals = strchr(word, '=');
-        char *end = NULL;
-        unsigned long long number = equals != NULL ? strtoull(equals + 1, &end, 10) : 0;
-        bool whole = equals != NULL && equals[1] >= '0' && equals[1] <= '9' && *end == '\0';
+        uint64_t number = 0;
+        bool whole = equals != NULL && number_read(equals + 1, 1, INT64_MAX, &number);
         if (equals == NULL) {
             json_array_append_new(kinds, json_string(word));
-        } else if (whole && strncmp(word, "motor=", 6) == 0 && number >= 1 && number <= 4) {
+        } else if (whole && strncmp(word, "motor=", 6) == 0 && number <= 4) {
             json_object_set_new(params, "motor", json_integer((json_int_t)number));
-        } else if (whole && strncmp(word, "count=", 6) == 0 && number >= 1) {
+        } else if (whole && strncmp(word, "count=", 6) == 0) {
             *count = number;
         } else {
             client_usage("events: expected kinds, motor=1 to motor=4, or count=N, found '%s'", word);
@@ -292,9 +290,8 @@ enum exit_status client_control_trace(struct client_job *job)
     if (strcmp(job->words[0], "stop") != 0)
         return client_usage("trace: expected start FILE or stop [NUMBER], found '%s'", job->words[0]);
     if (job->count == 2) {
-        char *end;
-        long number = strtol(job->words[1], &end, 10);
-        if (*end != '\0' || end == job->words[1] || number < 1)
+        uint64_t number;
+        if (!number_read(job->words[1], 1, INT32_MAX, &number))
             return client_usage("trace stop: expected the number that start has printed, found '%s'", job->words[1]);
         params = json_pack("{s:I}", "trace", (json_int_t)number);
     }

@@ -18,6 +18,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "number.h"
+
 #define TCP "tcp:"
 #define LOCK_RETRY_MS 10
 
@@ -135,7 +137,8 @@ static const char *find_service(const char *port)
 {
     const char *host = port + strlen(TCP);
     const char *colon = strrchr(host, ':');
-    return colon != NULL && colon > host && colon[1] != '\0' ? colon : NULL;
+    uint64_t number;
+    return colon != NULL && colon > host && number_read(colon + 1, 1, UINT16_MAX, &number) ? colon : NULL;
 }
 
 static int open_tcp(const char *port, unsigned timeout_ms)
@@ -147,10 +150,6 @@ static int open_tcp(const char *port, unsigned timeout_ms)
     char *host = strndup(name + bracketed, (size_t)(colon - name) - 2u * bracketed);
     int unknown = host != NULL ? getaddrinfo(host, colon + 1, &hints, &list) : EAI_MEMORY;
     free(host);
-    if (unknown == EAI_SERVICE) {
-        warnx("cannot find %s: `%s' is not a TCP port: expected a number from 1 to 65535", port, colon + 1);
-        return -1;
-    }
     if (unknown != 0) {
         warnx("cannot find %s: %s", port, unknown == EAI_SYSTEM ? strerror(errno) : gai_strerror(unknown));
         return -1;

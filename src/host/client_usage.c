@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "number.h"
+
 enum exit_status client_usage(const char *format, ...)
 {
     va_list arguments;
@@ -21,10 +23,8 @@ enum exit_status client_usage(const char *format, ...)
 
 bool client_usage_number(const char *what, const char *text, unsigned low, unsigned high, unsigned *number)
 {
-    char *end;
-    errno = 0;
-    unsigned long read = strtoul(text, &end, 10);
-    if (text[strspn(text, "0123456789")] == '\0' && end != text && errno == 0 && low <= read && read <= high) {
+    uint64_t read;
+    if (number_read(text, low, high, &read)) {
         *number = (unsigned)read;
         return true;
     }

@@ -13,9 +13,9 @@ struct delivery;
 /* Begin to write `text` in one piece. close_it: close the descriptor behind it. Returns NULL if there is no memory or thread. */
 struct delivery *delivery_begin(int fd, const char *text, bool close_it);
 
-/* Wait for the end, but at most `milliseconds`; *delivery is not to be used any more. Returns 0 if all is written, or nobody wants it
- * (the reader has gone, the stream was closed from the beginning), or it is still on its way; else the errno of the failure. What is
- * still on its way when the process ends is lost. */
+/* Wait for the end, but at most `milliseconds`; *delivery is not to be used any more. Returns 0 if all is written, or nobody
+ * wants it (the reader has gone, the stream was closed from the beginning), or it is still on its way; else the errno of the
+ * failure. What is still on its way when the process ends is lost. */
 int delivery_wait(struct delivery *delivery, unsigned milliseconds);
 
 /* Write all of the text, in one piece if the system takes it so; waits as long as that takes, even if somebody has set

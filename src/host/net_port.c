@@ -20,6 +20,7 @@
 #include <sys/socket.h>
 
 #include "log.h"
+#include "number.h"
 
 #define DEFAULT_HOST "127.0.0.1"
 #define HOST_SIZE 256
@@ -55,14 +56,8 @@ struct address {
 
 static bool read_port(const char *text)
 {
-    unsigned value = 0;
-    size_t length = strlen(text);
-    for (size_t i = 0; i < length; i++) {
-        if (text[i] < '0' || text[i] > '9' || i >= 5)
-            return false;
-        value = value * 10 + (unsigned)(text[i] - '0');
-    }
-    return length > 0 && value <= UINT16_MAX;
+    uint64_t number;
+    return number_read(text, 0, UINT16_MAX, &number);
 }
 
 static bool read_address(struct address *address, const char *text)

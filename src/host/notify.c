@@ -13,6 +13,7 @@
 
 #include "delivery.h"
 #include "log.h"
+#include "number.h"
 
 #define FD_FIRST 3 /* those below are stdin, stdout (which has the line anyway) and stderr */
 #define FD_LAST 1048575
@@ -64,12 +65,8 @@ static void tell_manager(const char *state)
 
 int notify_fd_read(const char *text)
 {
-    char *end;
-    if (*text < '0' || *text > '9')
-        return -1;
-    errno = 0;
-    long fd = strtol(text, &end, 10);
-    if (*end || errno || fd < FD_FIRST || fd > FD_LAST)
+    uint64_t fd;
+    if (!number_read(text, FD_FIRST, FD_LAST, &fd))
         return -1;
     int flags = fcntl((int)fd, F_GETFL), more = fcntl((int)fd, F_GETFD);
     if (flags < 0 || more < 0 || (flags & O_ACCMODE) == O_RDONLY || (flags & O_PATH))

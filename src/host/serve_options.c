@@ -10,6 +10,7 @@
 
 #include "net_port.h"
 #include "notify.h"
+#include "number.h"
 #include "output_file.h"
 #include "readings_option.h"
 #include "segment.h"
@@ -144,17 +145,8 @@ static const char doc[] =
 /* A whole number up to `high`, digits only. Returns -1 if it is none. */
 static long read_number(const char *text, long high)
 {
-    long value = 0;
-    if (!*text)
-        return -1;
-    for (; *text; text++) {
-        if (*text < '0' || *text > '9')
-            return -1;
-        value = value * 10 + (*text - '0');
-        if (value > high)
-            return -1;
-    }
-    return value;
+    uint64_t value;
+    return number_read(text, 0, (uint64_t)high, &value) ? (long)value : -1;
 }
 
 static void set_framing(struct serve_options *options, const char *text, struct argp_state *state)

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <yaml.h>
 
+#include "number.h"
 #include "time_value.h"
 
 #define DEPTH_MAX 32u /* lists and maps within one another; what we read needs less than ten */
@@ -370,13 +371,7 @@ size_t config_column(const struct config_node *node)
 /* Read a whole number, nothing else. Returns false if the text is none, or too large. */
 static bool whole_number(const char *text, int64_t *value)
 {
-    const char *digits = text + (*text == '-' || *text == '+');
-    if (*digits == '\0' || digits[strspn(digits, "0123456789")] != '\0')
-        return false;
-    errno = 0;
-    long long number = strtoll(text, NULL, 10);
-    *value = number;
-    return errno == 0;
+    return number_read_signed(text, INT64_MIN, INT64_MAX, value);
 }
 
 /* What stands there, on one line and not too long. */

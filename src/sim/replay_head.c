@@ -4,6 +4,7 @@
 
 #include "readings.h"
 #include "record_line.h"
+#include "number.h"
 #include "replay_inside.h"
 
 #define TEXT_MAX 255u               /* bytes of a version text */
@@ -96,12 +97,7 @@ static bool read_framing(struct replay *replay, const struct rkm04_framing **fra
 static bool read_seed(struct replay *replay, uint64_t *seed)
 {
     const char *text = replay_string(replay, "seed");
-    char *end = NULL;
-    if (!text)
-        return false;
-    if (*text >= '0' && *text <= '9' && strlen(text) <= 20)
-        *seed = strtoull(text, &end, 10);
-    return (end && *end == '\0') || replay_wrong(replay, "seed", "expected \"seed\", a string with a number from 0 to 2^64 - 1");
+    return text && (number_read(text, 0, UINT64_MAX, seed) || replay_wrong(replay, "seed", "expected \"seed\", a string with a number from 0 to 2^64 - 1"));
 }
 
 /* Recordings without them were made under the defaults, but for speed_change_latency, the older name of speed-change. */

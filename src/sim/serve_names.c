@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "serve_names.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "number.h"
 
 #define PORT_MAX 65535ul
 
@@ -93,9 +96,9 @@ bool name_address(const char *address, unsigned line, char *out, size_t size)
 {
     const char *colon = strrchr(address, ':');
     const char *port = colon ? colon + 1 : address;
-    unsigned long number = strtoul(port, NULL, 10);
-    if (number != 0 && (number += line) > PORT_MAX)
+    uint64_t number;
+    if (!number_read(port, 0, PORT_MAX, &number) || (number != 0 && (number += line) > PORT_MAX))
         return false;
-    int length = snprintf(out, size, "%.*s%lu", (int)(port - address), address, number);
+    int length = snprintf(out, size, "%.*s%" PRIu64, (int)(port - address), address, number);
     return length >= 0 && (size_t)length < size;
 }
