@@ -232,6 +232,34 @@ START_TEST(the_check_value_of_a_long_answer_may_be_wrong_and_of_the_next_one_rig
 }
 END_TEST
 
+/* Two units of one address, one of them late: each takes the other's answer for a request. */
+START_TEST(units_that_answer_one_another_for_ever_are_cut_off)
+{
+    rig_begin_with(false, 2, 1, &rkm04_plain);
+    json_decref(obeyed("switch", "{'unit': '2', 'node': 1, 'reset': true}"));
+    inject("{'kind': 'delay', 'unit': '2', 'delay': 10, 'count': 1}");
+    ask(1, VERSION, 1);
+    for (unsigned i = 0; i < 10000; i++) {
+        run(100);
+        if (rig.master.count > RIG_BYTES / 2)
+            forget();
+    }
+    struct segment_counters line = segment_counters(&rig.sim.segment);
+    ck_assert_uint_eq(line.cuts, 1);
+    ck_assert_uint_ge(line.cut_ticks, SEGMENT_UNASKED_MAX / 2);
+    ck_assert_uint_lt(line.cut_ticks, 10 * SEGMENT_UNASKED_MAX);
+    ck_assert(segment_idle(&rig.sim.segment));
+    ck_assert_uint_gt(counters(1).answers + counters(2).answers, SEGMENT_UNASKED_MAX);
+    ck_assert_uint_le(counters(1).answers + counters(2).answers, SEGMENT_UNASKED_MAX + 16);
+    json_decref(obeyed("fault.clear", "{}"));
+    forget();
+    ask(1, VERSION, 1);
+    settle();
+    ck_assert_uint_gt(rig.master.count, 0);
+    rig_end();
+}
+END_TEST
+
 START_TEST(L2_plain_frames_have_no_check_value_to_be_wrong)
 {
     rig_begin_with(true, 1, 1, &rkm04_plain);
@@ -258,6 +286,7 @@ int main(void)
     tcase_add_test(part, a_fault_that_comes_or_goes_during_an_answer_does_nothing_to_it);
     tcase_add_loop_test(wrong, L1_a_wrong_check_value_is_all_that_is_wrong_with_the_answer, 0, 2);
     tcase_add_loop_test(wrong, the_check_value_of_a_long_answer_may_be_wrong_and_of_the_next_one_right, 0, 2);
+    tcase_add_test(late, units_that_answer_one_another_for_ever_are_cut_off);
     tcase_add_test(wrong, L2_plain_frames_have_no_check_value_to_be_wrong);
     tcase_set_timeout(wrong, 60);
     suite_add_tcase(suite, late);

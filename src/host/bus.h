@@ -62,6 +62,7 @@ struct bus {
     uint64_t wake;        /* ns for which the timer is set; 0: it is not */
     struct bus_waiter *waiters;
     struct bus_waiter *advancing; /* of them, the one for whom the clock is moved; NULL: none */
+    uint64_t cuts;        /* segment_counters.cuts that are told */
     bool running;         /* time has begun */
     bool busy;            /* within bus_catch_up() */
     uint64_t behind;      /* ns since when bus_catch_up() has not got as far as the clock; 0: it has */

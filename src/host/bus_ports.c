@@ -11,6 +11,7 @@
 
 #define NS_PER_SECOND 1000000000u
 #define NS_PER_BYTE 520834u       /* 10 bits at 19200 baud */
+#define READ_STINT 2000000u       /* ns: longest time a turn of the loop for reading one bus */
 #define NS_PER_LOOK 200000u       /* between two looks whether a device has sent all */
 #define REFUSED_TOLD 100u         /* network clients that were sent away, in the log */
 #define AGAIN_MS 1000u            /* between two tries to have a new pty */
@@ -202,13 +203,15 @@ static void on_news(void *context, enum line_news news)
     bus->calls->presence(bus->context);
 }
 
-/* Read all there is room for. Returns false if the line is gone. */
+/* Read what there is room for, or as much as does not take long: bytes of a strange speed may come to nothing, so that there is
+ * always room. Returns false if the line is gone. */
 static bool read_line(struct bus *bus)
 {
-    uint8_t bytes[1024];
+    uint8_t bytes[256];
     size_t most;
     struct line *line = &bus->ports.line;
-    while ((most = room(bus)) > 0) {
+    uint64_t start = uv_hrtime();
+    while ((most = room(bus)) > 0 && uv_hrtime() - start < READ_STINT) {
         ssize_t length = line_read(line, bytes, most < sizeof bytes ? most : sizeof bytes);
         if (length < 0)
             return false;

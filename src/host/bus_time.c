@@ -18,6 +18,7 @@
 #define STINT (5u * NS_PER_MS)   /* longest time without a look at the line and at signals */
 #define STEP 100000u             /* ticks that the units are advanced at once while they are at work */
 #define LEAP 10000u              /* ticks: shortest leap of --clock max; less would cost more than it shows */
+#define CUTS_TOLD 100u           /* units that were cut off from answering one another, in the log */
 #define FRAME_SILENCE (100u * NS_PER_MS) /* --clock max: how long the rest of a frame is waited for (L2) */
 
 bool bus_stepped(const struct bus *bus)
@@ -148,6 +149,17 @@ static uint64_t goal(struct bus *bus, uint64_t now)
     return leap;
 }
 
+/* Units of one address may take each other's answers for requests: plain framing, a fault that makes one of them late. */
+static void report_cuts(struct bus *bus)
+{
+    struct segment_counters counters = segment_counters(&bus->sim.segment);
+    if (counters.cuts > bus->cuts && bus->cuts < CUTS_TOLD)
+        bus_log(bus, "units have answered one another more than %u times without a request, for %" PRIu64 ".%06" PRIu64
+                     " s in all: cut off; have two units the same address?", SEGMENT_UNASKED_MAX,
+                counters.cut_ticks / RKM04_TICKS_PER_SECOND, counters.cut_ticks % RKM04_TICKS_PER_SECOND);
+    bus->cuts = counters.cuts;
+}
+
 /* One step towards `tick`: a span in which nothing happens, or STEP, and no further than somebody waits for. Anything may be
  * reached in one call of the sim, but then nobody would look at the line and at signals for a long while. */
 static void step(struct bus *bus, uint64_t tick)
@@ -161,6 +173,7 @@ static void step(struct bus *bus, uint64_t tick)
     if (wanted < end)
         end = wanted;
     sim_advance(&bus->sim, tick < end ? tick : end);
+    report_cuts(bus);
     serve_waiters(bus);
 }
 

@@ -108,7 +108,8 @@ static enum exit_status check(struct asking *a)
     if (request->port == NULL)
         return client_usage("no port: expected -p PORT, a serial device, a pseudo terminal or tcp:HOST:PORT");
     if (!client_port_valid(request->port))
-        return client_usage("--port: expected tcp:HOST:PORT with a PORT from 1 to 65535, like tcp:localhost:4001, found '%s'", request->port);
+        return client_usage("--port: expected tcp:HOST:PORT, PORT 1 to 65535, like tcp:localhost:4001, found '%s'",
+                            request->port);
     if (a->command->motors == ONE_MOTOR && request->motor == 0)
         return client_usage("%s can be asked of one motor only: -m 1 to 4", a->command->name);
     return STATUS_WELL;

@@ -97,7 +97,8 @@ static bool read_framing(struct replay *replay, const struct rkm04_framing **fra
 static bool read_seed(struct replay *replay, uint64_t *seed)
 {
     const char *text = replay_string(replay, "seed");
-    return text && (number_read(text, 0, UINT64_MAX, seed) || replay_wrong(replay, "seed", "expected \"seed\", a string with a number from 0 to 2^64 - 1"));
+    return text && (number_read(text, 0, UINT64_MAX, seed) ||
+                    replay_wrong(replay, "seed", "expected \"seed\", a string with a number from 0 to 2^64 - 1"));
 }
 
 /* Recordings without them were made under the defaults, but for speed_change_latency, the older name of speed-change. */

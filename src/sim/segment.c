@@ -283,12 +283,32 @@ static void pass_changed(struct segment *segment, unsigned station, uint32_t ear
         pass(segment, station, ears, changed.byte[i]);
 }
 
+/* Units that take each other's answers for requests go on for ever, and without time there is no end to how many they are in a
+ * second: drop what they have to say. */
+static void cut_answers(struct segment *segment)
+{
+    uint8_t byte;
+    for (unsigned i = 0; i < segment->units; i++) {
+        struct segment_unit *unit = &segment->unit[i];
+        unit->next = RKM04_NEVER;
+        while (answers(unit)) {
+            (void)fetch(unit, &byte);
+            obeyed(segment, unit);
+        }
+    }
+    segment->cuts++;
+    segment->cut_ticks += segment->now - segment->asked;
+    segment->unasked = 0;
+    segment->asked = segment->now;
+}
+
 /* Let a unit send its answer, and what it has to answer then (P10). */
 static void pass_answer(struct segment *segment, unsigned station, uint32_t ears)
 {
     struct segment_unit *unit = &segment->unit[station - 1u];
     uint8_t byte;
     while (answers(unit)) {
+        segment->unasked += !unit->begun;
         uint64_t later = delay(segment, unit);
         if (later > 0) {
             unit->next = parts_of(segment->now + later);
@@ -332,8 +352,13 @@ static void advance_untimed(struct segment *segment, uint64_t tick)
 {
     for (uint64_t due; (due = untimed_due(segment)) <= tick && due != RKM04_NEVER;) {
         bring(segment, due);
-        if (segment->again > segment->now)
+        if (segment->again > segment->now) {
+            segment->unasked = 0;
+            segment->asked = segment->now;
             pass_changed(segment, WIRE_MASTER, UINT32_MAX, take_first(segment));
+        }
+        if (segment->unasked > SEGMENT_UNASKED_MAX)
+            cut_answers(segment);
         pass_answers(segment);
     }
 }
@@ -347,6 +372,8 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
     segment->advancing = false;
     segment->units = 0;
     segment->quiet_bytes = segment->overruns = 0;
+    segment->unasked = 0;
+    segment->asked = segment->cuts = segment->cut_ticks = 0;
     segment->again = RKM04_NEVER;
     segment->master_free = 0;
     segment->head = segment->count = 0;
@@ -479,6 +506,7 @@ void segment_shift(struct segment *segment, uint64_t ticks)
 {
     uint64_t parts = ticks * WIRE_TICK;
     segment->now += ticks;
+    segment->asked += ticks;
     postpone(&segment->again, ticks);
     segment->master_free += parts;
     segment->more_start += parts;
@@ -532,5 +560,7 @@ struct segment_counters segment_counters(const struct segment *segment)
         .collisions = segment->wire.collisions,
         .framing_errors = segment->wire.ear[WIRE_MONITOR].framing_errors,
         .overruns = segment->overruns,
+        .cuts = segment->cuts,
+        .cut_ticks = segment->cut_ticks,
     };
 }

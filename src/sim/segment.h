@@ -38,6 +38,7 @@
 #define SEGMENT_UNITS RKM04_NODE_MAX    /* on one line (U4) */
 #define SEGMENT_ROOM 4096u              /* bytes of the master that may be under way */
 #define SEGMENT_TURNAROUND 521u         /* ticks, the default: one character */
+#define SEGMENT_UNASKED_MAX 1000u       /* without time: more answers than this without a byte of the master are cut off */
 #define SEGMENT_TURNAROUND_MAX 1000000u /* ticks */
 
 /* A byte on the line, for a monitor that hears everything. */
@@ -108,6 +109,8 @@ struct segment_counters {
     uint64_t collisions;     /* of these, bytes during which another station was sending, too */
     uint64_t framing_errors; /* bytes lost to everybody: the stop bit was 0 */
     uint64_t overruns;       /* bytes lost to a unit that had a request waiting (P10) */
+    uint64_t cuts;           /* how often units that answered one another without a request were cut off */
+    uint64_t cut_ticks;      /* how long they had done so, together */
 };
 
 struct segment {
@@ -121,6 +124,9 @@ struct segment {
     struct wire wire;
     uint64_t quiet_bytes;    /* sent, without time */
     uint64_t overruns;
+    unsigned unasked;        /* answers without time since the master's last byte */
+    uint64_t asked;          /* tick of that byte, or of the last cut */
+    uint64_t cuts, cut_ticks; /* as in struct segment_counters */
     uint64_t again;          /* without time: tick at which units answer without being asked again; RKM04_NEVER: they do not */
     bool disturbed, held;    /* segment_disturb(), segment_break() */
     uint64_t more_start;     /* parts: start bit of the next of the master's more[0] */

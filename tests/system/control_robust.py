@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 
 from control_client import Client, soon
@@ -103,6 +104,26 @@ def test_the_longest_line_is_taken_and_one_byte_more_is_not(emulator):
     client.send(longest + b" \n")
     assert client.line()["error"]["code"] == -32600
     assert client.call("units")["units"] == ["1"]
+
+
+def test_a_flood_of_bytes_on_a_strict_line_does_not_hold_up_others(emulator):
+    """At 50 baud a byte is much work; fast ones come to nothing, so that there is always room for more."""
+    good = emulator.client()
+    flood = subprocess.Popen([sys.executable, "-c", """if True:
+        import os, sys, termios
+        line = os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY)
+        settings = termios.tcgetattr(line)
+        while True:
+            for speed in (termios.B50, termios.B4000000):
+                settings[4] = settings[5] = speed
+                termios.tcsetattr(line, termios.TCSANOW, settings)
+                os.write(line, b"\\xff" * 4095)""", emulator.link])
+    try:
+        for _ in range(20):
+            brisk(good, 1)
+    finally:
+        flood.kill()
+        flood.wait()
 
 
 def test_a_flood_of_requests_does_not_hold_up_others(emulator):
@@ -412,6 +433,7 @@ def test_units_have_names_and_lines_have_numbers(emulator):
 
 
 OPTIONS = {
+    "test_a_flood_of_bytes_on_a_strict_line_does_not_hold_up_others": ["--strict-line"],
     "test_the_unit_answers_its_master_meanwhile": [],
     "test_units_have_names_and_lines_have_numbers": ["--clock", "stepped", "--lines", "2", "--node", "3,5,3"],
 }

@@ -16,10 +16,11 @@ refused() {
 test_numbers_of_the_emulator() {
     local number option
     for number in "${strange[@]}"; do
-        for option in --node --lines --speed-change-latency --turnaround --tcp --rfc2217 --tcp=127.0.0.1: --rfc2217=[::1]: --baud \
-            --exit-when-idle --min-coverage --ready-fd --seed --clock=x; do
-            [[ $option$number == --turnaround65537 || $option$number == --seed65537 || $option$number == --clock=x1.0 ||
-                $option$number == --exit-when-idle65537 || $option$number == --min-coverage1.0 ]] && continue # these it does take
+        for option in --node --lines --speed-change-latency --turnaround --tcp --rfc2217 --tcp=127.0.0.1: --rfc2217=[::1]: \
+            --baud --exit-when-idle --min-coverage --ready-fd --seed --clock=x; do
+            case $option$number in # these it does take
+                --turnaround65537 | --seed65537 | --exit-when-idle65537 | --clock=x1.0 | --min-coverage1.0) continue ;;
+            esac
             [[ $option == *[:x] ]] || option+==
             refused "$RKM04" serve --link "$folder/bus%l" "$option$number"
         done
