@@ -235,9 +235,15 @@ static enum exit_status snapshot(struct client_job *job)
     return come_back(job, "snapshot");
 }
 
+/* A file takes as long as the emulator lets it. */
 static enum exit_status restore(struct client_job *job)
 {
-    return come_back(job, "restore");
+    const char *word = job->words[0];
+    if (strncmp(word, "file=", 5) != 0)
+        return come_back(job, "restore");
+    json_t *result, *params = client_job_file(word + 5);
+    enum exit_status status = params != NULL ? client_job_call_long(job, "restore", params, &result) : STATUS_FAILURE;
+    return status == STATUS_WELL ? client_job_done(job, result) : status;
 }
 
 /* Any method, parameters as JSON or NAME=VALUE. */

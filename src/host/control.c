@@ -102,6 +102,7 @@ void control_forget(struct peer *peer)
     struct control *control = peer->control;
     control_time_forget(peer);
     control_subscribe_forget(peer);
+    control_restore_forget(peer);
     if (control->ender == peer && control->open)
         end_now(control);
     for (struct peer **at = &control->peers; *at; at = &(*at)->next) {
@@ -158,9 +159,10 @@ static void make_handles(struct control *control)
 {
     uv_prepare_init(control->loop, &control->turn);
     uv_idle_init(control->loop, &control->work);
+    uv_idle_init(control->loop, &control->restoring);
     uv_timer_init(control->loop, &control->look);
     uv_timer_init(control->loop, &control->ending);
-    control->turn.data = control->work.data = control->look.data = control->ending.data = control;
+    control->turn.data = control->work.data = control->restoring.data = control->look.data = control->ending.data = control;
     control->open = true;
     uv_prepare_start(&control->turn, on_turn);
     uv_unref((uv_handle_t *)&control->turn);
@@ -220,6 +222,7 @@ void control_close(struct control *control)
     uv_close((uv_handle_t *)&control->listener, NULL);
     uv_close((uv_handle_t *)&control->turn, NULL);
     uv_close((uv_handle_t *)&control->work, NULL);
+    uv_close((uv_handle_t *)&control->restoring, NULL);
     uv_close((uv_handle_t *)&control->look, NULL);
     uv_close((uv_handle_t *)&control->ending, NULL);
 }

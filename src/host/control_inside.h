@@ -26,6 +26,15 @@ struct control_trace {
     struct wire_file *wire;
 };
 
+/* A `restore` of a file that goes on between the turns of the loop. */
+struct control_restore {
+    struct peer *peer; /* NULL: there is none */
+    struct bus *bus;
+    json_t *id;
+    struct restore *restore;
+    uint64_t deadline, slice_end; /* ns */
+};
+
 struct control {
     uv_loop_t *loop;
     struct bus *const *buses;
@@ -36,6 +45,8 @@ struct control {
     uv_pipe_t listener;
     uv_prepare_t turn;  /* once a turn of the loop: what has been gathered for clients goes out */
     uv_idle_t work;     /* runs while there are lines to be obeyed */
+    uv_idle_t restoring; /* runs while there is a `restore` */
+    struct control_restore restore;
     uv_timer_t look;    /* runs while somebody has ended its sending: has it gone? */
     uv_timer_t ending;  /* shutdown: the longest time for the answer to be read */
     bool open, working;
@@ -88,6 +99,7 @@ typedef json_t *control_method(struct control_context *context, struct refusal *
 control_method control_wait, control_advance;             /* control_time.c */
 control_method control_subscribe, control_unsubscribe;    /* control_subscribe.c */
 control_method control_trace_start, control_trace_stop;   /* control_trace.c */
+control_method control_restore;                           /* control_restore.c: with `file` */
 
 /* Is a client moving this clock, perhaps between two slices? */
 bool control_time_is_moved(const struct control *control, const struct bus *bus);
@@ -98,6 +110,7 @@ void control_time_go_on(struct peer *peer);
 /* A client goes. */
 void control_time_forget(struct peer *peer);
 void control_subscribe_forget(struct peer *peer);
+void control_restore_forget(struct peer *peer);
 
 /* The socket is closed: end all files. */
 void control_trace_end(struct control *control);

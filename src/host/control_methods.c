@@ -144,6 +144,8 @@ enum control_done control_obey(struct peer *peer, const char *line, size_t lengt
     bool well = rpc_read(&request, line, length, control->lines, &refusal);
     if (well) {
         control_method *method = find(request.method);
+        if (strcmp(request.method, "restore") == 0 && json_object_get(request.params, "file"))
+            method = control_restore;
         context.bus = control->buses[request.line];
         result = method ? method(&context, &refusal) : command(&context, &refusal);
     }

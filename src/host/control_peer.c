@@ -146,7 +146,8 @@ static void write_out(struct peer *peer)
 /* Is it to be let go: has it ended its sending, and got all that it may wait for? */
 static bool is_done(const struct peer *peer)
 {
-    return peer->leaving && held(&peer->in) == 0 && peer_queue(peer) == 0 && !peer->calls && !peer->subscriptions;
+    return peer->leaving && held(&peer->in) == 0 && peer_queue(peer) == 0 && !peer->calls && !peer->restores &&
+           !peer->subscriptions;
 }
 
 void peer_pump(struct peer *peer)
@@ -290,7 +291,8 @@ static bool serve_line(struct peer *peer)
 bool peer_serve(struct peer *peer, uint64_t budget)
 {
     uint64_t begin = uv_hrtime();
-    while (!peer->closing && !peer->failed && !peer->advance && !peer->blocked && peer_queue(peer) <= PEER_QUEUE_MAX) {
+    while (!peer->closing && !peer->failed && !peer->advance && !peer->restores && !peer->blocked &&
+           peer_queue(peer) <= PEER_QUEUE_MAX) {
         if (!serve_line(peer)) {
             set_reading(peer);
             return false;

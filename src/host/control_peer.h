@@ -49,6 +49,7 @@ struct peer {
     struct control_call *calls; /* that it waits for (control_time.c) */
     unsigned waits;             /* of these, without `advance` */
     struct control_call *advance; /* NULL: none is running */
+    bool restores;              /* a `restore` of it goes on (control_restore.c) */
     struct subscription *subscriptions;
     unsigned subscribed;        /* number of the last subscription */
 };

@@ -58,9 +58,13 @@ struct sim *replay_sim(struct replay *replay);
 /* Last tick to be done; RKM04_NEVER, without this: to the end of the record. */
 void replay_until(struct replay *replay, uint64_t tick);
 
-/* Do it all. Traces may have joined the sim before. `interrupted`: NULL, or looked at after each tenth of a second or less of
- * virtual time in which something happens: true ends it. No file is read or written on behalf of a record. */
+/* Do it all. Traces may have joined the sim before. `interrupted`: NULL, or looked at before each line, and after each tenth of a
+ * second or less of virtual time in which something happens: true makes the replay pause (REPLAY_INTERRUPTED); it goes on with
+ * the next call. No file is read or written on behalf of a record. */
 enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *context), void *context);
+
+/* Look at all lines without obeying them, as far as they can be judged so. Likewise; a replay that was checked cannot be run. */
+enum replay_end replay_check(struct replay *replay, bool (*interrupted)(void *context), void *context);
 
 /* Why: "unit 1, motor 2: …". Never NULL. */
 const char *replay_text(const struct replay *replay);

@@ -23,17 +23,23 @@ static uint64_t step_end(struct replay *replay, uint64_t tick)
     return end < tick ? end : tick;
 }
 
+/* Is the replay to pause? */
+static bool is_interrupted(struct replay *replay)
+{
+    if (!replay->paused && replay->interrupted && replay->interrupted(replay->context)) {
+        snprintf(replay->text, sizeof replay->text, "interrupted at tick %" PRIu64, sim_now(replay->sim));
+        replay->paused = true;
+    }
+    return replay->paused;
+}
+
 /* Let time run to `tick`; only `bytes` bytes may come that have not been compared. */
 static bool go(struct replay *replay, uint64_t tick, size_t bytes)
 {
     struct sim *sim = replay->sim;
     while (sim_now(sim) < tick) {
-        if (replay->interrupted && replay->interrupted(replay->context)) {
-            snprintf(replay->text, sizeof replay->text, "interrupted at tick %" PRIu64, sim_now(sim));
-            replay->ended = true;
-            replay->end = REPLAY_INTERRUPTED;
+        if (is_interrupted(replay))
             return false;
-        }
         sim_advance(sim, step_end(replay, tick));
         if (!replay->outputs)
             continue;
@@ -147,15 +153,25 @@ static bool refused(struct replay *replay, const char *method, const struct refu
     return replay_differs(replay, &difference);
 }
 
+/* Become like the end of the embedded record. NULL: refused, or paused. */
+static json_t *restore_embedded(struct replay *replay, struct refusal *refusal)
+{
+    if (!replay->inner)
+        replay->inner = restore_open(replay->sim, "the embedded record", replay->embedded, replay->embedded_length,
+                                     replay->depth + 1u, refusal);
+    if (!replay->inner || (!restore_go_on(replay->inner, replay->interrupted, replay->context) && (replay->paused = true)))
+        return NULL;
+    struct restore *restore = replay->inner;
+    replay->inner = NULL;
+    return restore_put(restore, refusal);
+}
+
 /* No file is touched on behalf of a record: what was read stands in it, what was written is of no concern. */
 static json_t *obey(struct replay *replay, const char *method, const json_t *params, struct refusal *refusal)
 {
     if (!json_object_get(params, "file"))
         return sim_command(replay->sim, method, params, refusal);
-    if (strcmp(method, "restore") != 0)
-        return json_object();
-    return restore_text(replay->sim, "the embedded record", replay->embedded, replay->embedded_length, replay->depth + 1u,
-                        refusal);
+    return strcmp(method, "restore") == 0 ? restore_embedded(replay, refusal) : json_object();
 }
 
 static bool do_command(struct replay *replay)
@@ -174,9 +190,11 @@ static bool do_command(struct replay *replay)
     bool restore = strcmp(method, "restore") == 0 && json_object_get(params, "file");
     if (restore && !replay->embedded)
         return replay_wrong(replay, "command", "expected the file that was restored before this line, behind \"embedded\"");
-    replay->counts.inputs++;
     json_t *result = obey(replay, method, params, &refusal);
     json_decref(result);
+    if (replay->paused)
+        return false;
+    replay->counts.inputs++;
     if (restore) {
         free(replay->embedded);
         replay->embedded = NULL;
@@ -309,25 +327,66 @@ static const struct kind {
     {"outputs", do_outputs},
 };
 
+static bool unknown_line(struct replay *replay)
+{
+    return replay_wrong(replay, NULL, "expected a line with one of \"in\", \"out\", \"digest\", \"command\", \"purge\", "
+                                      "\"break\", \"timed\", \"moved\", \"embedded\", \"outputs\", \"end\"");
+}
+
 static bool obey_line(struct replay *replay)
 {
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
         if (json_object_get(replay->json, kinds[i].key))
             return kinds[i].obey(replay);
-    return replay_wrong(replay, NULL, "expected a line with one of \"in\", \"out\", \"digest\", \"command\", \"purge\", "
-                                      "\"break\", \"timed\", \"moved\", \"embedded\", \"outputs\", \"end\"");
+    return unknown_line(replay);
+}
+
+/* What can be said of a line without what comes before it. */
+static bool check_line(struct replay *replay)
+{
+    const char *key = NULL;
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0] && !key; i++)
+        if (json_object_get(replay->json, kinds[i].key))
+            key = kinds[i].key;
+    if (!key)
+        return unknown_line(replay);
+    if (strcmp(key, "embedded") == 0)
+        return do_embedded(replay);
+    if (strcmp(key, "out") == 0 || strcmp(key, "digest") == 0 || strcmp(key, "outputs") == 0)
+        return true;
+    return replay_number(replay, "t", replay->checked, TIME_VALUE_MAX, RKM04_NEVER, &replay->checked);
+}
+
+/* Deal with all lines, or pause. Returns false if it has paused. */
+static bool each_line(struct replay *replay, bool (*deal)(struct replay *replay), bool (*interrupted)(void *context),
+                      void *context)
+{
+    replay->interrupted = interrupted;
+    replay->context = context;
+    replay->paused = false;
+    while (replay_next_line(replay) && !is_interrupted(replay) && deal(replay))
+        continue;
+    replay->again = replay->paused;
+    return !replay->paused;
+}
+
+enum replay_end replay_check(struct replay *replay, bool (*interrupted)(void *context), void *context)
+{
+    if (replay->ended)
+        return replay->end;
+    if (!each_line(replay, check_line, interrupted, context))
+        return REPLAY_INTERRUPTED;
+    return replay->ended ? replay->end : REPLAY_SAME;
 }
 
 enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *context), void *context)
 {
-    replay->interrupted = interrupted;
-    replay->context = context;
     if (replay->ended)
         return replay->end;
-    if (replay->outputs)
+    if (replay->outputs && !replay->tally.sim)
         replay_listen(replay);
-    while (replay_next_line(replay) && obey_line(replay))
-        continue;
+    if (!each_line(replay, obey_line, interrupted, context))
+        return REPLAY_INTERRUPTED;
     if (!replay->ended) {
         replay->end = REPLAY_SAME;
         if (!replay->counts.whole && replay->note[0] == '\0')
@@ -336,9 +395,6 @@ enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *cont
     replay->ended = true;
     if (replay->end == REPLAY_SAME)
         snprintf(replay->text, sizeof replay->text, "the same up to tick %" PRIu64, sim_now(replay->sim));
-    for (unsigned unit = 1; unit < TALLY_UNITS; unit++)
-        for (unsigned motor = 1; motor < TALLY_MOTORS; motor++)
-            replay->counts.steps += replay->tally.stream[unit][motor].steps;
     replay_listen_no_more(replay);
     return replay->end;
 }
@@ -392,11 +448,16 @@ const struct replay_difference *replay_difference(const struct replay *replay)
 
 struct replay_counts replay_counts(const struct replay *replay)
 {
-    return replay->counts;
+    struct replay_counts counts = replay->counts;
+    for (unsigned unit = 1; unit < TALLY_UNITS; unit++)
+        for (unsigned motor = 1; motor < TALLY_MOTORS; motor++)
+            counts.steps += replay->tally.stream[unit][motor].steps;
+    return counts;
 }
 
 void replay_free(struct replay *replay)
 {
+    restore_cancel(replay->inner);
     if (replay->sim) {
         if (replay->outputs && replay->tally.sim)
             tally_end(&replay->tally);

@@ -26,6 +26,8 @@ struct replay {
     uint64_t until;
     bool (*interrupted)(void *context);
     void *context;
+    bool paused;                /* interrupted() has said so: the present line is obeyed anew when the replay goes on */
+    uint64_t checked;           /* tick of the last line that was checked */
 
     /* The present line. */
     char *line;
@@ -35,6 +37,7 @@ struct replay {
     uint8_t *hex;               /* bytes of a value of it */
     char *embedded;             /* the record for the restore that follows; NULL: none */
     size_t embedded_length;
+    struct restore *inner;      /* that restore, while it goes on */
 
     /* What has gone out and was not compared yet, in the order of time. */
     bool outputs;               /* it is compared at all */

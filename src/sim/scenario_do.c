@@ -144,6 +144,8 @@ static bool do_call(struct running *running, const struct scenario_step *step)
     json_t *result = sim_command(running->sim, step->method, step->json, &refusal);
     bool well = result != NULL;
     json_decref(result);
+    if (running->over)
+        return false;
     return well || running_failed(running, step, sim_now(running->sim), running_text("%s to be obeyed", step->method),
                                   running_text("refused: %s", refusal.text));
 }

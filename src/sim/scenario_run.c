@@ -261,6 +261,15 @@ static bool run_steps(struct running *running)
     return check_all_acted(running);
 }
 
+/* A step that takes long is to end. */
+static bool is_interrupted(void *context)
+{
+    struct running *running = context;
+    if (running->interrupted != NULL && running->interrupted(running->context, sim_now(running->sim)))
+        ended(running, SCENARIO_INTERRUPTED, sim_now(running->sim));
+    return running->over;
+}
+
 static void run_recorded(struct running *running, FILE *out)
 {
     struct record *record = out != NULL ? record_begin(running->sim, out) : NULL;
@@ -269,6 +278,8 @@ static void run_recorded(struct running *running, FILE *out)
         return;
     }
     watch(running);
+    running->sim->interrupted = is_interrupted;
+    running->sim->interrupted_context = running;
     if (run_steps(running))
         ended(running, SCENARIO_PASSED, sim_now(running->sim));
     if (running->sim->watch.short_of_memory)

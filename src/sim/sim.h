@@ -75,6 +75,8 @@ struct sim {
     struct faults faults;
     const struct sim_journal *journal; /* NULL: none */
     struct sim_snapshots *snapshots;   /* NULL: none yet */
+    bool (*interrupted)(void *context); /* is a command that takes long to be given up? NULL: never but by its own limit */
+    void *interrupted_context;
     char *plant_text;                  /* what plant.set or --plant gave, for records; NULL: no plant */
     struct sim_unit unit[SEGMENT_UNITS];
 };

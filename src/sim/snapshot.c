@@ -147,13 +147,10 @@ static const struct rkm04_framing *framing_of(const struct rkm04_config *config)
     return config->framing ? config->framing : &rkm04_hdlc;
 }
 
-const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapshot)
+static const char *unlike(const struct segment *a, const struct segment *b)
 {
-    const struct segment *a = &sim->segment, *b = &snapshot->segment;
     if (a->units != b->units)
         return "the number of units";
-    if (a->config.timed != b->config.timed)
-        return "whether bytes take time (--baud, --clock stepped)";
     if (a->config.turnaround != b->config.turnaround)
         return "the turnaround";
     for (unsigned at = 0; at < a->units; at++) {
@@ -166,6 +163,18 @@ const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapsh
             return "the version text";
     }
     return NULL;
+}
+
+const char *snapshot_unlike(const struct sim *sim, const struct sim *other)
+{
+    return unlike(&sim->segment, &other->segment);
+}
+
+const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapshot)
+{
+    if (sim->segment.units == snapshot->segment.units && sim->segment.config.timed != snapshot->segment.config.timed)
+        return "whether bytes take time (--baud, --clock stepped)";
+    return unlike(&sim->segment, &snapshot->segment);
 }
 
 /* ---- Telling what has changed --------------------------------------------------------------------------------------- */

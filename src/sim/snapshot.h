@@ -22,6 +22,9 @@ bool snapshot_put(struct sim *sim, const struct snapshot *snapshot);
  * memory is short. */
 bool snapshot_move(struct sim *sim, uint64_t ticks);
 
+/* In what is `sim` unlike another, but for what a command may change: "the framing", …; NULL: in nothing that matters. */
+const char *snapshot_unlike(const struct sim *sim, const struct sim *other);
+
 /* In what is `sim` unlike the one that it was taken of: "the framing", …; NULL: in nothing that matters. */
 const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapshot);
 
@@ -29,6 +32,33 @@ const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapsh
 uint64_t snapshot_tick(const struct snapshot *snapshot);
 
 void snapshot_free(struct snapshot *snapshot);
+
+/* ---- The command `restore` with a file, in pieces ---------------------------------------------------------------------- */
+
+#define RESTORE_SECONDS 60u /* of real time: what restoring a file may take unless `timeout` says otherwise */
+
+struct restore;
+struct refusal; /* command.h */
+
+/* Read the file, and check that it fits. params: as of the command `restore`, with `file`. The sim may go on and change until the
+ * end. Returns NULL: refused. */
+struct restore *restore_begin(struct sim *sim, const json_t *params, struct refusal *refusal);
+
+/* Check and replay the file until `interrupted` says so, which is looked at as in replay_run(). Returns false if it is to go
+ * on. */
+bool restore_go_on(struct restore *restore, bool (*interrupted)(void *context), void *context);
+
+/* What it may take, us of real time; it took longer: restore_end() will refuse it. */
+uint64_t restore_timeout(const struct restore *restore);
+void restore_is_late(struct restore *restore);
+
+/* It has come to its end: obey the command at the present tick. Returns its result; NULL: refused. Frees it. */
+json_t *restore_end(struct restore *restore, struct refusal *refusal);
+
+/* Give it up: nothing has changed. NULL: nothing. */
+void restore_cancel(struct restore *restore);
+
+/* ---- What a sim has ------------------------------------------------------------------------------------------------------ */
 
 /* The named ones of a sim, and its journal. */
 void snapshots_free(struct sim_snapshots *snapshots);

@@ -3,20 +3,14 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "output_file.h"
-#include "record.h"
-#include "record_line.h"
-#include "replay_inside.h"
 #include "snapshot_store.h"
-
-#define STEPS_MAX 100000u /* of a tenth of a second: what may happen in a file that a command reads */
 
 static const char out_of_memory[] = "out of memory";
 
-static struct sim_snapshots *store_of(struct sim *sim)
+struct sim_snapshots *snapshots_of(struct sim *sim)
 {
     if (!sim->snapshots) {
         sim->snapshots = calloc(1, sizeof *sim->snapshots);
@@ -47,7 +41,7 @@ void snapshots_free(struct sim_snapshots *snapshots)
 
 bool snapshots_keep_journal(struct sim *sim)
 {
-    struct sim_snapshots *store = store_of(sim);
+    struct sim_snapshots *store = snapshots_of(sim);
     if (!store)
         return false;
     if (!store->journal)
@@ -135,7 +129,7 @@ json_t *command_snapshot(struct sim *sim, const json_t *params, struct refusal *
     static const char *const known[] = {"name", "file", "force", NULL};
     const char *name, *file;
     bool force;
-    struct sim_snapshots *store = store_of(sim);
+    struct sim_snapshots *store = snapshots_of(sim);
     if (!store)
         return refuse(refusal, REFUSED_MEMORY, out_of_memory);
     if (!read_params(params, known, &name, &file, refusal) || !param_flag(params, "force", &force, refusal))
@@ -145,9 +139,15 @@ json_t *command_snapshot(struct sim *sim, const json_t *params, struct refusal *
 
 /* ---- restore -------------------------------------------------------------------------------------------------------- */
 
-/* Put a snapshot, and turn the journal with it. */
-static json_t *put(struct sim_snapshots *store, const struct snapshot *snapshot, struct journal_page *page,
-                   struct refusal *refusal)
+void snapshots_take_text(struct sim_snapshots *store, char *text, size_t length)
+{
+    free(store->text);
+    store->text = text;
+    store->length = length;
+}
+
+json_t *snapshots_put(struct sim_snapshots *store, const struct snapshot *snapshot, struct journal_page *page,
+                      struct refusal *refusal)
 {
     const char *misfit = snapshot_misfit(store->sim, snapshot);
     if (misfit)
@@ -165,88 +165,25 @@ static json_t *restore_named(struct sim_snapshots *store, const char *name, stru
     struct named_snapshot *named = find(store, name);
     char names[200] = "";
     if (named)
-        return put(store, named->snapshot, named->page, refusal);
+        return snapshots_put(store, named->snapshot, named->page, refusal);
     for (size_t i = 0; i < store->count; i++)
         snprintf(names + strlen(names), sizeof names - strlen(names), i > 0 ? ", %s" : "%s", store->named[i].name);
     return refuse(refusal, REFUSED_STATE, "name: there is no snapshot `%.64s': expected one of %s", name,
                   store->count > 0 ? names : "those taken with `snapshot': none yet");
 }
 
-/* Read a whole file. Returns false: refused. */
-static bool read_file(struct sim_snapshots *store, const char *path, struct refusal *refusal)
-{
-    struct stat status;
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
-        refuse(refusal, REFUSED_STATE, "file: %.160s is no regular file: expected one written by `snapshot', or a record", path);
-        return false;
-    }
-    FILE *in = fopen(path, "re");
-    char *text = in ? malloc(RECORD_EMBEDDED_MAX + 1u) : NULL;
-    size_t length = text ? fread(text, 1, RECORD_EMBEDDED_MAX + 1u, in) : 0;
-    int error = errno;
-    bool well = text && !ferror(in) && length <= RECORD_EMBEDDED_MAX;
-    if (in)
-        fclose(in);
-    if (well) {
-        store->length = length;
-        char *less = realloc(text, length + 1u);
-        store->text = less ? less : text;
-        return true;
-    }
-    free(text);
-    if (length > RECORD_EMBEDDED_MAX)
-        refuse(refusal, REFUSED_STATE, "file: %.160s is longer than %u MiB", path, RECORD_EMBEDDED_MAX >> 20);
-    else
-        refuse(refusal, REFUSED_STATE, "file: cannot read %.160s: %s", path, strerror(error));
-    return false;
-}
-
-/* Whoever waits for the command must not wait for ever. */
-static bool is_too_much(void *context)
-{
-    unsigned *steps = context;
-    return ++*steps > STEPS_MAX;
-}
-
-json_t *restore_text(struct sim *sim, const char *name, const char *text, size_t length, unsigned depth, struct refusal *refusal)
-{
-    struct sim_snapshots *store = store_of(sim);
-    struct snapshot *snapshot = NULL;
-    json_t *result = NULL;
-    unsigned steps = 0;
-    FILE *in = length > 0 ? fmemopen((void *)text, length, "r") : NULL;
-    struct replay *replay = in ? replay_open_within(name, in, depth) : NULL;
-    if (length == 0)
-        return refuse(refusal, REFUSED_STATE, "%.160s is empty: expected a record", name);
-    if (!store || !replay) {
-        refuse(refusal, REFUSED_MEMORY, out_of_memory);
-    } else if (replay_run(replay, is_too_much, &steps) != REPLAY_SAME) {
-        refuse(refusal, REFUSED_STATE, "file: %s", replay_text(replay));
-    } else if (!(snapshot = snapshot_take(replay_sim(replay)))) {
-        refuse(refusal, REFUSED_MEMORY, out_of_memory);
-    } else {
-        result = put(store, snapshot, NULL, refusal);
-    }
-    snapshot_free(snapshot);
-    if (replay)
-        replay_free(replay);
-    if (in)
-        fclose(in);
-    return result;
-}
-
 json_t *command_restore(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
-    static const char *const known[] = {"name", "file", NULL};
+    static const char *const known[] = {"name", "file", "timeout", NULL};
     const char *name, *file;
-    struct sim_snapshots *store = store_of(sim);
+    struct sim_snapshots *store = snapshots_of(sim);
     if (!store)
         return refuse(refusal, REFUSED_MEMORY, out_of_memory);
-    free(store->text);
-    store->text = NULL;
+    snapshots_take_text(store, NULL, 0);
     if (!read_params(params, known, &name, &file, refusal))
         return NULL;
     if (name)
         return restore_named(store, name, refusal);
-    return read_file(store, file, refusal) ? restore_text(sim, file, store->text, store->length, 0, refusal) : NULL;
+    struct restore *restore = restore_begin(sim, params, refusal);
+    return restore ? restore_at_once(restore, refusal) : NULL;
 }

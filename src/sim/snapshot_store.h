@@ -25,7 +25,27 @@ struct sim_snapshots {
     size_t length;
 };
 
-/* Make sim like the end of a record. `name` is for messages. Returns the result of the command; NULL: refused. */
-json_t *restore_text(struct sim *sim, const char *name, const char *text, size_t length, unsigned depth, struct refusal *refusal);
+/* The snapshots of a sim. NULL: memory is short. */
+struct sim_snapshots *snapshots_of(struct sim *sim);
+
+/* Keep the text, from malloc(), as the file of the present restore; NULL: there is none. */
+void snapshots_take_text(struct sim_snapshots *store, char *text, size_t length);
+
+/* Put a snapshot, and turn the journal with it. Returns the result of the command; NULL: refused. */
+json_t *snapshots_put(struct sim_snapshots *store, const struct snapshot *snapshot, struct journal_page *page,
+                      struct refusal *refusal);
+
+/* ---- restore.c: restoring a file ---------------------------------------------------------------------------------------- */
+
+/* Begin to make a sim like the end of a record. `name` is for messages; it and the text stay the caller's. `depth`: records
+ * around it. Returns NULL: refused. */
+struct restore *restore_open(struct sim *sim, const char *name, const char *text, size_t length, unsigned depth,
+                             struct refusal *refusal);
+
+/* It has come to its end: make the sim like it, if it is well. Returns the result of the command; NULL: refused. Frees it. */
+json_t *restore_put(struct restore *restore, struct refusal *refusal);
+
+/* All of it, as far as the timeout and the sim's interrupted() let it. Likewise. */
+json_t *restore_at_once(struct restore *restore, struct refusal *refusal);
 
 #endif

@@ -11,6 +11,7 @@
 #include <uv.h>
 
 #include "command.h"
+#include "snapshot.h"
 #include "fuzz.h"
 #include "log.h"
 #include "trace_file.h"
@@ -154,7 +155,9 @@ struct trace_file *__wrap_trace_file_begin(struct sim *sim, const char *path, un
 struct trace_file *__real_trace_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 struct wire_file *__wrap_wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 struct wire_file *__real_wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
-command_function __wrap_command_snapshot, __real_command_snapshot, __wrap_command_restore, __real_command_restore;
+command_function __wrap_command_snapshot, __real_command_snapshot;
+struct restore *__wrap_restore_begin(struct sim *sim, const json_t *params, struct refusal *refusal);
+struct restore *__real_restore_begin(struct sim *sim, const json_t *params, struct refusal *refusal);
 
 static char folder[PATH_MAX];
 static bool used; /* files have been made in it */
@@ -218,12 +221,12 @@ struct wire_file *__wrap_wire_file_begin(struct sim *sim, const char *path, unsi
     return __real_wire_file_begin(sim, tame_trace(safe, path), flags, error);
 }
 
-/* A command with the parameter `file`, by another name. */
-static json_t *with_safe_file(command_function *command, struct sim *sim, const json_t *params, struct refusal *refusal)
+/* Parameters with another name for `file`. */
+static json_t *with_safe_file(const json_t *params)
 {
     const char *file = json_string_value(json_object_get(params, "file"));
     if (!file || !*file)
-        return command(sim, params, refusal);
+        return json_incref((json_t *)params);
     char safe[PATH_MAX];
     json_t *changed = json_copy((json_t *)params);
     if (strncmp(file, "/dev/", 5) == 0)
@@ -231,19 +234,22 @@ static json_t *with_safe_file(command_function *command, struct sim *sim, const 
     else
         tame(safe, file);
     json_object_set_new(changed, "file", json_string(safe));
-    json_t *result = command(sim, changed, refusal);
-    json_decref(changed);
-    return result;
+    return changed;
 }
 
 json_t *__wrap_command_snapshot(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
-    return with_safe_file(__real_command_snapshot, sim, params, refusal);
+    json_t *safe = with_safe_file(params), *result = __real_command_snapshot(sim, safe, refusal);
+    json_decref(safe);
+    return result;
 }
 
-json_t *__wrap_command_restore(struct sim *sim, const json_t *params, struct refusal *refusal)
+struct restore *__wrap_restore_begin(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
-    return with_safe_file(__real_command_restore, sim, params, refusal);
+    json_t *safe = with_safe_file(params);
+    struct restore *restore = __real_restore_begin(sim, safe, refusal);
+    json_decref(safe);
+    return restore;
 }
 
 /* ---- The log -------------------------------------------------------------------------------------------------------- */

@@ -109,6 +109,7 @@ test_virtual_time_ends_and_it_is_said() {
     exits 1 ctrl advance 1s
     holds "$complained" 'virtual time ends at 1000000000000000 us: expected at most 0 us more' "the message"
     exits 0 ctrl snapshot "file=$folder/end.record"
+    exits 0 ctrl restore "file=$folder/end.record"
     exits 0 ctrl clock real
     exits 0 ctrl shutdown
     status_of "$started"
