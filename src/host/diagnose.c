@@ -172,3 +172,22 @@ int diagnose_text(const char *name, const char *text, size_t length, FILE *out)
     }
     return errors;
 }
+
+int diagnose_readings(const char *name, const char *text, size_t length, const struct rkm04_readings *readings, FILE *out)
+{
+    struct rkm04_reader reader;
+    struct rkm04_command command;
+    struct text_place place = text_place_begin(text, length);
+    int errors = 0;
+    rkm04_read_begin(&reader, text, length);
+    while (readings->negative_position == RKM04_NEGATIVE_POSITION_NO && rkm04_read(&reader, &command) == RKM04_READ_COMMAND) {
+        if (command.op != '=' || command.argument <= INT32_MAX)
+            continue;
+        text_place_move(&place, reader.start);
+        fprintf(out, "%s:%zu:%zu: error: expected a number from 0 on after =, found %" PRId32, name, place.line, place.column,
+                (int32_t)command.argument);
+        fputs(" (--readings negative-position=no)\n", out);
+        errors++;
+    }
+    return errors;
+}

@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include <rkm04/readings.h>
+
 /* A place in a text as an editor shows it: both count from 1, a UTF-8 character is one column. Plain data. */
 struct text_place {
     const char *text;
@@ -23,5 +25,8 @@ void text_place_move(struct text_place *place, size_t offset);
 /* Read a whole program text and print one line `NAME:LINE:COLUMN: error: …` to `out` for each command that the unit would
  * refuse (flags 1 and 2 of message 2), at the place of the command. Returns their number; 0: the unit takes the text. */
 int diagnose_text(const char *name, const char *text, size_t length, FILE *out);
+
+/* The same for commands of a text without errors that a unit with these readings refuses. */
+int diagnose_readings(const char *name, const char *text, size_t length, const struct rkm04_readings *readings, FILE *out);
 
 #endif

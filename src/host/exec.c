@@ -169,6 +169,12 @@ static bool read_file(struct exec_file *file, const char *path)
     return false;
 }
 
+/* Report all that a unit with these readings refuses. Returns false if there is something. */
+static bool check_text(const char *name, const char *text, size_t length, const struct rkm04_readings *readings)
+{
+    return diagnose_text(name, text, length, stderr) == 0 && diagnose_readings(name, text, length, readings, stderr) == 0;
+}
+
 static bool read_programs(struct inputs *inputs, const struct options *options)
 {
     bool well = true;
@@ -178,14 +184,14 @@ static bool read_programs(struct inputs *inputs, const struct options *options)
         program->motor = options->argument[i].motor;
         if (!read_file(file, options->argument[i].path))
             well = false;
-        else if (diagnose_text(file->name, file->text.text, file->text.length, stderr) > 0)
+        else if (!check_text(file->name, file->text.text, file->text.length, &options->readings))
             well = false;
     }
     return well;
 }
 
 /* Report what is wrong with a text that stands in the middle of a file, by its place in the file. */
-static bool check_set(const struct stimulus *s, const char *name)
+static bool check_set(const struct stimulus *s, const char *name, const struct rkm04_readings *readings)
 {
     size_t before = s->line - 1 + s->column - 1;
     char *padded = malloc(before + s->length + 1);
@@ -194,24 +200,26 @@ static bool check_set(const struct stimulus *s, const char *name)
     memset(padded, '\n', s->line - 1);
     memset(padded + s->line - 1, ' ', s->column - 1);
     memcpy(padded + before, s->data, s->length);
-    int errors = diagnose_text(name, padded, before + s->length, stderr);
+    bool well = check_text(name, padded, before + s->length, readings);
     free(padded);
-    return errors == 0;
+    return well;
 }
 
-static bool is_refused(const struct stimulus *s)
+static bool is_refused(const struct stimulus *s, const struct rkm04_readings *readings)
 {
+    bool negative = false;
     struct rkm04_reader reader;
     struct rkm04_command command;
     enum rkm04_read found;
     rkm04_read_begin(&reader, s->data, s->length);
-    do
+    do {
         found = rkm04_read(&reader, &command);
-    while (found == RKM04_READ_COMMAND);
-    return found != RKM04_READ_END;
+        negative = negative || (found == RKM04_READ_COMMAND && command.op == '=' && command.argument > INT32_MAX);
+    } while (found == RKM04_READ_COMMAND);
+    return found != RKM04_READ_END || (negative && readings->negative_position == RKM04_NEGATIVE_POSITION_NO);
 }
 
-static bool read_stimuli(struct inputs *inputs, const char *path)
+static bool read_stimuli(struct inputs *inputs, const char *path, const struct rkm04_readings *readings)
 {
     struct exec_file *file = &inputs->stimulus_file;
     if (!read_file(file, path))
@@ -222,7 +230,7 @@ static bool read_stimuli(struct inputs *inputs, const char *path)
     bool well = errors == 0;
     for (size_t i = 0; i < inputs->stimuli.count; i++) {
         const struct stimulus *s = &inputs->stimuli.list[i];
-        if (s->kind == STIMULUS_SET && is_refused(s) && !check_set(s, file->name))
+        if (s->kind == STIMULUS_SET && is_refused(s, readings) && !check_set(s, file->name, readings))
             well = false;
     }
     return well;
@@ -371,7 +379,7 @@ int exec_main(int argc, char **argv)
     } else {
         parse_options(argc, argv, &options);
         bool well = read_programs(&inputs, &options);
-        if (options.stimulus != NULL && !read_stimuli(&inputs, options.stimulus))
+        if (options.stimulus != NULL && !read_stimuli(&inputs, options.stimulus, &options.readings))
             well = false;
         if (well)
             status = run_traced(&run, &options, &inputs);

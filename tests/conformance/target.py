@@ -94,6 +94,16 @@ class Real:
     def power(self):
         self.hand("switch the unit off and on again")
 
+    def outputs(self):
+        """Output 01, in bit 0."""
+        while True:
+            print("\n>>> is output DO 01 on? y or n, then Enter: ", end="", file=sys.stderr, flush=True)
+            word = sys.stdin.readline()
+            if not word:
+                raise Unreachable("standard input has ended, nobody is there to look")
+            if word.strip() in ("y", "n"):
+                return 1 if word.strip() == "y" else 0
+
     @staticmethod
     def bytes_passed():
         return None

@@ -180,7 +180,7 @@ test_wrong_usage_is_status_2() {
     exits 2 "$python" "$kit"
     holds "$complained" "--port is missing" "what is told"
     exits 2 "$python" "$kit" --port x --has wings
-    holds "$complained" "expected control, inputs, power, flash" "what is told"
+    holds "$complained" "expected control, inputs, outputs, power, flash" "what is told"
     exits 2 "$python" "$kit" --port x --node 17
     exits 2 "$python" "$kit" --port x --only Q77
     holds "$complained" "no case of clause or name \`Q77'" "what is told"

@@ -94,6 +94,16 @@ test_exec_runs_under_them() {
     ((after > before + 100)) || fail "steps before 2.5 s: $before at once, $after with a delay of 500 ms"
 }
 
+test_exec_refuses_what_a_unit_with_these_readings_refuses() {
+    cd "$folder" || exit 1
+    printf 'F5 R\n T01 =-5 =5\n' >back.rks
+    printf '0s set 1 F5 R\n1s set 1 T01 =-7\n' >back.stimulus
+    exits 0 "$RKM04" exec --stimulus back.stimulus back.rks
+    exits 1 "$RKM04" exec --readings negative-position=no --stimulus back.stimulus back.rks
+    same "back.rks:2:6: error: expected a number from 0 on after =, found -5 (--readings negative-position=no)
+back.stimulus:2:14: error: expected a number from 0 on after =, found -7 (--readings negative-position=no)" "$complained" "stderr"
+}
+
 failure() {
     echo "FAIL speed.yaml:8:5: Slower at once: expected motor 1 position <= 2000; seen motor 1 position $1; at tick 2500000" \
         "(2.500000 s)"

@@ -50,12 +50,18 @@ static uint64_t back_at(uint64_t now)
     return next < latest + AHEAD_LEAST ? next - AHEAD_LEAST : latest;
 }
 
+/* Readings other than the defaults (docs/READINGS.md), members of struct rkm04_readings, as in
+ * -DBOARD_READINGS='.hold_exit = RKM04_HOLD_EXIT_LATCH, .planning = 20'. */
+#ifndef BOARD_READINGS
+#define BOARD_READINGS .label = RKM04_LABEL_WAIT
+#endif
+
 void loop_start(void)
 {
     board_start();
     uart_start();
     flash_start();
-    const struct rkm04_config config = {.node = (uint8_t)(board_switch() + 1)};
+    const struct rkm04_config config = {.node = (uint8_t)(board_switch() + 1), .readings = {BOARD_READINGS}};
     rkm04_init(&unit, &config, &port, NULL);
     rkm04_advance(&unit, AHEAD); /* programs from flash have their head start, too */
     board_clock_start();

@@ -210,10 +210,16 @@ static void rest(uint64_t now)
     board_sleep_until(next < latest ? next + 1 : latest, rkm04_sending(&unit));
 }
 
+/* Readings other than the defaults (docs/READINGS.md), members of struct rkm04_readings, as in
+ * -DBOARD_READINGS='.hold_exit = RKM04_HOLD_EXIT_LATCH, .planning = 20'. */
+#ifndef BOARD_READINGS
+#define BOARD_READINGS .label = RKM04_LABEL_WAIT
+#endif
+
 int main(void)
 {
     board_start();
-    const struct rkm04_config config = {.node = (uint8_t)(board_switch() + 1)};
+    const struct rkm04_config config = {.node = (uint8_t)(board_switch() + 1), .readings = {BOARD_READINGS}};
     rkm04_init(&unit, &config, &port, NULL);
     for (;;) {
         uint64_t now = board_clock();
