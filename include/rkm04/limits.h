@@ -5,6 +5,10 @@
 #ifndef RKM04_LIMITS_H
 #define RKM04_LIMITS_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Longest request the unit takes, in bytes, 64..9216 (L4). A small port may take 1024. */
 #ifndef RKM04_MESSAGE_MAX
 #define RKM04_MESSAGE_MAX 9216
@@ -45,5 +49,9 @@
 /* Flash (U5): two generations of each motor's slot, one block each. */
 #define RKM04_FLASH_BLOCKS 8
 #define RKM04_FLASH_BLOCK_SIZE 4096
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

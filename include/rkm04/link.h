@@ -12,6 +12,10 @@
 
 #include <rkm04/limits.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define RKM04_FRAME_EDGE_MAX 8 /* bytes that begin or end a frame, or stand for one byte of it, at most */
 
 /* State of a receiver: plain data, zero-initialised. Who may read it: `dnode`, `snode`, `length` when a message is complete;
@@ -63,5 +67,9 @@ extern const struct rkm04_framing *const rkm04_framings[];
 
 /* Find a framing by name. Returns NULL if there is none of that name. */
 const struct rkm04_framing *rkm04_framing_named(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -16,6 +16,10 @@
 
 #include <rkm04/limits.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* One segment (a single motion has one). */
 struct rkm04_segment {
     uint32_t steps;        /* N; 1..160 000 000 in a compound, up to 4 147 483 648 with G (U3) */
@@ -101,5 +105,9 @@ struct rkm04_motion {
     bool stopping;       /* on a stop ramp (R5) */
     bool changed;        /* its speed has been changed on the way (C4) */
 };
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

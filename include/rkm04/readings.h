@@ -8,6 +8,10 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum rkm04_label { RKM04_LABEL_WAIT, RKM04_LABEL_FAULT };
 enum rkm04_fault_exit { RKM04_FAULT_EXIT_RESET, RKM04_FAULT_EXIT_NEW };
 enum rkm04_hold_exit { RKM04_HOLD_EXIT_NEW, RKM04_HOLD_EXIT_LATCH };
@@ -34,5 +38,9 @@ struct rkm04_readings {
     uint16_t planning;         /* R1: ms 0..2000 from the slot of a motion's command to that in which it begins */
     uint16_t store_time;       /* P6: ms 0..1000 until Store Flash is answered; no motor executes a command meanwhile */
 };
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

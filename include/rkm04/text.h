@@ -18,6 +18,10 @@
 
 #include <rkm04/limits.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* One command: the character of the table (the call is always '\'') and its number.
  *
  * argument: the number as such, except
@@ -82,5 +86,9 @@ enum rkm04_form {
 /* Look a command's form up. `ranges` receives up to RKM04_RANGES_MAX ranges.
  * Returns the number of ranges and sets *form, or returns -1 if `op` is no command. */
 int rkm04_form_of(uint8_t op, enum rkm04_form *form, struct rkm04_range ranges[RKM04_RANGES_MAX]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

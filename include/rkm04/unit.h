@@ -25,6 +25,10 @@
 #include <rkm04/readings.h>
 #include <rkm04/text.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* ---- Errors ------------------------------------------------------------------------------------------------------- */
 
 /* Why a program stopped; one latch a motor, the first reason stays until new commands begin or `\` (C3, C7, E1). */
@@ -302,5 +306,9 @@ size_t rkm04_exchange(struct rkm04_unit *unit, const uint8_t *message, size_t le
 const char *rkm04_state_name(enum rkm04_state state);
 const char *rkm04_fault_name(enum rkm04_fault fault);
 const char *rkm04_led_name(enum rkm04_led led);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

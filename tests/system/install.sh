@@ -53,6 +53,56 @@ test_every_public_header_stands_on_its_own() {
     done
 }
 
+test_every_public_header_is_one_of_Cpp_too() {
+    install_there
+    local header
+    for header in "$staged"/include/rkm04/*.h; do
+        # shellcheck disable=SC2046
+        echo "#include <rkm04/${header##*/}>" |
+            c++ -std=c++17 -Wall -Wextra -Wconversion -pedantic -Werror $(pkg-config --cflags rkm04) -fsyntax-only -x c++ - \
+                2>"$folder/cc.err" || fail "${header##*/} does not compile as C++"
+    done
+}
+
+test_CMake_finds_the_library_for_a_program_in_Cpp() {
+    install_there
+    mkdir "$folder/user"
+    cat >"$folder/user/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(user LANGUAGES CXX)
+find_package(rkm04 0.1 REQUIRED CONFIG)
+add_executable(user user.cpp)
+target_link_libraries(user PRIVATE rkm04::rkm04)
+END
+    cat >"$folder/user/user.cpp" <<'END'
+#include <iostream>
+#include <memory>
+#include <string>
+#include <rkm04/unit.h>
+
+int main()
+{
+    static const rkm04_port port{};
+    auto unit = std::make_unique<rkm04_unit>();
+    rkm04_config config{};
+    config.node = 1;
+    const std::string program = "S100 V1000 A2000 F5000 R";
+    struct rkm04_motor_state state{};
+
+    rkm04_init(unit.get(), &config, &port, nullptr);
+    rkm04_set_command(unit.get(), '2', program.data(), program.size(), nullptr);
+    rkm04_advance(unit.get(), 10 * RKM04_TICKS_PER_SECOND);
+    rkm04_motor_state(unit.get(), 2, &state);
+    std::cout << state.position << '\n';
+}
+END
+    cmake -S "$folder/user" -B "$folder/made" -DCMAKE_PREFIX_PATH="$staged" -DCMAKE_CXX_FLAGS="$SANITIZE -Wall -Wextra -Werror" \
+        >"$folder/cmake.err" 2>&1 || fail "find_package"
+    cmake --build "$folder/made" >"$folder/make.err" 2>&1 || fail "the program does not build"
+    exits 0 "$folder/made/user"
+    same 5000 "$said" "position of motor 2"
+}
+
 test_programs_and_man_pages_are_installed() {
     install_there
     local page
