@@ -88,6 +88,7 @@ bool line_settings_news(struct line_settings *known, struct line_settings now, c
 enum phase { AWAITS_IDLE, AWAITS_START, IN_CHARACTER };
 
 #define TICKS_PER_SECOND 1000000u
+#define LONG_IDLE (1000u * UINT64_C(1000000)) /* ticks: more than any character lasts */
 
 _Static_assert(UINT64_MAX / TICKS_PER_SECOND / 2 / LINE_EAR_BAUD_MAX >= LINE_EAR_BAUD_MAX, "tick_of() would overflow");
 
@@ -125,7 +126,7 @@ static size_t end_character(struct line_ear *ear, bool level, struct line_heard 
     ear->framing_errors += !level;
     if (!level && !ear->keeps_bad)
         return 0;
-    *heard = (struct line_heard){tick_of(ear, ear->start), ear->bits};
+    *heard = (struct line_heard){ear->origin + tick_of(ear, ear->start), ear->bits};
     return 1;
 }
 
@@ -184,9 +185,14 @@ size_t line_ear_byte(struct line_ear *ear, uint8_t byte, uint64_t tick, struct l
     size_t count = 0;
     if (units_per_second(ear) == 0)
         return 0;
-    uint64_t set_out = units_of(ear, tick);
-    if (set_out > ear->time)
+    uint64_t drawn = tick_of(ear, ear->time), gone = tick > ear->origin ? tick - ear->origin : 0;
+    uint64_t set_out = units_of(ear, gone < drawn + LONG_IDLE ? gone : drawn + LONG_IDLE);
+    if (ear->phase != AWAITS_START && set_out > ear->time)
         count += listen(ear, true, set_out, heard);
+    if (ear->phase == AWAITS_START && set_out >= ear->time) { /* times stay small */
+        ear->origin = tick;
+        ear->time = 0;
+    }
     count += listen(ear, false, ear->time + 2 * half, heard + count);
     for (unsigned bit = 0; bit < ear->from.data_bits; bit++)
         count += listen(ear, byte >> bit & 1, ear->time + 2 * half, heard + count);

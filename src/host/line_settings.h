@@ -58,6 +58,7 @@ struct line_ear {
     uint8_t phase;   /* waits for the line to be 1, for a start bit, or is within a character */
     uint8_t bit;     /* number of the next sample: 0 in the start bit */
     uint8_t bits;    /* of the character, as far as sampled */
+    uint64_t origin; /* tick at which the next three are 0: a byte that set out while the line was idle */
     uint64_t time;   /* up to which the line has been drawn; units of 1 / (2 * from.baud * to.baud) s, as the next two */
     uint64_t start;  /* when the character under way began */
     uint64_t sample; /* when the next sample is taken */

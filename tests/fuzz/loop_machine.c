@@ -28,6 +28,7 @@ static unsigned looks;
 /* ---- Time ----------------------------------------------------------------------------------------------------------- */
 
 uint64_t __wrap_uv_hrtime(void);
+uint64_t __wrap_uv_now(const uv_loop_t *loop);
 int __wrap_timerfd_create(clockid_t clock, int flags);
 int __wrap_timerfd_settime(int fd, int flags, const struct itimerspec *spec, struct itimerspec *old);
 int __wrap_uv_timer_start(uv_timer_t *handle, uv_timer_cb call, uint64_t timeout, uint64_t repeat);
@@ -69,6 +70,12 @@ uint64_t __wrap_uv_hrtime(void)
     looks++;
     now += a_look;
     return now;
+}
+
+uint64_t __wrap_uv_now(const uv_loop_t *loop)
+{
+    (void)loop;
+    return now / NS_PER_MS;
 }
 
 int __wrap_timerfd_create(clockid_t clock, int flags)
