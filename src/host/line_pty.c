@@ -174,6 +174,8 @@ static void follow(struct line *line, uint32_t mask)
         opened(line);
     if ((mask & IN_CLOSE) && line->clients > 0)
         line->closings++;
+    else if (mask & IN_CLOSE)
+        line->doubtful = line->left = true; /* by one who was not known: may have left anything */
 }
 
 static struct line *marked(const struct line_watch *watch, int mark)
@@ -234,20 +236,18 @@ static int anybody_else(struct line *line)
     return -1;
 }
 
-/* A client has the pty for itself, or has left it so. Then nobody else could open it since, and the notices of those who have
- * closed it are enough. Returns true if they were. */
+/* A client has the pty for itself, or has left it so. Then nobody but root could open it since, and of a client that was alone the
+ * notices are enough: to look would let the next one lock us out. One that opened it together with the one that locked it, so that
+ * there was one notice, is found when it sends. Returns true if they were enough. */
 static bool count_exclusive(struct line *line)
 {
     int exclusive = 0;
     if (line->slave < 0 || ioctl(line->slave, TIOCGEXCL, &exclusive) != 0 || !exclusive)
         return false;
-    bool known = line->mark >= 0 && !line->doubtful && line->closings > 0;
+    bool known = line->mark >= 0 && !line->doubtful && line->closings > 0 && line->clients == 1;
     read_notices(line->watch, NULL, NULL); /* whose it is may have come after the others had gone */
-    if (known && !line->doubtful && line->closings < line->clients) {
-        line->clients -= line->closings;
-        line->closings = 0;
-        return true;
-    }
+    if (known && !line->doubtful && line->closings == 0)
+        return true; /* they had, see follow() */
     ioctl(line->slave, TIOCNXCL); /* would keep out the next client, and us */
     if (!known || line->doubtful)
         return false;
@@ -314,6 +314,8 @@ void line_watch_follow(struct line_watch *watch)
         next = line->next;
         if (line->doubtful || line->closings > 0 || line->slave < 0 || (look && line->mark < 0))
             line_pty_count_again(line);
+        if (line->mark < 0)
+            line->left = look && line->clients == 0; /* maybe by one who came and went between two looks */
         if (line->left)
             make_raw_again(line);
     }

@@ -463,12 +463,15 @@ static struct net_peer *free_peer(struct net_port *port)
     return NULL;
 }
 
-static void name_peer(struct net_peer *peer)
+/* Returns false if it has been torn away already. */
+static bool name_peer(struct net_peer *peer)
 {
     struct sockaddr_storage from = {0};
     int size = sizeof from;
-    uv_tcp_getpeername(&peer->tcp, (struct sockaddr *)&from, &size);
+    if (uv_tcp_getpeername(&peer->tcp, (struct sockaddr *)&from, &size) != 0)
+        return false;
     write_name(peer->name, &from);
+    return true;
 }
 
 /* Take the connection that waits, if there is room to remember it; otherwise it waits on. */
@@ -487,13 +490,12 @@ static void accept_next(struct net_port *port)
         close_peer(peer);
         return;
     }
-    if (port->unplugged) {
+    if (port->unplugged || !name_peer(peer)) {
         close_peer(peer);
         return;
     }
     uv_tcp_nodelay(&peer->tcp, 1);
     uv_tcp_keepalive(&peer->tcp, 1, KEEPALIVE_S);
-    name_peer(peer);
     const char *owner = net_port_client(port);
     if (port->client && !owner)
         detach(port); /* it gives way */
