@@ -236,9 +236,9 @@ static int anybody_else(struct line *line)
     return -1;
 }
 
-/* A client has the pty for itself, or has left it so. Then nobody but root could open it since, and of a client that was alone the
- * notices are enough: to look would let the next one lock us out. One that opened it together with the one that locked it, so that
- * there was one notice, is found when it sends. Returns true if they were enough. */
+/* A client has the pty for itself, or has left it so. Then nobody but root could open it since, and of a client that was alone
+ * the notices are enough: to look would let the next one lock us out. One that opened it together with the one that locked it,
+ * so that there was one notice, is found when it sends. Returns true if they were enough. */
 static bool count_exclusive(struct line *line)
 {
     int exclusive = 0;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* fuzz_bus_ports.c: a line with a unit and all its ways in: a pty, TCP, RFC 2217; clients that come, set up, send and go, an adapter
- * that is pulled out and put in, at any time (loop_machine.c). The line is never lost; over the network at most one client is there;
- * and when all have gone and the adapter is in, the next one is answered on each way, with the speed of the unit.
+/* fuzz_bus_ports.c: a line with a unit and all its ways in: a pty, TCP, RFC 2217; clients that come, set up, send and go, an
+ * adapter that is pulled out and put in, at any time (loop_machine.c). The line is never lost; over the network at most one
+ * client is there; and when all have gone and the adapter is in, the next one is answered on each way, with the speed of the
+ * unit.
  *
- * First byte: 1: --strict-line; 2: bytes take their time; 4, 8: without TCP, RFC 2217; 16, 32: the clock. Then two bytes an action:
- * what and by which way, and a value; a sender takes as many more bytes. */
+ * First byte: 1: --strict-line; 2: bytes take their time; 4, 8: without TCP, RFC 2217; 16, 32: the clock. Then two bytes an
+ * action: what and by which way, and a value; a sender takes as many more bytes. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -148,7 +149,7 @@ static void set_up(int fd, speed_t speed, uint8_t value)
     tcsetattr(fd, TCSANOW, &settings);
 }
 
-/* The system passes bytes on in a thread of its own: wait until they are there, but not for ever, as the other end may be full. */
+/* The system passes bytes on in a thread of its own: wait until they are there, but not for ever: the other end may be full. */
 static void wait_for(int fd)
 {
     struct pollfd ready = {.fd = fd, .events = POLLIN};

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* fuzz_line_pty.c: a real pty, and clients that open, close, lock (TIOCEXCL), set up, write and read it in any order. Whenever the
- * line has been followed it knows whether a client is there; a client has the settings that were made last; whoever comes to a line
- * on which nobody was finds nothing to read, no lock, and a raw line; bytes pass in order; nobody makes the line fail.
+/* fuzz_line_pty.c: a real pty, and clients that open, close, lock (TIOCEXCL), set up, write and read it in any order. Whenever
+ * the line has been followed it knows whether a client is there; a client has the settings that were made last; whoever comes
+ * to a line on which nobody was finds nothing to read, no lock, and a raw line; bytes pass in order; nobody makes the line
+ * fail.
  *
  * First byte: 1: inotify is used up. Then two bytes an action: what and who, and a value. */
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* fuzz_line_settings.c: two ends of a line with any settings, bytes at any times up to the end of virtual time (10^15 us). What is
- * heard is never more than a caller has room for, in order, within the receiver's data bits, and not before it was sent; ends that
- * agree hear what was sent; a change of settings is told once. */
+/* fuzz_line_settings.c: two ends of a line with any settings, bytes at any times up to the end of virtual time (10^15 us). What
+ * is heard is never more than a caller has room for, in order, within the receiver's data bits, and not before it was sent;
+ * ends that agree hear what was sent; a change of settings is told once. */
 #include "fuzz.h"
 #include "line_settings.h"
 
