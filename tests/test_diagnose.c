@@ -107,6 +107,14 @@ START_TEST(P1_a_letter_of_several_bytes_is_one_error)
 }
 END_TEST
 
+START_TEST(P1_characters_that_cannot_be_seen_are_named)
+{
+    assert_says("\xC2\xA0", "expected a command, found a no-break space (U+00A0)");
+    assert_says("\xE2\x80\x8B", "expected a command, found a zero-width space (U+200B)");
+    assert_says("F\xC2\xA0", "expected a number 1..16000000 after F, found a no-break space (U+00A0)");
+}
+END_TEST
+
 START_TEST(P1_bytes_that_a_terminal_would_obey_are_not_printed)
 {
     assert_says("\x7F", "expected a command, found byte 7F");
@@ -165,6 +173,7 @@ int main(void)
     tcase_add_test(messages, P1_a_conditional_jump_is_told_which_part_is_wrong);
     tcase_add_test(messages, P1_an_unknown_command_is_shown);
     tcase_add_test(messages, P1_a_letter_of_several_bytes_is_one_error);
+    tcase_add_test(messages, P1_characters_that_cannot_be_seen_are_named);
     tcase_add_test(messages, P1_bytes_that_a_terminal_would_obey_are_not_printed);
     suite_add_tcase(suite, messages);
     TCase *places = tcase_create("places");

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "arguments.h"
 #include "diagnose.h"
 #include "exec_program.h"
 #include "exec_report.h"
@@ -143,7 +144,7 @@ static void parse_options(int argc, char **argv, struct options *options)
 {
     static const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, NULL, NULL, NULL};
     argp_err_exit_status = STATUS_USAGE;
-    argp_parse(&argp, argc, argv, 0, NULL, options);
+    arguments_parse(&argp, argc, argv, options);
 }
 
 /* ---- Texts -------------------------------------------------------------------------------------------------------- */

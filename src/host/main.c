@@ -7,6 +7,7 @@
 
 #include <rkm04/limits.h>
 
+#include "arguments.h"
 #include "nearest.h"
 #include "process.h"
 #include "subcommands.h"
@@ -61,11 +62,11 @@ int main(int argc, char **argv)
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-?") == 0 || strcmp(argv[1], "help") == 0) {
         fputs(help, stdout);
-        return STATUS_WELL;
+        return arguments_printed();
     }
     if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
         puts(argp_program_version);
-        return STATUS_WELL;
+        return arguments_printed();
     }
     for (size_t i = 0; i < sizeof subcommands / sizeof subcommands[0]; i++) {
         if (strcmp(argv[1], subcommands[i].name) == 0) {

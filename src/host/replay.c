@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "arguments.h"
 #include "record.h"
 #include "subcommands.h"
 #include "time_value.h"
@@ -302,7 +303,7 @@ int replay_main(int argc, char **argv)
 {
     static const struct argp argp = {option_table, parse_option, "FILE", doc, NULL, NULL, NULL};
     struct options options = {.until = RKM04_NEVER};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    arguments_parse(&argp, argc, argv, &options);
     bool is_stdin = strcmp(options.path, "-") == 0;
     const char *name = is_stdin ? "<stdin>" : options.path;
     FILE *in = is_stdin ? stdin : fopen(options.path, "re");

@@ -10,6 +10,7 @@
 
 #include <rkm04/limits.h>
 
+#include "arguments.h"
 #include "client_control.h"
 #include "client_link.h"
 #include "client_request.h"
@@ -256,7 +257,7 @@ int main(int argc, char **argv)
     if (options.words == NULL)
         err(STATUS_FAILURE, "memory");
     argp_err_exit_status = STATUS_USAGE;
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    arguments_parse(&argp, argc, argv, &options);
     signal(SIGPIPE, SIG_IGN); /* writing says so, too */
     enum exit_status status = run(&options);
     free(options.words);

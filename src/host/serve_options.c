@@ -8,6 +8,7 @@
 
 #include <rkm04/link.h>
 
+#include "arguments.h"
 #include "net_port.h"
 #include "notify.h"
 #include "number.h"
@@ -462,5 +463,5 @@ void serve_options_read(struct serve_options *options, int argc, char **argv)
         .ready_fd = -1,
     };
     virtual_clock_read(&options->clock, "real");
-    argp_parse(&argp, argc, argv, 0, NULL, options);
+    arguments_parse(&argp, argc, argv, options);
 }

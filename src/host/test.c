@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "arguments.h"
 #include "output_file.h"
 #include "readings_option.h"
 #include "subcommands.h"
@@ -142,7 +143,7 @@ static void parse_options(int argc, char **argv, struct options *options)
 {
     static const struct argp argp = {option_table, parse_option, "SCENARIO...", doc, NULL, NULL, NULL};
     argp_err_exit_status = STATUS_USAGE;
-    argp_parse(&argp, argc, argv, 0, NULL, options);
+    arguments_parse(&argp, argc, argv, options);
 }
 
 /* ---- The run -------------------------------------------------------------------------------------------------------- */

@@ -104,7 +104,8 @@ static void print_readings(FILE *out, const struct test_case *test)
 
 static void print_case(FILE *out, const struct test_case *test, bool strict)
 {
-    fputs("    <testcase classname=\"rkm04\"", out);
+    fputs("    <testcase", out);
+    print_attribute(out, "classname", test->file); /* two scenarios may have one name; a test is both together */
     print_attribute(out, "name", test_case_name(test));
     print_attribute(out, "file", test->file);
     fprintf(out, " time=\"%.6f\">\n", test->seconds);

@@ -86,4 +86,27 @@ test_values_out_of_range_are_usage_errors_of_the_client() {
     exits 2 "$RKMCTL" -p tcp:localhost version
 }
 
+test_what_cannot_be_printed_is_a_failure() {
+    local command
+    printf 'S100 F5 R\n' >"$folder/program.rks"
+    printf 'steps:\n  - set: F5 R\n' >"$folder/scenario.yaml"
+    serve bus --record "$folder/bus.record"
+    export RKM04_CONTROL=$folder/bus.control
+    for command in '--help' '--version' 'serve --help' 'serve --usage' 'exec --help' 'test --help' 'replay --help' \
+        "exec $folder/program.rks" "exec --json $folder/program.rks" "exec --trace - $folder/program.rks" \
+        "test --no-records $folder/scenario.yaml" "test --json --no-records $folder/scenario.yaml" \
+        "replay $folder/bus.record" "replay --json $folder/bus.record" "serve --link $folder/other"; do
+        # shellcheck disable=SC2086
+        exits 1 to_full "$RKM04" $command
+    done
+    for command in '--help' '--usage' '--version' "-p $folder/bus version" "-p $folder/bus --json position" state \
+        '--json state' di \
+        'watch --once' clock 'call units'; do
+        # shellcheck disable=SC2086
+        exits 1 to_full "$RKMCTL" $command
+    done
+}
+
+to_full() { "$@" >/dev/full; }
+
 run_cases "$@"

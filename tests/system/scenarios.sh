@@ -222,6 +222,16 @@ test_a_person_who_watches_sees_how_far_it_is() {
     soon "it ends" grep -q 'interrupted' "$folder/run.out"
 }
 
+test_two_scenarios_with_one_name_are_two_tests_for_a_CI_server() {
+    local file
+    for file in one two; do printf 'name: the same\nsteps:\n  - set: F5 R\n' >"$folder/$file.yaml"; done
+    exits 0 "$RKM04" test --no-records --junit "$folder/report.xml" "$folder/one.yaml" "$folder/two.yaml"
+    for file in one two; do
+        grep -qF "<testcase classname=\"$folder/$file.yaml\" name=\"the same\"" "$folder/report.xml" ||
+            fail "no class for $file in $(<"$folder/report.xml")"
+    done
+}
+
 test_what_is_wrong_in_a_program_has_its_place_in_the_report() {
     mkdir "$folder/programs"
     printf 'S100 V1000\nF5000 R X9\n' >"$folder/programs/wrong.rks"

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* arguments.h: reading a command line, with an end for --help and --version that tells whether they could be printed. */
+#ifndef RKM04_HOST_ARGUMENTS_H
+#define RKM04_HOST_ARGUMENTS_H
+
+#include <argp.h>
+
+/* argp_parse() without flags. Where it ends the program after printing on stdout (--help, --usage, --version), the exit status is
+ * 1, and the reason is on stderr, if that could not be written. */
+void arguments_parse(const struct argp *argp, int argc, char **argv, void *input);
+
+/* Write out what was printed on stdout. Returns 0, or 1 if that did not work (reported). */
+int arguments_printed(void);
+
+#endif
