@@ -289,6 +289,22 @@ START_TEST(a_condition_within_conditions_has_an_end)
 }
 END_TEST
 
+START_TEST(a_condition_asks_for_256_things_at_most)
+{
+    char text[8000] = "{\"any\": [", *end = text + strlen(text);
+    for (unsigned i = 0; i < 127; i++)
+        end += sprintf(end, "{\"t\": %u},", i);
+    strcpy(end, "{\"t\": 1}]}"); /* 128 lists with one each would be 256, and the outer one is one more */
+    expect_refused(text, "at most 256 things to wait for");
+    strcpy(end - 1, "]}");
+    json_t *json = json_loads(text, 0, NULL);
+    struct condition *read = condition_read(sim, json, &refusal);
+    ck_assert_msg(read != NULL, "%s", refusal.text);
+    condition_free(read);
+    json_decref(json);
+}
+END_TEST
+
 START_TEST(with_several_units_one_has_to_be_named)
 {
     expect_refused("{\"idle\": true}", "expected one of 3, 5");
@@ -318,6 +334,7 @@ static Suite *condition_suite(void)
     tcase_add_test(says, what_is_wanted_and_what_is_found_can_be_told_apart);
     tcase_add_test(says, wrong_conditions_are_refused_with_what_was_expected);
     tcase_add_test(says, a_condition_within_conditions_has_an_end);
+    tcase_add_test(says, a_condition_asks_for_256_things_at_most);
     suite_add_tcase(suite, says);
 
     TCase *units = tcase_create("units");

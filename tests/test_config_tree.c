@@ -270,11 +270,28 @@ START_TEST(texts_with_one_character_changed_are_read_or_refused_with_a_message)
 }
 END_TEST
 
+START_TEST(a_text_with_too_many_values_is_refused_where_they_begin)
+{
+    const size_t values = 70000;
+    char *text = malloc(2 * values + 2), *to = text;
+    ck_assert_ptr_nonnull(text);
+    *to++ = '[';
+    for (size_t i = 0; i < values; i++) {
+        *to++ = '1';
+        *to++ = ',';
+    }
+    strcpy(to - 1, "]");
+    assert_refused(text, "file:1:131072: error: expected at most 65536 values, lists and maps in all\n");
+    free(text);
+}
+END_TEST
+
 static Suite *config_tree_suite(void)
 {
     Suite *suite = suite_create("config_tree");
     TCase *reading = tcase_create("reading");
     tcase_add_checked_fixture(reading, setup, teardown);
+    tcase_add_test(reading, a_text_with_too_many_values_is_refused_where_they_begin);
     tcase_add_test(reading, maps_and_lists_keep_their_order_and_their_places);
     tcase_add_test(reading, what_is_not_there_is_NULL);
     tcase_add_test(reading, JSON_is_read_too);

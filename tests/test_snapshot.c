@@ -7,6 +7,7 @@
 
 #include "rig.h"
 #include "session_rig.h"
+#include "sim/journal.h"
 #include "sim/snapshot.h"
 
 static struct session here;
@@ -425,6 +426,53 @@ START_TEST(a_file_of_another_line_is_refused_and_changes_nothing)
 }
 END_TEST
 
+START_TEST(taking_and_coming_back_by_turns_keeps_nothing_of_what_is_over)
+{
+    session_begin(&here, &session_kinds[4]);
+    ck_assert(snapshots_keep_journal(&here.sim));
+    session_set(&here, 4, '1', "V900 A30000 @1 F30 R B30 R J1");
+    for (unsigned i = 0; i < 300; i++) {
+        session_command(&here, "snapshot", "{\"name\": \"a\"}");
+        sim_advance(&here.sim, sim_now(&here.sim) + 777u);
+        session_command(&here, "restore", "{\"name\": \"a\"}");
+        sim_advance(&here.sim, sim_now(&here.sim) + 1777u);
+    }
+    session_command(&here, "snapshot", params);
+    ck_assert_int_lt(size_of_file(), 2000);
+    sim_advance(&here.sim, sim_now(&here.sim) + 1u);
+    session_forget(&here);
+    sim_advance(&here.sim, sim_now(&here.sim) + SECOND);
+    char *wanted = strdup(session_seen(&here)), *state = session_state(&here);
+    session_command(&here, "restore", params);
+    sim_advance(&here.sim, sim_now(&here.sim) + 1u); /* what coming back changes is told */
+    session_forget(&here);
+    sim_advance(&here.sim, sim_now(&here.sim) + SECOND);
+    char *again = session_state(&here);
+    session_same(wanted, session_seen(&here), "what followed");
+    session_same(state, again, "the state");
+    free(wanted);
+    free(state);
+    free(again);
+}
+END_TEST
+
+START_TEST(what_snapshots_keep_of_the_past_is_counted)
+{
+    session_begin(&here, &session_kinds[0]);
+    struct journal *journal = journal_begin(&here.sim);
+    unsigned marks = 0;
+    ck_assert_ptr_nonnull(journal);
+    while (!journal_gap(journal) && marks < 40000) {
+        session_command(&here, "di.set", "{\"mask\": 1}");
+        journal_page_free(journal_mark(journal));
+        marks++;
+    }
+    ck_assert_ptr_nonnull(journal_gap(journal));
+    ck_assert_uint_lt(marks, 17000);
+    journal_free(journal);
+}
+END_TEST
+
 static Suite *make_suite(void)
 {
     Suite *suite = suite_create("snapshot");
@@ -443,6 +491,8 @@ static Suite *make_suite(void)
     tcase_add_test(commands, a_line_with_another_time_of_bytes_is_refused);
     tcase_add_test(commands, a_line_with_other_readings_is_refused);
     tcase_set_timeout(files, 120);
+    tcase_add_test(files, taking_and_coming_back_by_turns_keeps_nothing_of_what_is_over);
+    tcase_add_test(files, what_snapshots_keep_of_the_past_is_counted);
     tcase_add_checked_fixture(files, file_setup, file_teardown);
     tcase_add_test(files, a_file_brings_another_line_to_the_same_place);
     tcase_add_test(files, coming_back_shortens_the_past);

@@ -15,6 +15,7 @@
 #define REST_WATCHED (10u * NS_PER_MS) /* while somebody watches what they do */
 #define LATE (500u * NS_PER_MS)  /* so much behind, and the process was stopped */
 #define LONG_BEHIND NS_PER_SECOND /* without having caught up once, and it is told */
+#define HEARTBEAT (250u * NS_PER_MS) /* --late skip: longest sleep, so that it is noticed when the process was stopped */
 #define STINT (5u * NS_PER_MS)   /* longest time without a look at the line and at signals */
 #define STEP 100000u             /* ticks that the units are advanced at once while they are at work */
 #define LEAP 10000u              /* ticks: shortest leap of --clock max; less would cost more than it shows */
@@ -275,7 +276,10 @@ void bus_catch_up(struct bus *bus)
     bus->busy = false;
     if (bus_stepped(bus))
         tick = bus->goal; /* whoever it was advanced for may be content */
-    set_timer(bus, sim_now(&bus->sim) < tick ? now : next_wake(bus, now));
+    uint64_t wake = sim_now(&bus->sim) < tick ? now : next_wake(bus, now);
+    if (bus->options->late_skips && !bus_stepped(bus) && (wake == 0 || wake > now + HEARTBEAT))
+        wake = now + HEARTBEAT;
+    set_timer(bus, wake);
 }
 
 static void on_timer(uv_poll_t *handle, int status, int events)

@@ -7,12 +7,13 @@
 #include "condition_term.h"
 #include "time_value.h"
 
+#define TERMS_MAX 256 /* of a condition: each is looked at after everything that happens */
 #define DEPTH_MAX 8 /* of all and any inside one another */
 
 struct reader {
     struct sim *sim;
     struct refusal *refusal;
-    unsigned depth;
+    unsigned depth, terms;
     bool messages;
 };
 
@@ -54,6 +55,8 @@ void term_clear(struct term *term)
 /* Put a copy of `term` behind the others of `group`, which owns what hangs on it then. */
 static bool add(struct reader *r, struct term *group, const struct term *term)
 {
+    if (r->terms++ == TERMS_MAX)
+        return REFUSE("condition: expected at most %d things to wait for in all", TERMS_MAX);
     struct term *sub = realloc(group->sub, (group->subs + 1) * sizeof *sub);
     if (sub == NULL) {
         refuse(r->refusal, REFUSED_MEMORY, "memory is short");

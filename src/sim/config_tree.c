@@ -11,6 +11,7 @@
 #include "time_value.h"
 
 #define DEPTH_MAX 32u /* lists and maps within one another; what we read needs less than ten */
+#define NODES_MAX 65536u /* values, lists and maps of a text: some 20 MB of memory */
 #define KEYS_MAX 256u /* of a map: each new one is compared with all before it */
 #define FOUND_SIZE 44u /* of what an error message repeats of a text */
 
@@ -33,6 +34,7 @@ struct config_tree {
     char *name;
     FILE *errors;
     struct config_node *nodes, *root;
+    size_t count; /* of nodes */
 };
 
 /* What is open while a text is read. */
@@ -105,11 +107,16 @@ static bool parser_error(const struct config_tree *tree, const yaml_parser_t *pa
 
 static struct config_node *new_node(struct config_tree *tree, enum config_type type, const yaml_mark_t *mark)
 {
+    if (tree->count == NODES_MAX) {
+        error_at(tree, mark, "expected at most %u values, lists and maps in all", NODES_MAX);
+        return NULL;
+    }
     struct config_node *node = calloc(1, sizeof *node);
     if (!node) {
         short_of_memory(tree);
         return NULL;
     }
+    tree->count++;
     node->tree = tree;
     node->type = type;
     node->line = mark->line + 1;

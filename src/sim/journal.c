@@ -7,10 +7,14 @@
 
 #include "record_line.h"
 
+#define PAGE_COST 1024u /* bytes of memory that a page takes besides its text, rounded up */
+
 struct journal_page {
     struct journal_page *before;
     unsigned references;
-    size_t length, total; /* total: with all before it */
+    size_t length, total; /* total: with all before it, and what pages cost */
+    size_t bare;          /* the length of a page in which there is only that time was moved; 0: there is no such line */
+    uint64_t moved;       /* by so many ticks */
     char *text;
     FILE *stream;         /* of the page that is being written: into text, length */
 };
@@ -56,7 +60,7 @@ static struct journal_page *new_page(struct journal_page *before)
     }
     page->before = before;
     page->references = 1;
-    page->total = before ? before->total : 0;
+    page->total = PAGE_COST + (before ? before->total : 0);
     return page;
 }
 
@@ -227,8 +231,13 @@ static struct journal_page *page_of(const char *text, size_t length)
 bool journal_turn(struct journal *journal, struct journal_page *page, const char *text, size_t length, uint64_t later)
 {
     struct journal_page *past = page;
-    if (page)
-        page->references++;
+    uint64_t now = sim_now(journal->sim);
+    if (page && page->bare > 0 && page->length == page->bare) { /* nothing has come in since: both moves are one */
+        later += page->moved;
+        past = page->before;
+    }
+    if (past)
+        past->references++;
     else if (text)
         past = page_of(text, length);
     journal_page_free(journal->page);
@@ -236,9 +245,10 @@ bool journal_turn(struct journal *journal, struct journal_page *page, const char
     journal->too_long = false;
     if (!journal->page)
         return false;
-    uint64_t now = sim_now(journal->sim);
     fprintf(journal->page->stream, "{\"t\":%" PRIu64 ",\"moved\":%" PRIu64 "}\n", now - later, later);
     written(journal);
+    journal->page->bare = journal->page->length;
+    journal->page->moved = later;
     return true;
 }
 

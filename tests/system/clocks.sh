@@ -158,4 +158,25 @@ test_a_process_that_was_stopped_skips() {
     ((10#$after < 1400000)) || fail "its time has gone on to $after us"
 }
 
+# One that sleeps for long: idle, in a dwell, while a client waits.
+stopped_while() {
+    serve bus --late skip
+    [[ $1 == idle ]] || exits 0 ctl bus set "$1"
+    [[ $2 == wait ]] && start waiting "$RKMCTL" --control "$folder/bus.control" wait 'do8=1' --limit 100s
+    local emulator=${processes[0]} until before after
+    exits 0 ctl bus version
+    before=$(tick)
+    kill -STOP "$emulator"
+    until=$((${EPOCHREALTIME/[.,]/} + 2500000))
+    soon "two seconds and a half have passed" passed
+    kill -CONT "$emulator"
+    soon "it says so" grep -q 'late by [12]\..*not gone on' "$folder/bus.err"
+    after=$(tick)
+    ((after - before < 2000000)) || fail "its time has gone on by $((after - before)) us"
+}
+
+test_an_idle_process_that_was_stopped_skips() { stopped_while idle ''; }
+test_a_process_that_was_stopped_in_a_dwell_skips() { stopped_while W100000 ''; }
+test_a_process_that_was_stopped_while_a_client_waits_skips() { stopped_while idle wait; }
+
 run_cases "$@"
