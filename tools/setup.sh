@@ -4,7 +4,7 @@
 #   setup_packages run|test|quick    install the Debian packages that are missing, or say which ones are needed elsewhere
 
 # Needed to build and run the emulator and its client.
-run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libyaml-dev libncurses-dev)
+run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libseccomp-dev libyaml-dev libncurses-dev)
 # Needed on top of that to make the Debian package.
 package_packages=(dpkg-dev file)
 # Needed on top of that by the tests.
@@ -40,7 +40,7 @@ missing_tools() {
     for tool in cc make cmake pkg-config; do
         command -v "$tool" >/dev/null || echo "$tool"
     done
-    for tool in libuv jansson yaml-0.1 ncursesw $([[ $1 != run ]] && echo check gmp); do
+    for tool in libuv jansson libseccomp yaml-0.1 ncursesw $([[ $1 != run ]] && echo check gmp); do
         pkg-config --exists "$tool" 2>/dev/null || echo "library $tool (pkg-config)"
     done
     if [[ $1 != run ]]; then

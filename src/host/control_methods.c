@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What clients can ask for: the methods that have to do with this process and its clocks. Everything else is a command of the
  * line (src/sim/command.c). */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -134,6 +135,17 @@ static json_t *command(struct control_context *context, struct refusal *refusal)
     return result;
 }
 
+/* Files outside some folders are out of reach (serve_sandbox.h), with the errno of files that belong to others. */
+static void explain_denied(const struct control *control, struct refusal *refusal)
+{
+    static const char denied[] = "Permission denied";
+    size_t length = strlen(refusal->text), tail = sizeof denied - 1;
+    if (control->buses[0]->options->no_sandbox || length < tail || strcmp(refusal->text + length - tail, denied) != 0)
+        return;
+    snprintf(refusal->text + length, sizeof refusal->text - length,
+             "; below other folders than those of its files the emulator reaches what --allow-folder names at its start");
+}
+
 enum control_done control_obey(struct peer *peer, const char *line, size_t length)
 {
     struct control *control = peer->control;
@@ -149,10 +161,12 @@ enum control_done control_obey(struct peer *peer, const char *line, size_t lengt
         context.bus = control->buses[request.line];
         result = method ? method(&context, &refusal) : command(&context, &refusal);
     }
-    if (result)
+    if (result) {
         control_answer(peer, request.id, result);
-    else if (!context.later && !context.again)
+    } else if (!context.later && !context.again) {
+        explain_denied(control, &refusal);
         control_refuse(peer, request.id, &refusal);
+    }
     rpc_end(&request);
     return context.again ? CONTROL_LATER : CONTROL_DONE;
 }

@@ -99,13 +99,22 @@ static bool check_image(struct flash_file *flash)
     return false;
 }
 
+/* For its owner alone, whatever the umask. */
+static int make_private(const char *path, int flags)
+{
+    int fd = open(path, flags | O_CREAT | O_EXCL, 0600);
+    if (fd >= 0)
+        (void)fchmod(fd, 0600); /* not every file system has modes */
+    return fd;
+}
+
 /* Open the file, or make it; what is made is a file of that very name, never one that somebody's link leads to. */
 static int open_or_make(const char *path)
 {
     const int flags = O_RDWR | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
     int fd = open(path, flags);
     if (fd < 0 && errno == ENOENT)
-        fd = open(path, flags | O_CREAT | O_EXCL, 0666);
+        fd = make_private(path, flags);
     return fd < 0 && errno == EEXIST ? open(path, flags) : fd; /* another emulator has made it just now */
 }
 

@@ -20,6 +20,7 @@
 #include "output_file.h"
 #include "serve_options.h"
 #include "serve_report.h"
+#include "serve_sandbox.h"
 #include "subcommands.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
@@ -285,10 +286,12 @@ static bool start(struct serve *serve)
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
         !start_control(serve) || !has_spare_files())
         return false;
+    serve_sandbox_files(options, serve->bus, control_path(serve->control));
     log_start_thread();
     log_flush(LOG_WAIT_MS); /* before READY, if somebody reads both */
     if (!serve_report_ready(options, serve->bus, control_path(serve->control)))
         return false;
+    serve_sandbox_calls(options);
     on_presence(serve);
     return true;
 }

@@ -5,6 +5,7 @@
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include <rkm04/link.h>
 
@@ -53,6 +54,8 @@ enum key {
     KEY_RECORD,
     KEY_FORCE,
     KEY_CONTROL,
+    KEY_ALLOW_FOLDER,
+    KEY_NO_SANDBOX,
     KEY_NO_CONTROL
 };
 
@@ -113,6 +116,11 @@ static const struct argp_option table[] = {
     {"seed", KEY_SEED, "N", 0, "Of faults on demand that have a probability; default 1", 0},
     {NULL, 0, NULL, 0, "Begin, end and report:", 5},
     {"verbose", KEY_VERBOSE, NULL, 0, "Also log each client that opens or closes the bus", 0},
+    {"allow-folder", KEY_ALLOW_FOLDER, "DIR", 0,
+     "Control clients may also have files read and written below this folder; may be given up to 16 times. Without it: below the "
+     "working directory (unless that is / or your home), and in the folders of the files named here", 0},
+    {"no-sandbox", KEY_NO_SANDBOX, NULL, 0,
+     "Keep all files and system calls within reach; default: those that are needed (Landlock, seccomp)", 0},
     {"ready-fd", KEY_READY_FD, "FD", 0, "Write the READY line to this file descriptor, too, and close it", 0},
     {"exit-when-idle", KEY_EXIT_WHEN_IDLE, "SECONDS", OPTION_ARG_OPTIONAL,
      "End when nobody has had the line open for so many seconds of real time, 0 to 86400; default 10. With --port: when "
@@ -250,6 +258,19 @@ static void add_file(const char *name, const char *text, bool known, const char 
     if (at == SERVE_FILES_MAX)
         argp_error(state, "--%s: expected at most %u files", name, SERVE_FILES_MAX);
     list[at] = text;
+}
+
+static void add_folder(struct serve_options *options, const char *text, struct argp_state *state)
+{
+    struct stat found;
+    unsigned at = 0;
+    if (stat(text, &found) != 0 || !S_ISDIR(found.st_mode))
+        argp_error(state, "--allow-folder: `%s' is wrong: expected a folder that is there", text);
+    while (at < SERVE_FOLDERS_MAX && options->folder[at])
+        at++;
+    if (at == SERVE_FOLDERS_MAX)
+        argp_error(state, "--allow-folder: expected at most %u folders", SERVE_FOLDERS_MAX);
+    options->folder[at] = text;
 }
 
 static bool read_late(const char *text, struct argp_state *state)
@@ -406,6 +427,12 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_CONTROL:
         options->control = read_path("control", text, state);
+        return 0;
+    case KEY_ALLOW_FOLDER:
+        add_folder(options, text, state);
+        return 0;
+    case KEY_NO_SANDBOX:
+        options->no_sandbox = true;
         return 0;
     case KEY_NO_CONTROL:
         options->no_control = true;

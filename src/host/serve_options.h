@@ -13,6 +13,7 @@
 #include "virtual_clock.h"
 
 #define SERVE_LINES_MAX 256u
+#define SERVE_FOLDERS_MAX 16u
 #define SERVE_FILES_MAX 8u /* traces, and logs of the wires */
 
 struct serve_options {
@@ -46,6 +47,8 @@ struct serve_options {
     const char *control;        /* socket; NULL: the default */
     bool no_control;
     bool verbose;
+    bool no_sandbox;            /* --no-sandbox */
+    const char *folder[SERVE_FOLDERS_MAX]; /* --allow-folder; NULL: no more */
     int ready_fd;               /* -1: none */
 };
 

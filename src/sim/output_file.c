@@ -140,15 +140,38 @@ static bool check_kind(int fd, enum output_kind kind, unsigned flags, char **why
                    flags & OUTPUT_REQUESTED ? "`force': true (rkmctl --force)" : "--force");
 }
 
+/* Traces, logs of the wires and recordings tell all that a host does: they are made for their owner alone, whatever the umask.
+ * Reports are made for others. */
+static bool is_private(enum output_kind kind)
+{
+    return kind != OUTPUT_JUNIT && kind != OUTPUT_COVERAGE && kind != OUTPUT_COVERAGE_JSON;
+}
+
+/* Make a file of that name. Returns -1 if there is one already, or errno says why not. */
+static int make_output(const char *path, int how, enum output_kind kind)
+{
+    int fd = open(path, how | O_RDWR | O_CREAT | O_EXCL, is_private(kind) ? 0600 : 0666);
+    if (fd >= 0 && is_private(kind))
+        (void)fchmod(fd, 0600); /* not every file system has modes */
+    return fd;
+}
+
 /* Regular files are opened for reading, too, to look at their kind; a pipe must not be, or nobody would have to read it. */
-static int open_output(const char *path, unsigned flags)
+static int open_output(const char *path, enum output_kind kind, unsigned flags)
 {
     struct stat there;
     int how = O_CLOEXEC | O_NOCTTY | (flags & OUTPUT_MAY_WAIT ? 0 : O_NONBLOCK);
     if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
         return open(path, how | O_WRONLY);
-    int fd = open(path, how | O_RDWR | O_CREAT, 0666);
-    return fd < 0 && errno == EACCES ? open(path, how | O_WRONLY) : fd;
+    int fd = make_output(path, how, kind);
+    if (fd < 0 && errno == EEXIST)
+        fd = open(path, how | O_RDWR | O_CREAT, is_private(kind) ? 0600 : 0666); /* it may be a link to where nothing is */
+    if (fd >= 0 || errno != EACCES)
+        return fd;
+    fd = open(path, how | O_WRONLY);
+    if (fd < 0 && errno == ENOENT)
+        errno = EACCES; /* it could not be made */
+    return fd;
 }
 
 /* See that what was opened may be written, and make a regular file ours. */
@@ -171,7 +194,7 @@ static bool take_output(int fd, const char *path, enum output_kind kind, unsigne
 FILE *output_file_open(const char *path, enum output_kind kind, unsigned flags, char **why)
 {
     *why = NULL;
-    int fd = open_output(path, flags);
+    int fd = open_output(path, kind, flags);
     if (fd < 0) {
         explain_error(why, errno);
         return NULL;
@@ -230,6 +253,8 @@ static FILE *make_beside(const char *path, char **name)
         return NULL;
     }
     int fd = mkostemp(*name, O_CLOEXEC);
+    if (fd >= 0)
+        (void)fchmod(fd, 0600);
     FILE *file = fd >= 0 ? fdopen(fd, "w") : NULL;
     if (!file && fd >= 0) {
         int error = errno;

@@ -179,6 +179,18 @@ is_hardened() {
         ! grep -qE '^RKM04_(SANITIZE:BOOL=ON|HARDEN:BOOL=OFF)$' "$1/CMakeCache.txt"
 }
 
+# is_guarded PROGRAM: functions begin with the mark for indirect jumps. The note of the program cannot tell: it needs a C library
+# that is built so, too.
+is_guarded() {
+    local mark
+    case $(uname -m) in
+        x86_64) mark=endbr64 ;;
+        aarch64) mark='paciasp|bti' ;;
+        *) return 0 ;;
+    esac
+    (($(objdump -d "$1" | grep -cE "$mark") > 200)) || fail "$1: hardly a function begins with $mark"
+}
+
 # hardened PROGRAM: readelf finds all of it.
 hardened() {
     local head
@@ -187,6 +199,7 @@ hardened() {
     holds "$head" "GNU_RELRO" "$1: RELRO"
     holds "$head" "NOW" "$1: bound at the start, so that RELRO is full"
     [[ $head =~ GNU_STACK\ +0x0+\ 0x0+\ 0x0+\ 0x0+\ 0x0+\ RW\  ]] || fail "$1: the stack is executable"
+    is_guarded "$1"
     head=$(readelf --wide --dyn-syms "$1")
     holds "$head" "__stack_chk_fail" "$1: stack protector"
     holds "$head" "__snprintf_chk" "$1: fortified library calls"

@@ -46,7 +46,7 @@ test_systemd_understands_the_unit_of_a_user() {
 test_the_service_of_the_system_has_few_rights() {
     command -v systemd-analyze >/dev/null || skip_case "systemd is not installed"
     install_root
-    analyze security --offline=true --threshold=20 --root="$root" --no-pager rkm04@3.service # 0 none … 100 all
+    analyze security --offline=true --threshold=10 --root="$root" --no-pager rkm04@3.service # 0 none … 100 all
 }
 
 # unit_line KEY: the value of a key of the unit of this scope, with the specifiers that systemd replaces.
