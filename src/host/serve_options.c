@@ -268,9 +268,10 @@ static void add_folder(struct serve_options *options, const char *text, struct a
         argp_error(state, "--allow-folder: `%s' is wrong: expected a folder that is there", text);
     while (at < SERVE_FOLDERS_MAX && options->folder[at])
         at++;
-    if (at == SERVE_FOLDERS_MAX)
+    if (at < SERVE_FOLDERS_MAX)
+        options->folder[at] = text;
+    else
         argp_error(state, "--allow-folder: expected at most %u folders", SERVE_FOLDERS_MAX);
-    options->folder[at] = text;
 }
 
 static bool read_late(const char *text, struct argp_state *state)
