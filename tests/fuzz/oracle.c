@@ -329,6 +329,8 @@ void oracle_advance(struct oracle *oracle, uint64_t ticks)
         FUZZ_CHECK(!seen->known || seen->position == oracle->unit.motor[i].position, "motor %u: counter %d, reckoned %d", i + 1,
                    oracle->unit.motor[i].position, seen->position);
         FUZZ_CHECK(seen->moving == oracle->unit.motor[i].motion.moving, "motor %u: moving", i + 1);
+        if (seen->moving && seen->whole) /* also where several come between two pulses */
+            look_at_changes(seen, &oracle->unit.motor[i].motion);
     }
 }
 
