@@ -15,6 +15,12 @@ static void stop_with_fault(struct rkm04_unit *unit, struct rkm04_motor *motor, 
     }
 }
 
+void execute_dwell(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint32_t slots)
+{
+    motor->state = RKM04_DWELL;
+    motor->due = unit->now + (uint64_t)slots * RKM04_SLOT_TICKS;
+}
+
 #define COMMAND(name) static void do_##name(struct rkm04_unit *unit, struct rkm04_motor *motor, uint32_t n)
 #define UNUSED(x) (void)(x)
 
@@ -25,14 +31,30 @@ static bool bit_is_high(const struct rkm04_unit *unit, uint32_t bit)
     return input_is_high(unit, bit);
 }
 
-static void go_to(struct rkm04_unit *unit, struct rkm04_motor *motor, uint32_t label)
+/* Go to the label of J, I or ' if it is in memory; a call notes where to return to. */
+static bool find_label(struct rkm04_motor *motor)
 {
-    if (!program_label(&motor->program, label, &motor->next))
-        stop_with_fault(unit, motor, RKM04_FAULT_NO_LABEL);
+    uint32_t n = motor->command.argument;
+    uint64_t back = motor->next;
+    if (!program_label(&motor->program, motor->command.op == 'I' ? n >> 16 : n, &motor->next))
+        return false;
+    if (motor->command.op == '\'')
+        motor->call[motor->calls++] = back;
+    return true;
 }
 
-/* Switch simulation mode: the terminals step, direction and DO go to 0 and come back (C11). */
-static void simulate(struct rkm04_unit *unit, bool on)
+/* J, I, ': go to the label, or wait until it has arrived (C7). */
+static void go_to(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    if (find_label(motor))
+        return;
+    if (READING(unit, label) == RKM04_LABEL_FAULT)
+        stop_with_fault(unit, motor, RKM04_FAULT_NO_LABEL);
+    else
+        motor->state = RKM04_WAIT;
+}
+
+void execute_simulate(struct rkm04_unit *unit, bool on)
 {
     if (unit->simulation == on)
         return;
@@ -61,7 +83,7 @@ static void write_bit(struct rkm04_unit *unit, struct rkm04_motor *motor, uint32
     } else if (n == 40) {
         motor->keep = on;
     } else if (n == 41) {
-        simulate(unit, on);
+        execute_simulate(unit, on);
     } else if (n >= 51) {
         uint8_t mask = (uint8_t)(1u << (n - 51));
         motor->functions = (uint8_t)(on ? motor->functions | mask : motor->functions & ~mask);
@@ -174,7 +196,7 @@ COMMAND(run)
 
 COMMAND(segment)
 {
-    UNUSED(unit), UNUSED(n);
+    UNUSED(n);
     if (motor->segments == 0) {
         motor->segments_forward = motor->forward;
         motor->segments_bad = false;
@@ -187,6 +209,10 @@ COMMAND(segment)
             (struct rkm04_segment){.steps = motor->count, .speed = motor->speed, .acceleration = motor->acceleration};
     if (motor->segments <= RKM04_SEGMENTS_MAX)
         motor->segments++;
+    if (READING(unit, y_eleventh) == RKM04_Y_ELEVENTH_Y && motor->segments > RKM04_SEGMENTS_MAX) {
+        motor->command.op = 'R'; /* which cannot compute them */
+        execute_command(unit, motor);
+    }
 }
 
 COMMAND(limit_forward)
@@ -230,13 +256,14 @@ COMMAND(label)
 
 COMMAND(jump)
 {
-    go_to(unit, motor, n);
+    UNUSED(n);
+    go_to(unit, motor);
 }
 
 COMMAND(jump_if)
 {
     if (bit_is_high(unit, n & 0xff) == (n >> 8 & 1))
-        go_to(unit, motor, n >> 16);
+        go_to(unit, motor);
 }
 
 /* The innermost loop opened in the present call level. */
@@ -278,14 +305,11 @@ COMMAND(loop_end)
 
 COMMAND(call)
 {
-    uint64_t back = motor->next;
-    if (motor->calls == RKM04_CALL_LEVELS) {
+    UNUSED(n);
+    if (motor->calls == RKM04_CALL_LEVELS)
         stop_with_fault(unit, motor, RKM04_FAULT_CALL_LEVELS);
-        return;
-    }
-    go_to(unit, motor, n);
-    if (motor->state != RKM04_FAULTY)
-        motor->call[motor->calls++] = back;
+    else
+        go_to(unit, motor);
 }
 
 COMMAND(call_return)
@@ -308,19 +332,20 @@ COMMAND(call_return)
 
 COMMAND(dwell)
 {
-    motor->state = RKM04_DWELL;
-    motor->due = unit->now + (uint64_t)n * RKM04_SLOT_TICKS;
+    execute_dwell(unit, motor, n);
 }
 
-bool execute_wait_is_over(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
+bool execute_wait_is_over(const struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     switch (motor->command.op) {
     case 'O':
         return bit_is_high(unit, motor->command.argument);
     case 'Z':
         return !bit_is_high(unit, motor->command.argument);
-    default: /* [ */
+    case '[':
         return program_closed_after(&motor->program, motor->number);
+    default: /* J, I, ' */
+        return find_label(motor);
     }
 }
 

@@ -16,21 +16,26 @@ uint64_t interp_slot(uint64_t tick)
     return slot ? slot : RKM04_SLOT_TICKS;
 }
 
+static uint64_t later(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
+static bool stands_still(const struct rkm04_motor *motor)
+{
+    return motor->state == RKM04_HELD || motor->state == RKM04_ENDED || motor->state == RKM04_FAULTY;
+}
+
 unsigned interp_index(const struct rkm04_motor *motor)
 {
-    switch ((enum rkm04_state)motor->state) {
-    case RKM04_IDLE:
-    case RKM04_ENDED:
+    uint64_t number = motor->number, oldest = program_oldest(&motor->program);
+    if (stands_still(motor) && motor->fresh != RKM04_NEVER)
+        number = later(motor->fresh, oldest);
+    else if (motor->state == RKM04_IDLE || motor->state == RKM04_ENDED)
         return 0;
-    case RKM04_HELD:
-        if (motor->held == RKM04_READY && motor->next < motor->program.written) {
-            uint64_t oldest = program_oldest(&motor->program);
-            return program_place(motor->next > oldest ? motor->next : oldest);
-        }
-        return program_place(motor->number);
-    default:
-        return program_place(motor->number);
-    }
+    else if (motor->state == RKM04_HELD && motor->held == RKM04_READY && motor->next < motor->program.written)
+        number = later(motor->next, oldest);
+    return program_place(number);
 }
 
 /* ---- What arrives ----------------------------------------------------------------------------------------------------- */
@@ -63,6 +68,8 @@ void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->functions = 0;
     motor->keep = false;
     motor->guard_m = motor->guard_n = motor->guard_x = 0;
+    if (READING(unit, reset_t41) == RKM04_RESET_T41_CLEAR)
+        execute_simulate(unit, false);
     if (motor->fault != RKM04_FAULT_NONE) {
         motor->fault = RKM04_FAULT_NONE;
         report_event(unit, motor, unit->now, RKM04_EVENT_FAULT, RKM04_FAULT_NONE);
@@ -71,16 +78,12 @@ void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
         report_event(unit, motor, unit->now, RKM04_EVENT_COMMAND, 0);
 }
 
-/* Execution goes on at the commands stored since K, X or a fault; the rest of what was before is dropped (C3). */
-static void take_fresh(struct rkm04_unit *unit, struct rkm04_motor *motor)
+/* The next command to be executed is this one; it is shown until its slot (P9). */
+static void begin_at(struct rkm04_motor *motor, uint64_t number)
 {
-    clear_stacks(motor);
-    motor->motion.kind = RKM04_MOTION_NONE;
-    motor->next = motor->fresh;
-    motor->fresh = RKM04_NEVER;
-    motor->state = motor->hold_fresh ? RKM04_HELD : RKM04_READY;
-    motor->held = RKM04_READY;
-    motor->due = motion_free_from(unit, motor);
+    motor->next = number;
+    motor->number = later(number, program_oldest(&motor->program));
+    motor->state = RKM04_READY;
 }
 
 /* Has the motor a command to execute, or is it in one? (C6) */
@@ -101,11 +104,15 @@ static bool has_work(const struct rkm04_motor *motor)
 }
 
 /* Will the motor stand still, with new commands as one way out? */
-static bool ends_with_fresh(const struct rkm04_motor *motor)
+static bool ends_with_fresh(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
     bool moving = motor->state == RKM04_MOVING;
-    if (motor->state == RKM04_ENDED || motor->state == RKM04_FAULTY || (moving && motor->after == RKM04_AFTER_END))
+    if (motor->state == RKM04_ENDED || (moving && motor->after == RKM04_AFTER_END))
         return true;
+    if (motor->state == RKM04_FAULTY)
+        return READING(unit, fault_exit) == RKM04_FAULT_EXIT_NEW;
+    if (READING(unit, hold_exit) == RKM04_HOLD_EXIT_LATCH)
+        return false;
     if (motor->pendings > 0)
         return motor->pending[motor->pendings - 1] == 'K';
     return !motor->resume && (motor->state == RKM04_HELD || (moving && motor->after != RKM04_AFTER_GO_ON));
@@ -113,14 +120,15 @@ static bool ends_with_fresh(const struct rkm04_motor *motor)
 
 void interp_stored(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
 {
-    if (ends_with_fresh(motor) && (motor->fresh == RKM04_NEVER || motor->hold_fresh)) {
+    if (motor->fresh != RKM04_NEVER) { /* those before run first */
+        if (READING(unit, hold_exit) == RKM04_HOLD_EXIT_NEW)
+            motor->hold_fresh = false;
+    } else if (ends_with_fresh(unit, motor)) {
         motor->fresh = first;
         motor->hold_fresh = false;
     }
     if (motor->state == RKM04_IDLE) {
-        uint64_t oldest = program_oldest(&motor->program);
-        motor->state = RKM04_READY;
-        motor->number = first > oldest ? first : oldest; /* the one shown until its slot (P9) */
+        begin_at(motor, first);
         motor->due = motion_free_from(unit, motor);
     }
 }
@@ -147,10 +155,11 @@ bool interp_change_speed(const struct rkm04_unit *unit, struct rkm04_motor *moto
 {
     if (!motor->motion.moving)
         return false;
-    if (motor->change_speed == 0) {
-        motor->change_due = unit->now + (uint64_t)unit->config.readings.speed_change * 1000;
-        motor->change_after = motor->pendings;
-    }
+    for (unsigned i = 0; i < motor->pendings; i++)
+        if (motor->pending[i] == 'K')
+            return true; /* the stop ramp swallows it */
+    if (motor->change_speed == 0)
+        motor->change_due = unit->now + unit->config.readings.speed_change * RKM04_SLOT_TICKS;
     motor->change_speed = speed;
     return true;
 }
@@ -161,7 +170,8 @@ static void look_at_total_stop(struct rkm04_unit *unit, struct rkm04_motor *moto
 {
     if (motor->guard_x == 0 || !input_is_high(unit, motor->guard_x) || !has_work(motor))
         return;
-    motor->guard_x = 0;
+    if (READING(unit, x_after) == RKM04_X_AFTER_ONCE)
+        motor->guard_x = 0;
     motor->fresh = RKM04_NEVER;
     motor->resume = false;
     if (motor->state != RKM04_MOVING) {
@@ -182,7 +192,7 @@ static void act_on_halt(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->resume = false;
     switch ((enum rkm04_state)motor->state) {
     case RKM04_DWELL:
-        motor->due -= unit->now;
+        motor->due = later(motor->due, unit->now) - unit->now;
         break;
     case RKM04_READY:
     case RKM04_WAIT:
@@ -219,31 +229,38 @@ static bool is_to_hold(const struct rkm04_motor *motor)
 
 static void act_on_requests(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
+    act_on_change(unit, motor); /* came before them */
     for (unsigned i = 0; i < motor->pendings; i++) {
-        if (i == motor->change_after)
-            act_on_change(unit, motor);
         if (motor->pending[i] == 'K')
             act_on_halt(unit, motor);
         else if (is_to_hold(motor))
             motor->resume = true;
     }
-    act_on_change(unit, motor);
     motor->pendings = 0;
-    motor->change_after = 0;
 }
 
-static bool stands_still(const struct rkm04_motor *motor)
+/* Execution goes on at the commands stored since K, X or a fault, or is held before them; the rest of what was before is dropped
+ * (C3). */
+static void look_at_fresh(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
-    return motor->state == RKM04_HELD || motor->state == RKM04_ENDED || motor->state == RKM04_FAULTY;
-}
-
-/* A held motor goes on: with what it was doing after C75, or with new commands, which also end X and faults. */
-static void look_at_hold(struct rkm04_unit *unit, struct rkm04_motor *motor)
-{
-    if (!stands_still(motor))
+    if (!stands_still(motor) || motor->fresh == RKM04_NEVER ||
+        (!motor->hold_fresh && motion_free_from(unit, motor) > unit->now))
         return;
-    if (motor->fresh != RKM04_NEVER)
-        take_fresh(unit, motor);
+    clear_stacks(motor);
+    motor->motion.kind = RKM04_MOTION_NONE;
+    motor->due = unit->now;
+    if (motor->hold_fresh) {
+        motor->state = RKM04_HELD;
+        motor->held = RKM04_READY;
+        return;
+    }
+    begin_at(motor, motor->fresh);
+    motor->fresh = RKM04_NEVER;
+}
+
+/* After C75 a held motor goes on with what it was doing. */
+static void look_at_resume(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
     if (motor->state != RKM04_HELD || !motor->resume || motion_free_from(unit, motor) > unit->now)
         return;
     motor->resume = false;
@@ -255,6 +272,11 @@ static void look_at_hold(struct rkm04_unit *unit, struct rkm04_motor *motor)
 }
 
 /* ---- The turn ----------------------------------------------------------------------------------------------------------- */
+
+static bool is_motion(struct rkm04_command command)
+{
+    return command.op == 'R' || command.op == 'G' || command.op == 'H' || command.op == '(' || command.op == ')';
+}
 
 static void execute_next(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
@@ -273,12 +295,28 @@ static void execute_next(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->number = motor->next++;
     motor->command = program_at(&motor->program, motor->number);
     report_event(unit, motor, unit->now, RKM04_EVENT_COMMAND, program_place(motor->number));
+    if (READING(unit, planning) != 0 && is_motion(motor->command)) {
+        execute_dwell(unit, motor, READING(unit, planning));
+        return;
+    }
     execute_command(unit, motor);
 }
 
-static uint64_t later(uint64_t a, uint64_t b)
+static void run_program(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
-    return a > b ? a : b;
+    if (motor->state == RKM04_DWELL && unit->now >= motor->due) {
+        motor->state = RKM04_READY;
+        if (motor->command.op != 'W') { /* it has been planned */
+            execute_command(unit, motor);
+            return;
+        }
+    }
+    if ((motor->state == RKM04_WAIT || motor->state == RKM04_BLOCK) && execute_wait_is_over(unit, motor)) {
+        motor->state = RKM04_READY;
+        motor->due = unit->now + RKM04_SLOT_TICKS;
+    }
+    if (motor->state == RKM04_READY && unit->now >= motor->due)
+        execute_next(unit, motor);
 }
 
 /* The slot in which the next turn is needed if nothing comes in from outside. */
@@ -292,7 +330,7 @@ static uint64_t next_turn(const struct rkm04_unit *unit, const struct rkm04_moto
     case RKM04_HELD:
     case RKM04_ENDED:
     case RKM04_FAULTY:
-        if (!motor->resume && motor->fresh == RKM04_NEVER)
+        if (!motor->resume && (motor->fresh == RKM04_NEVER || motor->hold_fresh))
             return RKM04_NEVER;
         return interp_slot(later(motion_free_from(unit, motor), unit->now + 1));
     case RKM04_MOVING:
@@ -308,17 +346,12 @@ static uint64_t next_turn(const struct rkm04_unit *unit, const struct rkm04_moto
 void interp_turn(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     act_on_requests(unit, motor);
-    look_at_hold(unit, motor);
+    look_at_fresh(unit, motor);
     look_at_total_stop(unit, motor);
     motion_look_at_inputs(unit, motor);
-    look_at_hold(unit, motor); /* an input may have ended the last steps before it */
-    if (motor->state == RKM04_DWELL && unit->now >= motor->due)
-        motor->state = RKM04_READY;
-    if ((motor->state == RKM04_WAIT || motor->state == RKM04_BLOCK) && execute_wait_is_over(unit, motor)) {
-        motor->state = RKM04_READY;
-        motor->due = unit->now + RKM04_SLOT_TICKS;
-    }
-    if (motor->state == RKM04_READY && unit->now >= motor->due)
-        execute_next(unit, motor);
+    look_at_fresh(unit, motor); /* an input may have ended the last steps before it */
+    look_at_resume(unit, motor);
+    if (unit->busy == 0)
+        run_program(unit, motor);
     motor->wake = next_turn(unit, motor);
 }

@@ -59,9 +59,12 @@ void motion_abort(struct rkm04_unit *unit, struct rkm04_motor *motor)
 
 /* ---- Guards (C5) ------------------------------------------------------------------------------------------------------ */
 
-/* Use up the guards whose condition holds. Returns whether there was one. */
+/* Use up the guards whose condition holds. Returns whether there was one. Before a motion begins there may be none yet (reading
+ * `guard-start`). */
 static bool take_guards(const struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
+    if (READING(unit, guard_start) == RKM04_GUARD_START_STEP && !motor->motion.moving)
+        return false;
     bool m = motor->guard_m != 0 && input_is_high(unit, motor->guard_m);
     bool n = motor->guard_n != 0 && !input_is_high(unit, motor->guard_n);
     if (m)
@@ -103,6 +106,8 @@ static void set_off(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motion->stopping = false;
     motor->after = RKM04_AFTER_GO_ON;
     motor->state = RKM04_MOVING;
+    if (READING(unit, guard_start) == RKM04_GUARD_START_STEP)
+        unit->touched = true; /* the next slot looks at M and N */
 }
 
 /* Prepare a motion of one segment with the present parameters. Returns false if a guard ends it before its first step. */
@@ -194,15 +199,14 @@ void motion_resume(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     struct rkm04_motion *motion = &motor->motion;
     bool over = motion->kind == RKM04_MOTION_STEPS && motion->done == motion->total;
-    if (motion->kind == RKM04_MOTION_LIMIT && input_is_high(unit, motion->input))
-        over = true;
-    if (over || take_guards(unit, motor)) {
-        motion->kind = RKM04_MOTION_NONE;
-        motor->state = RKM04_READY;
-        motor->due = unit->now + (over ? 0 : RKM04_SLOT_TICKS);
+    bool at_limit = motion->kind == RKM04_MOTION_LIMIT && input_is_high(unit, motion->input);
+    if (!over && !at_limit && !take_guards(unit, motor)) {
+        set_off(unit, motor);
         return;
     }
-    set_off(unit, motor);
+    motion->kind = RKM04_MOTION_NONE;
+    motor->state = RKM04_READY;
+    motor->due = unit->now + (over ? 0 : RKM04_SLOT_TICKS); /* no further step takes its one slot (K4) */
 }
 
 /* ---- Pulses ----------------------------------------------------------------------------------------------------------- */

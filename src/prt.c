@@ -4,6 +4,7 @@
 #include "interp.h"
 #include "profile.h"
 #include "program.h"
+#include "report.h"
 #include "store.h"
 
 enum message {
@@ -28,13 +29,13 @@ enum flag { FLAG_RIGHT = 0, FLAG_BAD_VALUE = 1, FLAG_UNKNOWN = 2, FLAG_OVERFLOW 
 struct text {
     struct rkm04_reader program; /* stands behind the last `\`, or at the beginning */
     struct rkm04_command sole;   /* the command, if there is just one */
-    unsigned commands;
+    unsigned commands; /* one that is not to be taken as alone counts twice */
     bool reset;
     uint8_t character; /* what is wrong, with FLAG_BAD_VALUE and FLAG_UNKNOWN */
 };
 
 /* First stage: read all, change nothing. */
-static enum flag check_text(const uint8_t *bytes, size_t length, struct text *text)
+static enum flag check_text(const struct rkm04_unit *unit, const uint8_t *bytes, size_t length, struct text *text)
 {
     struct rkm04_reader reader;
     *text = (struct text){.commands = 0};
@@ -45,11 +46,16 @@ static enum flag check_text(const uint8_t *bytes, size_t length, struct text *te
         enum rkm04_read found = rkm04_read(&reader, &command);
         if (found == RKM04_READ_END)
             return FLAG_RIGHT;
+        if (found == RKM04_READ_COMMAND && READING(unit, negative_position) == RKM04_NEGATIVE_POSITION_NO &&
+            command.op == '=' && command.argument > INT32_MAX)
+            found = RKM04_READ_BAD_VALUE;
         if (found != RKM04_READ_COMMAND) {
             text->character = bytes[reader.start];
             return found == RKM04_READ_BAD_VALUE ? FLAG_BAD_VALUE : FLAG_UNKNOWN;
         }
         text->commands++;
+        if (READING(unit, v_alone) == RKM04_V_ALONE_FIRST && (reader.start != 0 || reader.at != length))
+            text->commands++;
         text->sole = command;
         if (command.op == '\\') {
             text->reset = true;
@@ -112,7 +118,7 @@ int prt_set_command(struct rkm04_unit *unit, uint8_t motor, const uint8_t *bytes
         *character = motor;
         return FLAG_BAD_VALUE;
     }
-    enum flag flag = check_text(bytes, length, &text);
+    enum flag flag = check_text(unit, bytes, length, &text);
     if (flag != FLAG_RIGHT) {
         *character = text.character;
         return (int)flag;
@@ -228,6 +234,10 @@ static uint8_t store_flash(struct rkm04_unit *unit, uint8_t motor)
     uint8_t error = 0;
     if (!is_motor(motor))
         return 1;
+    if (READING(unit, store_time) != 0) {
+        unit->busy = (uint16_t)(READING(unit, store_time) + 1); /* the slot at or after now counts, too */
+        unit->touched = true;
+    }
     for (unsigned i = 0; i < RKM04_MOTORS; i++) {
         if (motor != '0' && motor != '1' + i)
             continue;

@@ -86,6 +86,25 @@ static void run_motors(struct rkm04_unit *unit, uint64_t limit)
     }
 }
 
+/* What a slot begins with. As long as something is counted here, the next slot has its turn, too. */
+static void begin_slot(struct rkm04_unit *unit)
+{
+    bool counting = unit->busy > 0;
+    if (counting)
+        unit->busy--;
+    for (unsigned i = 0; unit->touched && i < RKM04_INPUTS; i++) {
+        uint8_t differing = (uint8_t)((unit->inputs ^ unit->seen) & 1u << i);
+        if (differing != 0 && unit->differs[i] < READING(unit, input_filter)) {
+            unit->differs[i]++;
+            counting = true;
+        } else {
+            unit->differs[i] = 0;
+            unit->seen ^= differing;
+        }
+    }
+    unit->touched = counting;
+}
+
 void rkm04_advance(struct rkm04_unit *unit, uint64_t ticks)
 {
     uint64_t end = unit->now > RKM04_NEVER - ticks ? RKM04_NEVER : unit->now + ticks;
@@ -95,7 +114,7 @@ void rkm04_advance(struct rkm04_unit *unit, uint64_t ticks)
         run_motors(unit, reached ? slot : end - 1);
         if (reached) {
             unit->now = slot;
-            unit->touched = false;
+            begin_slot(unit);
             for (unsigned i = 0; i < RKM04_MOTORS; i++)
                 interp_turn(unit, &unit->motor[i]);
         }
@@ -137,7 +156,7 @@ size_t rkm04_receive(struct rkm04_unit *unit, const uint8_t *bytes, size_t lengt
             continue;
         if (!is_for(unit))
             unit->counters.others++;
-        else if (rkm04_sending(unit))
+        else if (unit->answer.kind != 0)
             unit->waiting = true;
         else
             take_message(unit);
@@ -181,7 +200,7 @@ static void refill(struct rkm04_unit *unit)
 
 bool rkm04_sending(const struct rkm04_unit *unit)
 {
-    return unit->answer.kind != 0;
+    return unit->answer.kind != 0 && unit->busy == 0;
 }
 
 size_t rkm04_send(struct rkm04_unit *unit, uint8_t *bytes, size_t room)
@@ -196,7 +215,7 @@ size_t rkm04_send(struct rkm04_unit *unit, uint8_t *bytes, size_t room)
             take_message(unit);
             continue;
         }
-        if (n == room)
+        if (n == room || unit->busy > 0)
             break;
         bytes[n++] = answer->out[answer->out_at++];
     }

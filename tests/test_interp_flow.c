@@ -372,16 +372,65 @@ START_TEST(C8_a_label_may_be_written_after_the_jump_to_it_has_been_stored)
 }
 END_TEST
 
-START_TEST(C7_a_jump_to_a_missing_label_is_a_fault)
+START_TEST(C7_a_jump_to_a_missing_label_waits_for_it)
 {
     static const char *const text[] = {"U J5 T01", "U '5 T01", "U I01L5 T01", "U I80L5 T01"};
     for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
         rig_power_up(&rig, NULL);
         rig_accept(&rig, '1', text[i]);
-        rig_to(&rig, 100 * MS);
-        expect_fault(RKM04_FAULT_NO_LABEL, 2);
-        ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
+        rig_to(&rig, 100 * MS + 1);
+        ck_assert_uint_eq(rkm04_next_event(&rig.unit), RKM04_NEVER);
+        rig_expect_state(&rig, 1, RKM04_WAIT);
+        ck_assert_uint_eq(rig_motor(&rig, 1).index, 2);
+        rig_accept(&rig, '1', "T03");
+        rig_input_at(&rig, 150 * MS, 1, true); /* I has decided in its slot */
+        rig_accept_at(&rig, 200 * MS, "@5 T02");
+        rig_to(&rig, 300 * MS);
+        ck_assert_uint_eq(rkm04_outputs(&rig.unit), 2);
+        ck_assert_uint_eq(rig_ran(&rig, 5, 1), 201 * MS);
     }
+}
+END_TEST
+
+START_TEST(C7_a_program_sent_in_parts_does_what_it_does_sent_at_once)
+{
+    rig_accept(&rig, '1', "F100 I01L20 R");
+    rig_accept_at(&rig, 50 * MS, "B500 R @20 T01");
+    rig_to(&rig, 5 * SECOND);
+    ck_assert_int_eq(rig_motor(&rig, 1).position, 0);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 1);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
+}
+END_TEST
+
+START_TEST(C7_a_call_that_has_waited_returns_behind_itself)
+{
+    rig_accept(&rig, '1', "'5 T01");
+    rig_accept_at(&rig, 50 * MS, "J6 @5 T02 . @6");
+    rig_to(&rig, 100 * MS);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 3);
+    expect_fault(RKM04_FAULT_NONE, 0);
+}
+END_TEST
+
+START_TEST(C7_a_seventh_call_is_a_fault_also_where_its_label_is_missing)
+{
+    rig_accept(&rig, '1', "J7 @1 '2 @2 '3 @3 '4 @4 '5 @5 '6 @6 '9 @7 '1");
+    rig_to(&rig, 100 * MS);
+    expect_fault(RKM04_FAULT_CALL_LEVELS, 13);
+}
+END_TEST
+
+START_TEST(C6_X_and_C3_K_reach_a_motor_that_waits_for_a_label)
+{
+    rig_accept(&rig, '1', "X04 J5 T01");
+    rig_accept_at(&rig, 50 * MS, "K");
+    rig_accept_at(&rig, 60 * MS, "C75");
+    rig_to(&rig, 70 * MS);
+    rig_expect_state(&rig, 1, RKM04_WAIT);
+    rig_input_at(&rig, 80 * MS, 4, true);
+    rig_to(&rig, 90 * MS);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 
@@ -396,14 +445,14 @@ END_TEST
 
 START_TEST(C7_a_fault_cannot_be_resumed_and_is_told_once)
 {
-    rig_accept(&rig, '1', "J5 T01");
+    rig_accept(&rig, '1', "E T01");
     rig_to(&rig, 100 * MS);
     rig_accept(&rig, '1', "K");
     rig_accept(&rig, '1', "C75");
     rig_to(&rig, 1 * SECOND);
-    expect_fault(RKM04_FAULT_NO_LABEL, 1);
-    ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_LABEL, 1));
-    ck_assert_ptr_null(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_LABEL, 2));
+    expect_fault(RKM04_FAULT_NO_LOOP, 1);
+    ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_LOOP, 1));
+    ck_assert_ptr_null(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_LOOP, 2));
 }
 END_TEST
 
@@ -540,7 +589,11 @@ static Suite *interp_flow_suite(void)
     tcase_add_test(calls, C8_loops_opened_in_a_subroutine_are_closed_by_its_return);
     tcase_add_test(calls, C8_of_two_equal_labels_the_one_written_last_counts);
     tcase_add_test(calls, C8_a_label_may_be_written_after_the_jump_to_it_has_been_stored);
-    tcase_add_test(calls, C7_a_jump_to_a_missing_label_is_a_fault);
+    tcase_add_test(calls, C7_a_jump_to_a_missing_label_waits_for_it);
+    tcase_add_test(calls, C7_a_program_sent_in_parts_does_what_it_does_sent_at_once);
+    tcase_add_test(calls, C7_a_call_that_has_waited_returns_behind_itself);
+    tcase_add_test(calls, C7_a_seventh_call_is_a_fault_also_where_its_label_is_missing);
+    tcase_add_test(calls, C6_X_and_C3_K_reach_a_motor_that_waits_for_a_label);
     tcase_add_test(calls, C7_a_jump_that_is_not_taken_needs_no_label);
     tcase_add_test(calls, C7_a_fault_cannot_be_resumed_and_is_told_once);
     tcase_add_test(calls, C7_conditional_jumps_follow_inputs_and_variables);

@@ -394,14 +394,56 @@ START_TEST(C6_X_last_in_the_text_with_its_input_at_1_leaves_the_motor_idle)
 }
 END_TEST
 
-START_TEST(C6_X_has_fired_once_and_lets_new_commands_run)
+START_TEST(C6_X_stays_armed_and_ends_new_commands_while_its_input_is_1)
 {
     rig_accept(&rig, '1', "X04 W1000");
     rig_input_at(&rig, 100 * MS, 4, true);
-    rig_accept_at(&rig, 200 * MS, "T01 F1000 R"); /* the input is still 1 */
+    rig_accept_at(&rig, 200 * MS, "T01 F1000 R");
+    rig_to(&rig, 1 * SECOND);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
+    rig_input_at(&rig, 1 * SECOND, 4, false);
+    rig_accept(&rig, '1', "T02 F1000 R T03");
+    rig_input_at(&rig, 2 * SECOND, 4, true);
     rig_to(&rig, 5 * SECOND);
-    rig_expect_state(&rig, 1, RKM04_IDLE);
-    expect_steps(1000);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 2);
+}
+END_TEST
+
+START_TEST(C6_X_ends_what_arrives_on_its_ramp_while_its_input_is_1)
+{
+    rig_accept(&rig, '1', "X04 F5000 R T01");
+    rig_input_at(&rig, 1003 * MS, 4, true);
+    rig_accept_at(&rig, 1100 * MS, "T02");
+    rig_input_at(&rig, 1200 * MS, 4, false);
+    rig_to(&rig, 5 * SECOND);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
+}
+END_TEST
+
+START_TEST(U6_X_and_C75_in_one_slot_leave_the_LED_off)
+{
+    rig_accept(&rig, '1', "X04 F5000 R T01");
+    rig_accept_at(&rig, 1001 * MS, "K");
+    rig_to(&rig, 3 * SECOND + 1);
+    size_t records = rig.record.count;
+    rig_accept(&rig, '1', "C75");
+    rig_input_at(&rig, 3 * SECOND + 2, 4, true);
+    rig_to(&rig, 4 * SECOND);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
+    ck_assert_uint_eq(rig.record.count, records + 1); /* no command any more; no motion, no LED */
+}
+END_TEST
+
+START_TEST(C5_a_held_limit_move_whose_input_is_1_takes_its_one_slot)
+{
+    rig_accept(&rig, '1', ")05 T01");
+    rig_accept_at(&rig, 100 * MS, "K");
+    rig_input_at(&rig, 500 * MS, 5, true);
+    rig_accept_at(&rig, 1 * SECOND, "C75");
+    rig_to(&rig, 2 * SECOND);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 1 * SECOND + 1 * MS);
 }
 END_TEST
 
@@ -508,13 +550,16 @@ static Suite *interp_guards_suite(void)
     tcase_add_test(total_stop, C6_X_of_an_idle_motor_stays_armed);
     tcase_add_test(total_stop, C6_X_fires_before_the_first_command_for_an_idle_motor);
     tcase_add_test(total_stop, C6_X_last_in_the_text_with_its_input_at_1_leaves_the_motor_idle);
-    tcase_add_test(total_stop, C6_X_has_fired_once_and_lets_new_commands_run);
+    tcase_add_test(total_stop, C6_X_stays_armed_and_ends_new_commands_while_its_input_is_1);
+    tcase_add_test(total_stop, C6_X_ends_what_arrives_on_its_ramp_while_its_input_is_1);
+    tcase_add_test(total_stop, U6_X_and_C75_in_one_slot_leave_the_LED_off);
     suite_add_tcase(suite, total_stop);
 
     TCase *limit_moves = tcase_create("limit_moves");
     tcase_add_checked_fixture(limit_moves, setup, teardown);
     tcase_add_test(limit_moves, C6_a_limit_move_stops_at_its_input_without_another_pulse);
     tcase_add_test(limit_moves, C6_a_limit_move_whose_input_is_there_already_takes_no_step);
+    tcase_add_test(limit_moves, C5_a_held_limit_move_whose_input_is_1_takes_its_one_slot);
     tcase_add_test(limit_moves, R5_X_stops_a_limit_move_at_the_next_whole_step);
     tcase_add_test(limit_moves, R5_the_input_of_a_limit_move_ends_it_on_the_way_to_the_last_step_of_a_stop);
     tcase_add_test(limit_moves, R5_a_guard_and_the_input_of_a_limit_move_in_one_slot_end_it_without_another_pulse);

@@ -83,11 +83,12 @@ START_TEST(C3_K_after_a_total_stop_and_at_a_fault_is_nothing)
     rig_accept_at(&rig, 10 * MS, "K");
     rig_to(&rig, 20 * MS);
     rig_expect_state(&rig, 1, RKM04_ENDED);
-    rig_accept(&rig, '1', "J5");
+    rig_input_at(&rig, 20 * MS, 4, false);
+    rig_accept(&rig, '1', "E");
     rig_accept_at(&rig, 30 * MS, "K");
     rig_to(&rig, 40 * MS);
     rig_expect_state(&rig, 1, RKM04_FAULTY);
-    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LABEL);
+    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LOOP);
 }
 END_TEST
 

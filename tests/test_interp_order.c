@@ -166,6 +166,7 @@ END_TEST
 
 START_TEST(C6_X_fires_before_the_first_command_behind_a_fault)
 {
+    rig_power_up(&rig, &(struct rkm04_config){.node = 1, .readings.fault_exit = RKM04_FAULT_EXIT_NEW});
     rig_accept(&rig, '1', "X04 E");
     rig_input_at(&rig, 100 * MS, 4, true);
     rig_to(&rig, 200 * MS);
@@ -243,6 +244,7 @@ END_TEST
 
 START_TEST(C7_a_fault_is_told_once_and_so_is_its_end)
 {
+    rig_power_up(&rig, &(struct rkm04_config){.node = 1, .readings.fault_exit = RKM04_FAULT_EXIT_NEW});
     rig_accept(&rig, '1', "E");
     rig_to(&rig, 10 * MS);
     ck_assert_uint_eq(events_of(RKM04_EVENT_FAULT), 1);

@@ -226,15 +226,15 @@ START_TEST(C1_labels_are_gone)
     rig_accept(&rig, '1', "@1 O01");
     rig_accept_at(&rig, 100 * MS, "\\ J1");
     rig_to(&rig, 200 * MS);
-    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LABEL);
+    rig_expect_state(&rig, 1, RKM04_WAIT);
 }
 END_TEST
 
 START_TEST(C1_a_fault_is_cleared)
 {
-    rig_accept(&rig, '1', "J5");
+    rig_accept(&rig, '1', "E");
     rig_to(&rig, 100 * MS);
-    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LABEL);
+    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LOOP);
     rig_accept(&rig, '1', "\\");
     ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NONE);
     ck_assert_int_eq(rig_motor(&rig, 1).state, RKM04_IDLE);

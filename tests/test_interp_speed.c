@@ -293,6 +293,22 @@ START_TEST(C4_a_change_whose_motion_is_over_does_not_touch_the_next_one)
 }
 END_TEST
 
+START_TEST(C4_V_behind_K_in_its_slot_comes_to_the_stop_ramp)
+{
+    static const char *const first[] = {"V300", "U"}; /* with and without a change before K */
+    for (size_t i = 0; i < 2; i++) {
+        rig_power_up(&rig, &(struct rkm04_config){.node = 1});
+        rig_accept(&rig, '1', "F5000 R");
+        rig_accept_at(&rig, 2000 * MS + 100, first[i]);
+        rig_accept_at(&rig, 2000 * MS + 200, "K");
+        rig_accept_at(&rig, 2000 * MS + 500, "V200");
+        rig_accept_at(&rig, 4 * SECOND, "C75");
+        rig_to(&rig, 5 * SECOND);
+        ck_assert_uint_eq(rig_motor(&rig, 1).speed, i == 0 ? 300 : 1000);
+    }
+}
+END_TEST
+
 static Suite *interp_speed_suite(void)
 {
     Suite *suite = suite_create("interp_speed");
@@ -301,6 +317,7 @@ static Suite *interp_speed_suite(void)
     tcase_add_checked_fixture(motion, setup, teardown);
     tcase_add_test(motion, C4_a_lone_V_changes_the_motion_is_not_stored_and_leaves_the_parameter);
     tcase_add_test(motion, C4_it_may_be_repeated);
+    tcase_add_test(motion, C4_V_behind_K_in_its_slot_comes_to_the_stop_ramp);
     tcase_add_test(motion, C4_it_works_in_G_H_and_endless_motions);
     tcase_add_test(motion, C4_on_the_rising_ramp_it_is_a_change_too);
     tcase_add_test(motion, C4_in_a_compound_motion_it_is_the_V_of_the_present_segment);

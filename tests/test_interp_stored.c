@@ -244,6 +244,7 @@ START_TEST(C3_new_commands_run_after_a_total_stop)
 {
     rig_accept(&rig, '1', "X04 F5000 R T01");
     rig_input_at(&rig, 1003 * MS, 4, true);
+    rig_input_at(&rig, 2 * SECOND, 4, false);
     rig_to(&rig, 3 * SECOND);
     rig_expect_state(&rig, 1, RKM04_ENDED);
     rig_accept(&rig, '1', "T02");
@@ -258,6 +259,7 @@ START_TEST(C3_commands_stored_during_the_ramp_of_a_total_stop_run_behind_it)
 {
     rig_accept(&rig, '1', "X04 F5000 R T01");
     rig_input_at(&rig, 1003 * MS, 4, true);
+    rig_input_at(&rig, 1103 * MS, 4, false);
     rig_accept_at(&rig, 1203 * MS, "T02");
     rig_to(&rig, 10 * SECOND);
     rig_expect_motion_near(&rig, 1, 1, 3 * MS, 1453 * MS, 1045, true);
@@ -278,49 +280,59 @@ START_TEST(C3_a_total_stop_cannot_be_resumed)
 }
 END_TEST
 
-START_TEST(C3_new_commands_run_after_a_fault_and_end_it)
+START_TEST(C3_new_commands_at_a_fault_are_stored_and_not_executed)
 {
-    rig_accept(&rig, '1', "J5 T01");
+    rig_accept(&rig, '1', "E T01");
     rig_to(&rig, 100 * MS);
-    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LABEL);
-    rig_accept(&rig, '1', "T02 W1000");
-    rig_to(&rig, 200 * MS);
-    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NONE);
-    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 2);
-    ck_assert_uint_eq(rig_motor(&rig, 1).index, 4);
-}
-END_TEST
-
-START_TEST(C3_a_text_without_commands_leaves_the_fault)
-{
-    rig_accept(&rig, '1', "J5 T01");
-    rig_accept_at(&rig, 100 * MS, "{ nothing }");
-    ck_assert_int_eq(rig_set(&rig, '1', "Q"), 2);
-    rig_to(&rig, 200 * MS);
-    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LABEL);
-}
-END_TEST
-
-START_TEST(C3_loops_and_calls_of_the_faulty_program_are_dropped)
-{
-    rig_accept(&rig, '1', "L2 '1 @1 J5");
-    rig_accept_at(&rig, 100 * MS, ".");
-    rig_to(&rig, 200 * MS);
-    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_CALL);
-    rig_accept(&rig, '1', "E");
-    rig_to(&rig, 300 * MS);
+    rig_accept(&rig, '1', "T02");
+    rig_accept_at(&rig, 200 * MS, "K");
+    rig_accept_at(&rig, 300 * MS, "C75");
+    rig_to(&rig, 1 * SECOND);
+    rig_expect_state(&rig, 1, RKM04_FAULTY);
     ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LOOP);
+    ck_assert_uint_eq(rig_motor(&rig, 1).index, 1);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 0);
+    ck_assert_str_eq(rig_program(&rig, 1), "E T01 T02");
+    rig_accept(&rig, '1', "\\ T03");
+    rig_to(&rig, 2 * SECOND);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 4);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
 }
 END_TEST
 
-START_TEST(C3_a_fault_after_a_fault_is_told_anew)
+START_TEST(C3_commands_that_wait_behind_a_K_run_before_newer_ones)
 {
-    rig_accept(&rig, '1', "J5");
-    rig_accept_at(&rig, 100 * MS, "E");
-    rig_to(&rig, 200 * MS);
-    ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_LABEL, 1));
-    ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_LOOP, 1));
-    ck_assert_int_eq(rig_motor(&rig, 1).fault, RKM04_FAULT_NO_LOOP);
+    rig_accept(&rig, '1', "S100 V1000 A300 F5000 R");
+    rig_accept_at(&rig, 3500 * MS, "K");
+    rig_accept_at(&rig, 3600 * MS, "T01");
+    rig_accept_at(&rig, 3700 * MS, "K");
+    rig_to(&rig, 9 * SECOND);
+    rig_expect_state(&rig, 1, RKM04_HELD);
+    ck_assert_uint_eq(rig_motor(&rig, 1).index, 6);
+    rig_accept_at(&rig, 10 * SECOND, "T02");
+    rig_to(&rig, 11 * SECOND);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 10 * SECOND);
+    ck_assert_uint_eq(rig_outputs_became(&rig, 3, 1), 10 * SECOND + 1 * MS);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
+}
+END_TEST
+
+START_TEST(P9_from_arrival_to_its_slot_the_first_new_command_is_shown)
+{
+    static const char *const before[] = {"W1000 R", "E U", "X04 W1000", "[ U"}; /* held, at a fault, ended, held */
+    for (size_t i = 0; i < sizeof before / sizeof *before; i++) {
+        rig_power_up(&rig, &(struct rkm04_config){.node = 1, .readings.fault_exit = RKM04_FAULT_EXIT_NEW});
+        rig_accept(&rig, '1', before[i]);
+        rig_input_at(&rig, 5 * MS, 4, true);
+        rig_input_at(&rig, 7 * MS, 4, false);
+        rig_accept_at(&rig, 8 * MS, "K");
+        rig_accept_at(&rig, 10500, "W100");
+        rig_to(&rig, 10800);
+        ck_assert_str_eq(rig_ask(&rig, 7, 1), " 0; 3");
+        rig_to(&rig, 12 * MS);
+        ck_assert_str_eq(rig_ask(&rig, 7, 1), " 0; 3");
+        rig_expect_state(&rig, 1, RKM04_DWELL);
+    }
 }
 END_TEST
 
@@ -355,10 +367,9 @@ static Suite *interp_stored_suite(void)
     tcase_add_test(ended, C3_new_commands_run_after_a_total_stop);
     tcase_add_test(ended, C3_commands_stored_during_the_ramp_of_a_total_stop_run_behind_it);
     tcase_add_test(ended, C3_a_total_stop_cannot_be_resumed);
-    tcase_add_test(ended, C3_new_commands_run_after_a_fault_and_end_it);
-    tcase_add_test(ended, C3_a_text_without_commands_leaves_the_fault);
-    tcase_add_test(ended, C3_loops_and_calls_of_the_faulty_program_are_dropped);
-    tcase_add_test(ended, C3_a_fault_after_a_fault_is_told_anew);
+    tcase_add_test(ended, C3_new_commands_at_a_fault_are_stored_and_not_executed);
+    tcase_add_test(ended, C3_commands_that_wait_behind_a_K_run_before_newer_ones);
+    tcase_add_test(ended, P9_from_arrival_to_its_slot_the_first_new_command_is_shown);
     suite_add_tcase(suite, ended);
 
     return suite;

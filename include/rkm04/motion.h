@@ -53,10 +53,10 @@ struct rkm04_break {
 
 /* The break points of a motion, the passed ones included (P7). */
 struct rkm04_profile {
-    struct rkm04_break point[RKM04_BREAKS_MAX];
     uint8_t count; /* points in use */
     uint8_t leg;   /* the motion is between point[leg] and point[leg + 1] */
     bool endless;  /* the last point's slope holds for ever; otherwise the last point is the end */
+    struct rkm04_break point[RKM04_BREAKS_MAX];
 };
 
 /* The pulse generator of one motor. */
@@ -89,9 +89,6 @@ enum rkm04_motion_kind {
 
 /* One motion from its command to its end, through holds. */
 struct rkm04_motion {
-    struct rkm04_profile profile;
-    struct rkm04_ramp ramp;
-    struct rkm04_segment segment[RKM04_SEGMENTS_MAX];
     uint32_t done;       /* pulses sent so far, modulo 2^32 (P9) */
     uint32_t total;      /* of a STEPS motion */
     uint32_t mark;       /* pulse at which the outputs of T51-58 are set; 0 = none (C12) */
@@ -104,6 +101,9 @@ struct rkm04_motion {
     bool moving;         /* between begin and last pulse; false during a hold */
     bool stopping;       /* on a stop ramp (R5) */
     bool changed;        /* its speed has been changed on the way (C4) */
+    struct rkm04_ramp ramp;
+    struct rkm04_segment segment[RKM04_SEGMENTS_MAX];
+    struct rkm04_profile profile;
 };
 
 #ifdef __cplusplus

@@ -8,6 +8,11 @@
 
 #include <stdint.h>
 
+/* 0: a port without readings. The unit does what is specified whatever the settings are, but for speed_change. */
+#ifndef RKM04_READINGS
+#define RKM04_READINGS 1
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

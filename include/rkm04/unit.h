@@ -31,10 +31,10 @@ extern "C" {
 
 /* ---- Errors ------------------------------------------------------------------------------------------------------- */
 
-/* Why a program stopped; one latch a motor, the first reason stays until new commands begin or `\` (C3, C7, E1). */
+/* Why a program stopped; one latch a motor, the reason stays until `\` (C3, C7, E1; reading `fault-exit`). */
 enum rkm04_fault {
     RKM04_FAULT_NONE,
-    RKM04_FAULT_NO_LABEL,   /* jump or call to a label that is not in memory (C7) */
+    RKM04_FAULT_NO_LABEL,   /* jump or call to a label that is not in memory (C7, reading `label`) */
     RKM04_FAULT_LOOP_LEVELS, /* a 9th loop level (C7) */
     RKM04_FAULT_NO_LOOP,    /* E without a loop (C7) */
     RKM04_FAULT_CALL_LEVELS, /* a 7th call level (C7) */
@@ -107,9 +107,9 @@ struct rkm04_config {
 struct rkm04_program {
     uint64_t written; /* number of the next command to arrive */
     uint64_t closed;  /* number of the last `]`, plus 1; 0 = none */
+    uint16_t label[RKM04_LABELS]; /* place of the label written last, plus 1; 0 = not in memory (C8) */
     uint32_t argument[RKM04_PROGRAM_MAX];
     uint8_t op[RKM04_PROGRAM_MAX];
-    uint16_t label[RKM04_LABELS]; /* place of the label written last, plus 1; 0 = not in memory (C8) */
 };
 
 struct rkm04_loop {
@@ -122,8 +122,8 @@ enum rkm04_state {
     RKM04_IDLE,   /* nothing to execute */
     RKM04_READY,  /* executes a command in the first slot at or after `due` */
     RKM04_MOVING, /* in a motion or its stop ramp */
-    RKM04_DWELL,  /* W, until `due` */
-    RKM04_WAIT,   /* O, Z */
+    RKM04_DWELL,  /* W, until `due`; also a motion that is being planned (reading `planning`) */
+    RKM04_WAIT,   /* O, Z; J, I, ' to a label that has not arrived */
     RKM04_BLOCK,  /* [ */
     RKM04_HELD,   /* after K */
     RKM04_ENDED,  /* by X */
@@ -139,36 +139,15 @@ enum rkm04_after {
 };
 
 struct rkm04_motor {
-    struct rkm04_program program;
-    struct rkm04_motion motion;
-
+    /* First what is used all over: small offsets make small code. */
     uint64_t next;       /* number of the next command */
     uint64_t number;     /* number of the command being executed */
     struct rkm04_command command;
     uint64_t due;        /* READY, DWELL: tick from which it goes on */
-    uint64_t fresh;      /* number of the first command stored since K, X or a fault; RKM04_NEVER: none (C3) */
+    uint64_t fresh;      /* number of the first command stored since K, X or a fault, not begun; RKM04_NEVER: none (C3) */
     uint64_t wake;       /* slot in which its turn has something to do; RKM04_NEVER: none */
     uint64_t last_pulse; /* tick of the last pulse */
     uint64_t blink_from; /* tick from which the LED blinks */
-
-    struct rkm04_loop loop[RKM04_LOOP_LEVELS];
-    uint64_t call[RKM04_CALL_LEVELS]; /* number of the command to return to */
-    uint8_t loops, calls;
-
-    uint32_t count;      /* F, B, G: steps of the next R */
-    int32_t position;    /* counter (R8) */
-    uint16_t start_speed, speed, acceleration; /* S, V, A */
-    bool forward;        /* direction of the next R */
-
-    struct rkm04_segment segment[RKM04_SEGMENTS_MAX]; /* the Y table */
-    uint8_t segments;    /* entered; more than RKM04_SEGMENTS_MAX: too many */
-    bool segments_bad;   /* a segment without steps or two directions (E1) */
-    bool segments_forward;
-    uint8_t segments_marks; /* T51-58 on when the table's first Y came (C12) */
-
-    uint8_t functions;   /* T51-58: bit 0 is 51 */
-    bool keep;           /* T40 */
-    uint8_t guard_m, guard_n, guard_x; /* input 1..8; 0 = not armed */
 
     uint8_t state;       /* enum rkm04_state */
     uint8_t held;        /* HELD: the state to go back to */
@@ -181,11 +160,32 @@ struct rkm04_motor {
     uint8_t slot;        /* enum rkm04_slot: what is in flash */
 
     /* Requests waiting for the next slot, in order of arrival (K2, C3, C4). */
-    char pending[4];     /* 'K' and 'C' (C75) */
     uint8_t pendings;
-    uint16_t change_speed;   /* C4: new speed; 0 = none */
-    uint8_t change_after;    /* after how many of the pendings it came */
+    char pending[4];         /* 'K' and 'C' (C75) */
+    uint16_t change_speed;   /* C4: new speed; 0 = none. It came before all of the pendings */
     uint64_t change_due;     /* tick from which it may act */
+
+    uint32_t count;      /* F, B, G: steps of the next R */
+    int32_t position;    /* counter (R8) */
+    uint16_t start_speed, speed, acceleration; /* S, V, A */
+    bool forward;        /* direction of the next R */
+
+    uint8_t functions;   /* T51-58: bit 0 is 51 */
+    bool keep;           /* T40 */
+    uint8_t guard_m, guard_n, guard_x; /* input 1..8; 0 = not armed */
+
+    uint8_t segments;    /* entered in the Y table; more than RKM04_SEGMENTS_MAX: too many */
+    bool segments_bad;   /* a segment without steps or two directions (E1) */
+    bool segments_forward;
+    uint8_t segments_marks; /* T51-58 on when the table's first Y came (C12) */
+    struct rkm04_segment segment[RKM04_SEGMENTS_MAX]; /* the Y table */
+
+    uint8_t loops, calls;
+    uint64_t call[RKM04_CALL_LEVELS]; /* number of the command to return to */
+    struct rkm04_loop loop[RKM04_LOOP_LEVELS];
+
+    struct rkm04_motion motion;
+    struct rkm04_program program;
 };
 
 /* The answer going out. Its content is that of the tick of the request, whatever happens meanwhile. */
@@ -217,21 +217,25 @@ struct rkm04_counters {
 };
 
 struct rkm04_unit {
+    /* First what is used all over: small offsets make small code. */
     struct rkm04_config config;
     const struct rkm04_port *port;
     void *context;
     uint64_t now;        /* first tick not yet done */
-    struct rkm04_motor motor[RKM04_MOTORS];
     uint16_t variables;  /* VAR 80 in bit 0 */
-    uint8_t inputs, outputs; /* DI, the register DO */
+    uint16_t busy;       /* slots until commands are executed and answers sent again (reading `store-time`) */
+    uint8_t inputs, outputs; /* DI as they are, the register DO */
+    uint8_t seen;        /* DI as they count in the slot done last */
+    uint8_t differs[RKM04_INPUTS]; /* slots in a row in which an input was not as it counts (reading `input-filter`) */
     bool simulation;     /* T41 */
     bool touched;        /* something came in or VAR changed: every motor has its turn in the next slot */
+    bool waiting;        /* a request stands in `message` until the answer has gone (P10) */
 
     struct rkm04_receiver receiver;
     struct rkm04_sender sender;
     struct rkm04_answer answer;
     struct rkm04_counters counters;
-    bool waiting;        /* a request stands in `message` until the answer has gone (P10) */
+    struct rkm04_motor motor[RKM04_MOTORS];
     uint8_t message[RKM04_MESSAGE_MAX];
 };
 
@@ -250,10 +254,10 @@ uint64_t rkm04_now(const struct rkm04_unit *unit);
  * going out (P10): offer the rest again once rkm04_send has emptied it. A port that cannot wait counts them as lost. */
 size_t rkm04_receive(struct rkm04_unit *unit, const uint8_t *bytes, size_t length);
 
-/* Fetch up to `room` bytes of the answer for the line. Returns their number; 0: nothing to send. */
+/* Fetch up to `room` bytes of the answer for the line. Returns their number; 0: nothing to send now. */
 size_t rkm04_send(struct rkm04_unit *unit, uint8_t *bytes, size_t room);
 
-/* Is there anything to send? */
+/* Is there anything to send now? */
 bool rkm04_sending(const struct rkm04_unit *unit);
 
 /* Set the inputs from the present tick on; bit 0 is DI 01 (U2). */
@@ -298,8 +302,8 @@ struct rkm04_counters rkm04_counters(const struct rkm04_unit *unit);
 int rkm04_set_command(struct rkm04_unit *unit, char motor, const void *text, size_t length, uint8_t *character);
 
 /* Any message, without framing, as if from node 0 at the present tick. `answer` receives up to `room` bytes of what the
- * unit answers. Returns the length of the whole answer (which may be more than `room`); 0: none. Must not be called while
- * an answer is going out on the line. */
+ * unit answers, at once, Store Flash too. Returns the length of the whole answer (which may be more than `room`); 0: none.
+ * Must not be called while an answer is going out on the line. */
 size_t rkm04_exchange(struct rkm04_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room);
 
 /* Names for people and traces: "idle", "no_label", "off", … Never NULL. */

@@ -66,7 +66,7 @@ class Subject:
 
 
 def reference(story):
-    result, unit = Result(), Unit(story.latency)
+    result, unit = Result(), Unit(story.readings)
     for action in story.actions:
         unit.advance_to(action.tick)
         if isinstance(action, Input):

@@ -10,6 +10,7 @@ from copy import deepcopy
 import programs
 import story as stories
 from compare import Comparison, Subject, reference
+from readings import Readings
 from story import Send, Story
 
 
@@ -29,7 +30,7 @@ def smaller(story):
     size = len(actions) // 2
     while size:
         for at in range(0, len(actions), size):
-            yield Story(story.latency, actions[:at] + actions[at + size:], story.end)
+            yield Story(story.readings, actions[:at] + actions[at + size:], story.end)
         size //= 2
     for at, action in enumerate(actions):
         if not isinstance(action, Send):
@@ -41,8 +42,9 @@ def smaller(story):
                 del copy.actions[at].commands[first:first + size]
                 yield copy
             size //= 2
-    if story.latency:
-        yield Story(0, actions, story.end)
+    for name, value in story.readings.items():
+        if value != Readings.default(name):
+            yield Story(Readings(**{**story.readings, name: Readings.default(name)}), actions, story.end)
 
 
 def minimise(subject, story, found, seconds=60):
@@ -68,7 +70,7 @@ def minimise(subject, story, found, seconds=60):
 def shortened(story, found):
     """The story up to a little after the difference."""
     end = min(story.end, found[0] + 2000)
-    return Story(story.latency, [action for action in story.actions if action.tick < end], end)
+    return Story(story.readings, [action for action in story.actions if action.tick < end], end)
 
 
 def report(story, found):

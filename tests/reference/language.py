@@ -31,8 +31,8 @@ class Refused(Exception):
 
 
 class Reader:
-    def __init__(self, text):
-        self.text, self.at = text, 0
+    def __init__(self, text, negative=True):
+        self.text, self.at, self.negative = text, 0, negative
 
     def blanks(self):
         while self.at < len(self.text) and self.text[self.at] <= 0x20:
@@ -109,14 +109,19 @@ class Reader:
             self.at += 1
             self.blanks()
         value = self.digits()
-        if value is None or (-value if negative else value) not in SIGNED:
+        if value is None or (-value if negative else value) not in SIGNED or (negative and value and not self.negative):
             raise Refused(1, character)
         return ("=", -value if negative else value)
 
 
-def parse(text):
-    """Commands of a text (bytes), or Refused."""
-    reader, commands = Reader(text), []
+def is_bare(text):
+    """Is a text of one command nothing but this command?"""
+    return text[0] > 0x20 and text[-1] > 0x20 and b"{" not in text
+
+
+def parse(text, negative=True):
+    """Commands of a text (bytes), or Refused. negative: is there a `=-5`?"""
+    reader, commands = Reader(text, negative), []
     while True:
         reader.blanks()
         if reader.peek() is None:

@@ -18,7 +18,7 @@ def next_slot(tick):
 
 class Motor:
     def __init__(self, unit, number):
-        self.unit, self.number = unit, number
+        self.unit, self.number, self.readings = unit, number, unit.readings
         self.position = 0
         self.motion = None
         self.reset(0)
@@ -35,6 +35,7 @@ class Motor:
         self.after = None           # what follows a stop: None, "rest", "next" (hold), "end"
         self.held = None            # what a hold goes back to
         self.remain = 0             # of a held dwell, ticks
+        self.planned = None         # the command of a motion being planned (reading planning)
         self.resume = False
         self.fresh, self.hold_fresh = None, False
         self.requests, self.change = [], None
@@ -56,15 +57,15 @@ class Motor:
     def oldest(self):
         return max(0, self.written - MEMORY)
 
-    def receive(self, commands, tick):
-        """Commands of a message for this motor (C1-C4, C10). Returns the flag."""
+    def receive(self, commands, alone, tick):
+        """Commands of a message for this motor (C1-C4, C10); alone: it is just one. Returns the flag."""
         for i in range(len(commands) - 1, -1, -1):
             if commands[i] == ("\\",):
                 self.met(f"C1 reset when {self.state}")
                 self.unit.reset_motor(self, tick)
                 self.store(commands[i + 1:])
                 return self.flag
-        if len(commands) == 1 and self.alone(commands[0], tick):
+        if alone and self.alone(commands[0], tick):
             return 0
         self.store(commands)
         return self.flag
@@ -77,7 +78,7 @@ class Motor:
             self.ask_resume()
         elif command[0] == "V" and self.state == "moving":
             self.met("C4 V in a motion")
-            if not self.motion.stopping and not self.motion.limit_input:
+            if "K" not in self.requests and not self.motion.stopping and not self.motion.limit_input:
                 self.ask_change(command[1], tick)
         else:
             return False
@@ -98,11 +99,10 @@ class Motor:
             self.written += 1
         if self.written == first:
             return
-        if self.state in ("ended", "fault") or self.after == "end" or self.holding():
-            if self.fresh is None or self.hold_fresh:
-                self.fresh = first
         if self.fresh is not None:
-            self.hold_fresh = False
+            self.hold_fresh = self.hold_fresh and self.readings["hold-exit"] == "latch"
+        elif self.ends_with_new():
+            self.fresh, self.hold_fresh = first, False
         if self.state == "idle":
             self.state, self.current = "ready", max(first, self.oldest())
 
@@ -111,10 +111,16 @@ class Motor:
 
     # ---- K, C75, V (C3, C4) -------------------------------------------------------------------------------------------
 
+    def ends_with_new(self):
+        """Will the motor stand still, with new commands as a way out?"""
+        if self.state == "ended" or self.after == "end":
+            return True
+        if self.state == "fault":
+            return self.readings["fault-exit"] == "new"
+        return self.readings["hold-exit"] == "new" and self.holding()
+
     def holding(self):
         """Is a hold in force or asked for, all requests so far taken into account?"""
-        if self.fresh is not None:
-            return self.hold_fresh
         held = (self.state == "held" or self.after in ("rest", "next")) and not self.resume
         for request in self.requests:
             if request in ("K", "C"):
@@ -127,9 +133,7 @@ class Motor:
             self.hold_fresh = True
         elif self.state in ("ended", "fault") or self.after == "end":
             return
-        elif self.state == "idle":
-            return
-        else:
+        elif self.state != "idle" and (self.state != "ready" or self.next < self.written):
             self.requests.append("K")
 
     def ask_resume(self):
@@ -141,7 +145,7 @@ class Motor:
 
     def ask_change(self, speed, tick):
         if self.change is None:
-            self.change = [tick + self.unit.latency, speed]
+            self.change = [tick + self.readings["speed-change"] * SLOT, speed]
             self.requests.append("V")
         else:
             self.change[1] = speed
@@ -161,13 +165,11 @@ class Motor:
                     speed, self.change = self.change[1], None
                     if self.state == "moving":
                         self.motion.change(tick, speed)
-        self.leave_hold(tick)
 
-    def leave_hold(self, tick):
-        if self.state in ("held", "ended", "fault") and tick >= self.due and self.fresh is not None:
+    def look_for_new(self, tick):
+        stands = self.state in ("held", "ended", "fault")
+        if stands and self.fresh is not None and (self.hold_fresh or tick >= self.due):
             self.begin_fresh(tick)
-        if self.state == "held" and self.resume and tick >= self.due:
-            self.go_on(tick)
 
     def hold(self, tick):
         self.change = None
@@ -191,16 +193,16 @@ class Motor:
 
     def begin_fresh(self, tick):
         self.met(f"C3 new commands when {self.state}")
-        self.next, self.fresh = self.fresh, None
+        self.next = self.fresh
         self.loops, self.calls = [], []
         self.motion = None
         self.after = None
         self.resume = False
-        self.state = "ready"
         self.due = max(self.due, tick)
         if self.hold_fresh:
-            self.hold_fresh = False
             self.state, self.held = "held", "ready"
+        else:
+            self.state, self.fresh, self.current = "ready", None, max(self.fresh, self.oldest())
 
     def go_on(self, tick):
         """C75."""
@@ -209,14 +211,11 @@ class Motor:
         self.state = self.held
         if self.held == "dwell":
             self.due = tick + self.remain
-            if self.remain == 0:
-                self.state = "ready"
         elif self.held == "moving":
             motion = self.motion
-            complete = motion.total is not None and motion.done >= motion.total
-            if complete or motion.limit_input and self.unit.bit(motion.limit_input):
+            if motion.total is not None and motion.done >= motion.total:
                 self.motion, self.state = None, "ready"
-            elif self.fired():      # no further step: its one slot
+            elif self.ends_at_once(motion.limit_input):  # no further step: its one slot
                 self.motion, self.state, self.due = None, "ready", tick + SLOT
             else:
                 self.motion.go_from(tick)
@@ -272,12 +271,18 @@ class Motor:
         """Begin a motion."""
         self.motion = Motion(tick, self.start, parts, forward, self.met, limit_input)
         self.after, self.change = None, None
-        if limit_input and self.unit.bit(limit_input) or self.fired():
+        if self.ends_at_once(limit_input):
             self.motion = None      # no step: one slot (C5)
             return
         self.state = "moving"
         self.unit.note(tick, self.number, "motion", 1)
         self.light(tick, 1)
+
+    def ends_at_once(self, limit_input):
+        """Is a motion that begins, or goes on, over before its first step?"""
+        if limit_input and self.unit.bit(limit_input):
+            return True
+        return self.readings["guard-start"] == "none" and self.fired()
 
     def light(self, tick, led):
         if led != self.led:
@@ -297,7 +302,8 @@ class Motor:
     def look(self, tick):
         """X, M, N, the input of a limit move."""
         if "X" in self.guards and self.unit.bit(self.guards["X"]) and self.executing():
-            del self.guards["X"]
+            if self.readings["x-after"] == "once":
+                del self.guards["X"]
             self.met(f"C6 X fires when {self.state}")
             self.total_stop(tick)
         if self.state == "moving" and not self.motion.stopping and self.fired():
@@ -332,10 +338,22 @@ class Motor:
 
     def turn(self, tick):
         self.obey(tick)
+        self.look_for_new(tick)
         self.look(tick)
-        self.leave_hold(tick)
+        self.look_for_new(tick)
+        if self.state == "held" and self.resume and tick >= self.due:
+            self.go_on(tick)
+        if tick >= self.unit.busy_until:
+            self.interpret(tick)
+
+    def interpret(self, tick):
         if self.state == "dwell" and tick >= self.due:
             self.state = "ready"
+            if self.planned is not None:
+                self.met("R1 a motion has been planned")
+                command, self.planned = self.planned, None
+                COMMANDS[command[0]](self, tick, *command[1:])
+                return
         if self.state == "wait" and self.wait_is_over():
             self.state, self.due = "ready", tick + SLOT
         elif self.state == "ready" and tick >= self.due:
@@ -345,7 +363,19 @@ class Motor:
         letter = self.tape_command[0]
         if letter == "[":
             return any(n > self.current for n, c in self.tape.items() if c == ("]",))
+        if letter in "JI'":
+            return self.go_to_label()
         return self.unit.bit(self.tape_command[1]) == (letter == "O")
+
+    def go_to_label(self):
+        """The label of J, I, ' (C7). Returns whether it is there."""
+        at = self.label(self.tape_command[-1])
+        if at is None:
+            return False
+        if self.tape_command[0] == "'":
+            self.calls.append(self.next)
+        self.next = at
+        return True
 
     def execute(self, tick):
         self.next = max(self.next, self.oldest())
@@ -362,6 +392,10 @@ class Motor:
             self.unit.note(tick, self.number, "fault", 0)
         self.unit.note(tick, self.number, "command", self.current % MEMORY + 1)
         self.met(f"5 {command[0]}")
+        self.planned = None
+        if self.readings["planning"] and command[0] in "RGH()":
+            self.state, self.due, self.planned = "dwell", tick + self.readings["planning"] * SLOT, command
+            return
         COMMANDS[command[0]](self, tick, *command[1:])
 
     def fail(self, tick, fault):
@@ -376,7 +410,7 @@ class Motor:
             return 0
         if self.state == "moving":
             return self.motion.due if self.motion.total is None and self.motion.end is None else self.ends_at()
-        if self.state in ("ready", "dwell") or self.fresh is not None or self.resume:
+        if self.state in ("ready", "dwell") or self.resume or (self.fresh is not None and not self.hold_fresh):
             return self.due
         return None
 
@@ -390,12 +424,14 @@ class Motor:
 
     # ---- commands -----------------------------------------------------------------------------------------------------
 
-    def jump(self, tick, label):
-        at = self.label(label)
-        if at is None:
+    def jump(self, tick, _label):
+        if self.go_to_label():
+            return
+        if self.readings["label"] == "fault":
             self.fail(tick, NO_LABEL)
         else:
-            self.next = at
+            self.met(f"C7 {self.tape_command[0]} waits for its label")
+            self.state = "wait"
 
     def branch(self, tick, source, level, label):
         if self.unit.bit(source) == (level == "H"):
@@ -423,13 +459,10 @@ class Motor:
             self.next = start + 1
 
     def call(self, tick, label):
-        if self.label(label) is None:
-            self.fail(tick, NO_LABEL)
-        elif len(self.calls) >= 6:
+        if len(self.calls) >= 6:
             self.fail(tick, CALL_LEVELS)
         else:
-            self.calls.append(self.next)
-            self.next = self.label(label)
+            self.jump(tick, label)
 
     def back(self, tick):
         if not self.calls:
@@ -468,10 +501,17 @@ class Motor:
     def limit_move(self, tick, source, forward):
         self.move(tick, [(None, self.start, self.acceleration)], forward, source)
 
-    def segment(self, _tick):
+    def segment(self, tick):
         if not self.table:
             self.marks = frozenset(self.functions)
         self.table.append((self.count, self.forward, self.speed, self.acceleration))
+        if len(self.table) > 10 and self.readings["y-eleventh"] == "y":
+            self.refuse_table(tick)
+
+    def refuse_table(self, tick):
+        self.table = []
+        self.fail(tick, MOTION_FAULT)
+        self.light(tick, 2)
 
     def run(self, tick):
         if not self.table:
@@ -482,8 +522,7 @@ class Motor:
         table, self.table = self.table, []
         total = sum(steps for steps, _, _, _ in table)
         if len(table) > 10 or len({f for _, f, _, _ in table}) > 1 or total > 160000000 or not all(s for s, _, _, _ in table):
-            self.fail(tick, MOTION_FAULT)
-            self.light(tick, 2)
+            self.refuse_table(tick)
             return
         self.marked = frozenset(self.marks & self.functions)
         self.move(tick, [(steps, v, a) for steps, _, v, a in table], table[0][1])

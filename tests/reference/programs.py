@@ -4,6 +4,7 @@
 import math
 from random import Random
 
+from readings import NAMED, TIMES, Readings
 from story import Ask, Input, Send, Story
 
 VARIABLES = [80, 81, 82, 95]
@@ -13,6 +14,7 @@ SLOT = 1000
 class Author:
     def __init__(self, seed, number):
         self.random = Random(f"{seed}/{number}")
+        self.dice = Random(f"{seed}/{number}/readings")
         r = self.random
         self.end = r.choice([1, 2, 3, 4]) * 1_000_000
         self.inputs = r.sample(range(1, 9), 3)
@@ -237,8 +239,26 @@ class Author:
             actions.append(Ask(self.tick(), r.choice([4, 4, 7, 7, 7, 6, 6, 6, 5]), self.motor()))
         for motor in range(1, 5):
             actions += [Ask(self.end - 1, number, motor) for number in (4, 5, 6, 7)]
+        readings = self.readings(r.choice([0, 0, 0, 7, 300, 2000]))
+        if readings["store-time"]:
+            for _ in range(self.dice.randint(1, 4)):
+                actions.append(Ask(self.dice.randrange(self.end), 3, self.dice.choice([0, 1, 2])))
         actions.sort(key=lambda action: action.tick)
-        return Story(r.choice([0, 0, 0, 7, 300, 2000]), actions, self.end)
+        return Story(readings, actions, self.end)
+
+    def readings(self, latency):
+        """All the defaults but that of `speed-change` in half of the stories; in the others each reading by chance."""
+        readings, dice = Readings(speed_change=latency), self.dice
+        if dice.random() < 0.5:
+            return readings
+        share = dice.choice([0.1, 0.3, 0.5])
+        for name, values in NAMED.items():
+            if dice.random() < share:
+                readings[name] = values[1]
+        for name, most in TIMES.items():
+            if name != "speed-change" and dice.random() < share:
+                readings[name] = dice.choice([1, 2, 5, 20, most // 20, most // 10 + 1])
+        return readings
 
     def fill(self, actions):
         """Programs that fill the memory and go round (C10)."""

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Stories: what a unit is told and asked, and when. A line each:
 
-    latency MS                how long a change of speed takes (C4); first, 0 if missing
+    readings NAME=VALUE,...   what is not the default (section 10); first, may be missing
     input TICK MASK           inputs from this tick on, bit 0 is DI 01
     send TICK MOTOR TEXT      Set Command; %XX is a byte
-    ask TICK NUMBER MOTOR     message 4 to 7
+    ask TICK NUMBER MOTOR     message 3 to 7 (3: Store Flash, into a unit without flash)
     end TICK
 """
 
 import re
 from dataclasses import dataclass, field
+
+from readings import Readings
 
 
 @dataclass
@@ -60,16 +62,19 @@ class Ask:
 
 @dataclass
 class Story:
-    latency: int
+    readings: Readings
     actions: list
     end: int
 
     def lines(self):
-        return [f"latency {self.latency}"] + [action.line() for action in self.actions] + [f"end {self.end}"]
+        others = self.readings.others()
+        head = [f"readings {','.join(others)}"] if others else []
+        return head + [action.line() for action in self.actions] + [f"end {self.end}"]
 
     def told(self):
         """The same for the program `subject`."""
-        lines = [f"q {self.latency}"] + [action.told() for action in self.actions] + [f"e {self.end}"]
+        numbers = " ".join(map(str, self.readings.numbers()))
+        lines = [f"q {numbers}"] + [action.told() for action in self.actions] + [f"e {self.end}"]
         return "".join(line + "\n" for line in lines).encode()
 
 
@@ -78,7 +83,7 @@ def unescape(text):
 
 
 def read(text):
-    story = Story(0, [], 0)
+    story = Story(Readings(), [], 0)
     for line in text.splitlines():
         word, _, rest = line.strip().partition(" ")
         if word in ("", "#"):
@@ -89,8 +94,10 @@ def read(text):
         elif word in ("input", "ask"):
             numbers = [int(n) for n in rest.split()]
             story.actions.append(Input(*numbers) if word == "input" else Ask(*numbers))
-        elif word in ("latency", "end"):
-            setattr(story, word, int(rest))
+        elif word == "readings":
+            story.readings.read(rest)
+        elif word == "end":
+            story.end = int(rest)
         else:
-            raise ValueError(f"expected latency, input, send, ask or end, got {word!r}")
+            raise ValueError(f"expected readings, input, send, ask or end, got {word!r}")
     return story

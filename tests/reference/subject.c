@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* subject: runs stories of the differential test on the core and tells what happened.
  *
- * Standard input, a line each: `i TICK MASK` inputs, `m TICK HEX` a message, `q LATENCY` a new unit (speed change latency in
- * ms), `e TICK` the end of the story. Standard output: `a HEX` the answer, `n TICK MOTOR WHAT VALUE` a happening,
+ * Standard input, a line each: `i TICK MASK` inputs, `m TICK HEX` a message, `q NUMBER…` a new unit with its thirteen readings,
+ * in the order of struct rkm04_readings, `e TICK` the end of the story. Standard output: `a HEX` the answer, `n TICK MOTOR WHAT VALUE` a happening,
  * `p COUNT COUNT COUNT COUNT` and so many ticks (64 bits, the machine's order) of pulses of each motor, at the end. */
 #include <inttypes.h>
 #include <stdio.h>
@@ -55,6 +55,19 @@ static void event(void *context, uint64_t tick, unsigned motor, enum rkm04_event
         printf("n %" PRIu64 " %u %s %" PRIu32 "\n", tick, motor, name[what], value);
 }
 
+static struct rkm04_readings read_readings(const char *text)
+{
+    unsigned n[13] = {0};
+    char *rest = NULL;
+
+    for (size_t i = 0; i < sizeof n / sizeof *n; i++, text = rest)
+        n[i] = (unsigned)strtoul(text, &rest, 10);
+    return (struct rkm04_readings){
+        (uint8_t)n[0], (uint8_t)n[1], (uint8_t)n[2], (uint8_t)n[3], (uint8_t)n[4], (uint8_t)n[5], (uint8_t)n[6],
+        (uint8_t)n[7], (uint8_t)n[8], (uint8_t)n[9], (uint16_t)n[10], (uint16_t)n[11], (uint16_t)n[12],
+    };
+}
+
 static void message(const char *hex)
 {
     static uint8_t data[RKM04_MESSAGE_MAX], answer[ANSWER_MAX];
@@ -94,7 +107,7 @@ int main(void)
         uint64_t number = strtoull(line + 1, &rest, 10);
 
         if (line[0] == 'q') {
-            config.readings.speed_change = (uint16_t)number;
+            config.readings = read_readings(line + 1);
             rkm04_init(&unit, &config, &port, NULL);
             continue;
         }

@@ -53,7 +53,7 @@ class Texts(unittest.TestCase):
 
 
 class Differences(unittest.TestCase):
-    story = read("latency 0\nsend 0 1 W5 F3 R T01\nsend 0 2 T02\nask 90000 4 1\nend 100000")
+    story = read("send 0 1 W5 F3 R T01\nsend 0 2 T02\nask 90000 4 1\nend 100000")
 
     def test_equal_results_are_equal(self):
         comparison = Comparison(self.story, reference(self.story), reference(self.story))
@@ -77,7 +77,7 @@ class Differences(unittest.TestCase):
 
         found, _, _ = differential.difference(NoOutputs, self.story)
         story, _ = differential.minimise(NoOutputs, self.story, found)
-        self.assertIn(story.lines()[1:-1], (["send 0 2 T02"], ["send 0 1 T01"]))
+        self.assertIn(story.lines()[:-1], (["send 0 2 T02"], ["send 0 1 T01"]))
 
     def test_a_missing_answer_is_a_difference(self):
         other = Result()

@@ -10,10 +10,13 @@ from motor import MEMORY, SLOT, Motor, next_slot
 
 
 class Unit:
-    def __init__(self, latency=0):
-        self.latency = latency * SLOT
+    def __init__(self, readings):
+        self.readings = readings
         self.now = 0                # first tick that is not done
         self.inputs = self.outputs = self.variables = 0
+        self.seen_inputs = 0        # as they count
+        self.sampled = [(0, 0)] * 8  # state of each input in the slots, and the slot since which it has it
+        self.busy_until = 0         # a store (reading store-time)
         self.simulation = False
         self.notes = []             # (tick, motor, what, value)
         self.pulses = [[] for _ in range(5)]  # ticks, by motor
@@ -39,7 +42,7 @@ class Unit:
         """DI 1-8 or VAR 80-95."""
         if number >= 80:
             return bool(self.variables >> (number - 80) & 1)
-        return bool(self.inputs >> (number - 1) & 1)
+        return bool(self.seen_inputs >> (number - 1) & 1)
 
     def set(self, tick, number, on):
         if number >= 80:
@@ -84,6 +87,8 @@ class Unit:
         if motor.fault:
             self.note(tick, motor.number, "fault", 0)
         motor.reset(tick)
+        if self.readings["reset-t41"] == "clear":
+            self.simulate(tick, False)
         self.busy = True
 
     # ---- time (K2, K3) ------------------------------------------------------------------------------------------------
@@ -98,15 +103,25 @@ class Unit:
         slot = next_slot(self.now)
         while slot < tick:
             self.pulses_to(slot)
+            self.sample(slot)
             for motor in self.motors:
                 motor.turn(slot)
             slot += SLOT
-            if not self.busy:
+            if not self.busy and self.inputs == self.seen_inputs and slot > self.busy_until + SLOT:
                 wakes = [wake for wake in (motor.wake() for motor in self.motors) if wake is not None]
                 slot = max(slot, next_slot(min(wakes, default=tick)))
             self.busy = False
         self.pulses_to(tick - 1)
         self.now = tick
+
+    def sample(self, slot):
+        """An input counts when it has been constant for so long, as seen in the slots (reading input-filter)."""
+        for i in range(8):
+            level = self.inputs >> i & 1
+            if level != self.sampled[i][0]:
+                self.sampled[i] = (level, slot)
+            if slot - self.sampled[i][1] >= self.readings["input-filter"] * SLOT:
+                self.seen_inputs = self.seen_inputs & ~(1 << i) | level << i
 
     def set_inputs(self, mask):
         self.inputs = mask
@@ -121,6 +136,9 @@ class Unit:
         some = self.motors if who == 0 else [self.motors[who - 1]]
         if number == 2:
             return data[:2] + self.set_command(some, data[2:])
+        if number == 3:             # into a unit without flash
+            self.busy_until = self.now + self.readings["store-time"] * SLOT
+            return data[:2] + b"\x01"
         if number == 4:
             fields = (b"%10d" % self.counter(motor) for motor in some)
             return data[:2] + b"".join(bytes([len(field)]) + field for field in fields)
@@ -142,11 +160,12 @@ class Unit:
 
     def set_command(self, motors, text):
         try:
-            commands = language.parse(text)
+            commands = language.parse(text, self.readings["negative-position"] == "yes")
         except Refused as refused:
             self.seen[f"P1 flag {refused.flag}"] += 1
             return bytes([refused.flag, refused.character])
-        return bytes([max([motor.receive(commands, self.now) for motor in motors]), 0])
+        alone = len(commands) == 1 and (self.readings["v-alone"] == "blanks" or language.is_bare(text))
+        return bytes([max([motor.receive(commands, alone, self.now) for motor in motors]), 0])
 
     @staticmethod
     def counter(motor):
@@ -158,8 +177,10 @@ class Unit:
 
     @staticmethod
     def index(motor):
+        if motor.state in ("held", "ended", "fault") and motor.fresh is not None:
+            return max(motor.fresh, motor.oldest()) % MEMORY + 1
         if motor.state in ("idle", "ended"):
             return 0
         if motor.state == "held" and motor.held == "ready" and motor.next < motor.written:
-            return motor.next % MEMORY + 1
+            return max(motor.next, motor.oldest()) % MEMORY + 1
         return motor.current % MEMORY + 1
