@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "motion.h"
 #include "program.h"
+#include "reading.h"
 #include "report.h"
 
 static void stop_with_fault(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_fault fault)

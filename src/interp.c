@@ -6,6 +6,7 @@
 #include "profile.h"
 #include "program.h"
 #include "ramp.h"
+#include "reading.h"
 #include "report.h"
 
 uint64_t interp_slot(uint64_t tick)

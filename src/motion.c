@@ -3,6 +3,7 @@
 
 #include "profile.h"
 #include "ramp.h"
+#include "reading.h"
 #include "report.h"
 
 uint64_t motion_free_from(const struct rkm04_unit *unit, const struct rkm04_motor *motor)

@@ -4,7 +4,7 @@
 #include "interp.h"
 #include "profile.h"
 #include "program.h"
-#include "report.h"
+#include "reading.h"
 #include "store.h"
 
 enum message {

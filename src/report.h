@@ -75,9 +75,6 @@ static inline void write_led(struct rkm04_unit *unit, struct rkm04_motor *motor,
     report_event(unit, motor, tick, RKM04_EVENT_LED, led);
 }
 
-/* The value of a reading (section 10); what is not the default is left out of a port without readings. */
-#define READING(unit, name) (RKM04_READINGS ? (unit)->config.readings.name : 0u)
-
 static inline bool input_is_high(const struct rkm04_unit *unit, unsigned input)
 {
     return unit->seen >> (input - 1) & 1;

@@ -6,6 +6,7 @@
 #include "program.h"
 #include "prt.h"
 #include "ramp.h"
+#include "reading.h"
 #include "report.h"
 #include "store.h"
 

@@ -200,13 +200,39 @@ static int by_tick(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
+static uint8_t one_of_two(void)
+{
+    return story_draw(3) == 0;
+}
+
+static void draw_readings(struct rkm04_readings *readings)
+{
+    *readings = (struct rkm04_readings){
+        .label = one_of_two(),
+        .fault_exit = one_of_two(),
+        .hold_exit = one_of_two(),
+        .x_after = one_of_two(),
+        .guard_start = one_of_two(),
+        .v_alone = one_of_two(),
+        .y_eleventh = one_of_two(),
+        .reset_t41 = one_of_two(),
+        .negative_position = one_of_two(),
+        .input_filter = (uint8_t)(one_of_two() * (1 + story_draw(8))),
+        .speed_change = readings->speed_change,
+        .planning = (uint16_t)(one_of_two() * (1 + story_draw(8))),
+        .store_time = (uint16_t)(one_of_two() * (1 + story_draw(8))),
+    };
+}
+
 void story_tell(struct story *story, unsigned seed, uint64_t end, bool slow)
 {
     memset(story, 0, sizeof *story);
     seed_dice(seed);
     story->seed = seed;
     story->end = end;
-    story->latency = story_draw(3) ? 0 : (uint16_t)(1 + story_draw(end / 3 / MS));
+    story->readings.speed_change = story_draw(3) ? 0 : (uint16_t)(1 + story_draw(end / 3 / MS));
+    if (seed % 2 != 0)
+        draw_readings(&story->readings);
     story->count = (unsigned)(8 + story_draw(STORY_ACTIONS_MAX - 8));
     for (unsigned i = 0; i < story->count; i++) {
         struct action *action = &story->action[i];
@@ -242,8 +268,7 @@ void run_begin(struct run *run, const struct story *story)
     run->wired = 0;
     run->next = 0;
     run->dice = story->seed + 77;
-    rkm04_init(&run->unit, &(struct rkm04_config){.node = 1, .readings.speed_change = story->latency}, &recorder_port,
-               &run->record);
+    rkm04_init(&run->unit, &(struct rkm04_config){.node = 1, .readings = story->readings}, &recorder_port, &run->record);
 }
 
 void run_act(struct run *run, const struct action *action)

@@ -26,7 +26,7 @@ struct action {
 struct story {
     unsigned seed;
     uint64_t end;
-    uint16_t latency;
+    struct rkm04_readings readings; /* others than the defaults in every second story */
     unsigned count;
     struct action action[STORY_ACTIONS_MAX];
 };

@@ -141,8 +141,8 @@ END_TEST
 
 START_TEST(C7_a_fault_can_be_waited_for)
 {
-    program(1, '3', "J9");
-    expect_at("{\"motor\": 3, \"fault\": \"no_label\", \"state\": \"fault\", \"led\": \"off\"}", 1 * MS + 1);
+    program(1, '3', "E");
+    expect_at("{\"motor\": 3, \"fault\": \"no_loop\", \"state\": \"fault\", \"led\": \"off\"}", 1 * MS + 1);
     wait_for("{\"motor\": 3, \"idle\": true}");
     ck_assert(!condition_run(condition, SECOND)); /* a motor in fault is not idle */
 }

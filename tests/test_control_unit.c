@@ -90,7 +90,9 @@ static const struct {
     {"G+", 5000, NULL, 0, "\"moving\"", "\"K, or a guard M, N, X: the motion is endless\""},
     {"(03", 5000, NULL, 0, "\"moving\"", "\"DI 03 to be 1\""},
     {"[ R", 5000, NULL, 0, "\"block\"", "\"the ] of its block\""},
-    {"J9", 5000, NULL, 0, "\"fault\"", "\"new commands, or \\\\: fault no_label\""},
+    {"J9", 5000, NULL, 0, "\"wait\"", "\"label 9 to arrive\""},
+    {"I01L17", 5000, NULL, 0, "\"wait\"", "\"label 17 to arrive\""},
+    {"E", 5000, NULL, 0, "\"fault\"", "\"\\\\: fault no_loop\""},
 };
 
 START_TEST(the_state_says_what_a_motor_waits_for)

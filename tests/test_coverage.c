@@ -23,11 +23,13 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_ev
         coverage_fault(&coverage, (enum rkm04_fault)value);
 }
 
+/* A missing label is a fault: the full list. */
+static const struct rkm04_config config = {.node = 1, .readings.label = RKM04_LABEL_FAULT};
+
 static void setup(void)
 {
     static struct rkm04_port port;
-    const struct rkm04_config config = {.node = 1};
-    coverage_begin(&coverage);
+    coverage_begin(&coverage, &config.readings);
     flash_fake_init(&flash);
     port = store_port;
     port.event = on_event;
@@ -169,7 +171,7 @@ START_TEST(every_command_of_the_table_has_its_item)
             if (!rkm04_command_valid(command))
                 continue;
             tried++;
-            coverage_begin(&coverage);
+            coverage_begin(&coverage, &config.readings);
             coverage_request(&coverage, 1, (const uint8_t *)message, 2 + rkm04_format(command, message + 2));
             ck_assert_msg(covered(COVERAGE_COMMANDS) == 1, "%s covers %u items", message, covered(COVERAGE_COMMANDS));
         }
@@ -251,6 +253,13 @@ START_TEST(any_spelling_of_the_call_counts_as_the_call)
 {
     set('1', "'7 \"7 \xB4" "7 \x84" "7 @7");
     ck_assert_uint_eq(times(COVERAGE_COMMANDS, "'1..'80"), 4);
+}
+END_TEST
+
+START_TEST(a_fault_that_the_readings_exclude_is_not_on_the_list)
+{
+    coverage_begin(&coverage, &(struct rkm04_readings){0});
+    ck_assert_uint_eq(coverage_sum(&coverage, COVERAGE_FAULTS).total, RKM04_FAULT_MOTION - 1);
 }
 END_TEST
 
@@ -340,7 +349,7 @@ END_TEST
 
 START_TEST(per_cent_is_rounded_down_so_that_100_means_all)
 {
-    coverage_begin(&coverage);
+    coverage_begin(&coverage, &config.readings);
     for (size_t i = 1; i < coverage.items; i++)
         coverage.item[i].count = 1;
     unsigned tenths = (unsigned)(1000 * (coverage.items - 1) / coverage.items);
@@ -493,6 +502,7 @@ static Suite *coverage_suite(void)
     tcase_add_test(counting, C1_what_stands_before_a_reset_is_not_covered);
     tcase_add_test(counting, any_spelling_of_the_call_counts_as_the_call);
     tcase_add_test(counting, a_fault_counts_by_its_reason);
+    tcase_add_test(counting, a_fault_that_the_readings_exclude_is_not_on_the_list);
     tcase_add_test(counting, storing_counts_by_how_it_went);
     tcase_add_test(counting, P7_an_answer_that_is_no_error_text_does_not_count_as_one);
     tcase_add_test(counting, a_client_that_does_everything_reaches_100_per_cent);

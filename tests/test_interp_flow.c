@@ -392,45 +392,11 @@ START_TEST(C7_a_jump_to_a_missing_label_waits_for_it)
 }
 END_TEST
 
-START_TEST(C7_a_program_sent_in_parts_does_what_it_does_sent_at_once)
-{
-    rig_accept(&rig, '1', "F100 I01L20 R");
-    rig_accept_at(&rig, 50 * MS, "B500 R @20 T01");
-    rig_to(&rig, 5 * SECOND);
-    ck_assert_int_eq(rig_motor(&rig, 1).position, 0);
-    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 1);
-    rig_expect_state(&rig, 1, RKM04_IDLE);
-}
-END_TEST
-
-START_TEST(C7_a_call_that_has_waited_returns_behind_itself)
-{
-    rig_accept(&rig, '1', "'5 T01");
-    rig_accept_at(&rig, 50 * MS, "J6 @5 T02 . @6");
-    rig_to(&rig, 100 * MS);
-    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 3);
-    expect_fault(RKM04_FAULT_NONE, 0);
-}
-END_TEST
-
 START_TEST(C7_a_seventh_call_is_a_fault_also_where_its_label_is_missing)
 {
     rig_accept(&rig, '1', "J7 @1 '2 @2 '3 @3 '4 @4 '5 @5 '6 @6 '9 @7 '1");
     rig_to(&rig, 100 * MS);
     expect_fault(RKM04_FAULT_CALL_LEVELS, 13);
-}
-END_TEST
-
-START_TEST(C6_X_and_C3_K_reach_a_motor_that_waits_for_a_label)
-{
-    rig_accept(&rig, '1', "X04 J5 T01");
-    rig_accept_at(&rig, 50 * MS, "K");
-    rig_accept_at(&rig, 60 * MS, "C75");
-    rig_to(&rig, 70 * MS);
-    rig_expect_state(&rig, 1, RKM04_WAIT);
-    rig_input_at(&rig, 80 * MS, 4, true);
-    rig_to(&rig, 90 * MS);
-    rig_expect_state(&rig, 1, RKM04_ENDED);
 }
 END_TEST
 
@@ -590,10 +556,7 @@ static Suite *interp_flow_suite(void)
     tcase_add_test(calls, C8_of_two_equal_labels_the_one_written_last_counts);
     tcase_add_test(calls, C8_a_label_may_be_written_after_the_jump_to_it_has_been_stored);
     tcase_add_test(calls, C7_a_jump_to_a_missing_label_waits_for_it);
-    tcase_add_test(calls, C7_a_program_sent_in_parts_does_what_it_does_sent_at_once);
-    tcase_add_test(calls, C7_a_call_that_has_waited_returns_behind_itself);
     tcase_add_test(calls, C7_a_seventh_call_is_a_fault_also_where_its_label_is_missing);
-    tcase_add_test(calls, C6_X_and_C3_K_reach_a_motor_that_waits_for_a_label);
     tcase_add_test(calls, C7_a_jump_that_is_not_taken_needs_no_label);
     tcase_add_test(calls, C7_a_fault_cannot_be_resumed_and_is_told_once);
     tcase_add_test(calls, C7_conditional_jumps_follow_inputs_and_variables);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* test_interp_stored.c: commands that arrive in a hold, after a total stop or at a fault, C3 of the specification. */
+/* test_interp_stored.c: commands that arrive in a hold, after a total stop, at a fault or for a jump that waits: C3, C7 of the
+ * specification. */
 #include <check.h>
 
 #include "rig.h"
@@ -336,6 +337,40 @@ START_TEST(P9_from_arrival_to_its_slot_the_first_new_command_is_shown)
 }
 END_TEST
 
+START_TEST(C7_a_program_sent_in_parts_does_what_it_does_sent_at_once)
+{
+    rig_accept(&rig, '1', "F100 I01L20 R");
+    rig_accept_at(&rig, 50 * MS, "B500 R @20 T01");
+    rig_to(&rig, 5 * SECOND);
+    ck_assert_int_eq(rig_motor(&rig, 1).position, 0);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 1);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
+}
+END_TEST
+
+START_TEST(C7_a_call_that_has_waited_returns_behind_itself)
+{
+    rig_accept(&rig, '1', "'5 T01");
+    rig_accept_at(&rig, 50 * MS, "J6 @5 T02 . @6");
+    rig_to(&rig, 100 * MS);
+    ck_assert_uint_eq(rkm04_outputs(&rig.unit), 3);
+    rig_expect_state(&rig, 1, RKM04_IDLE);
+}
+END_TEST
+
+START_TEST(C6_X_and_C3_K_reach_a_motor_that_waits_for_a_label)
+{
+    rig_accept(&rig, '1', "X04 J5 T01");
+    rig_accept_at(&rig, 50 * MS, "K");
+    rig_accept_at(&rig, 60 * MS, "C75");
+    rig_to(&rig, 70 * MS);
+    rig_expect_state(&rig, 1, RKM04_WAIT);
+    rig_input_at(&rig, 80 * MS, 4, true);
+    rig_to(&rig, 90 * MS);
+    rig_expect_state(&rig, 1, RKM04_ENDED);
+}
+END_TEST
+
 static Suite *interp_stored_suite(void)
 {
     Suite *suite = suite_create("interp_stored");
@@ -368,6 +403,9 @@ static Suite *interp_stored_suite(void)
     tcase_add_test(ended, C3_commands_stored_during_the_ramp_of_a_total_stop_run_behind_it);
     tcase_add_test(ended, C3_a_total_stop_cannot_be_resumed);
     tcase_add_test(ended, C3_new_commands_at_a_fault_are_stored_and_not_executed);
+    tcase_add_test(ended, C7_a_program_sent_in_parts_does_what_it_does_sent_at_once);
+    tcase_add_test(ended, C7_a_call_that_has_waited_returns_behind_itself);
+    tcase_add_test(ended, C6_X_and_C3_K_reach_a_motor_that_waits_for_a_label);
     tcase_add_test(ended, C3_commands_that_wait_behind_a_K_run_before_newer_ones);
     tcase_add_test(ended, P9_from_arrival_to_its_slot_the_first_new_command_is_shown);
     suite_add_tcase(suite, ended);

@@ -256,10 +256,10 @@ END_TEST
 
 START_TEST(C7_a_fault_fails_unless_it_is_allowed)
 {
-    expect_fail(QUIET "  - set: 'W100 J1'\n  - advance: 7s\n", 4, "no motor in fault",
-                "unit 1 motor 1 in fault: no_label at command 2");
+    expect_fail(QUIET "  - set: 'W100 E'\n  - advance: 7s\n", 4, "no motor in fault",
+                "unit 1 motor 1 in fault: no_loop at command 2");
     ck_assert_uint_eq(result.tick, 101 * MS);
-    expect_pass("allow_faults: true\nsteps:\n  - set: 'J1'\n  - wait: {motor: 1, fault: no_label}\n");
+    expect_pass("allow_faults: true\nsteps:\n  - set: 'E'\n  - wait: {motor: 1, fault: no_loop}\n");
 }
 END_TEST
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* rkm04/readings.h: what the manual leaves open and a real unit may do otherwise than decided here, as settings
- * (specification section 9, docs/SPEC.md). All zero: the decisions of the specification.
+ * (docs/SPEC.md, section 10). All zero: the decisions of the specification.
  *
  * Members are named after the readings, with '_' for '-'. Values beyond the range given are not defined. */
 #ifndef RKM04_READINGS_H

@@ -164,7 +164,7 @@ static void add_commands(struct coverage *coverage)
     add(coverage, COVERAGE_COMMANDS, COMMENT, "{ comment }");
 }
 
-void coverage_begin(struct coverage *coverage)
+void coverage_begin(struct coverage *coverage, const struct rkm04_readings *readings)
 {
     static const char *const meaning[FLAGS] = {"all right", "bad value", "unknown command", "memory overflowed"};
     coverage->items = 0;
@@ -180,7 +180,8 @@ void coverage_begin(struct coverage *coverage)
         if (messages[number].error)
             add(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, 1), "%s, ERROR COMMAND!", messages[number].name);
     for (unsigned fault = RKM04_FAULT_NONE + 1; fault <= RKM04_FAULT_MOTION; fault++)
-        add(coverage, COVERAGE_FAULTS, fault, "%s", rkm04_fault_name((enum rkm04_fault)fault));
+        if (fault != RKM04_FAULT_NO_LABEL || readings->label == RKM04_LABEL_FAULT)
+            add(coverage, COVERAGE_FAULTS, fault, "%s", rkm04_fault_name((enum rkm04_fault)fault));
 }
 
 /* ---- Counting ------------------------------------------------------------------------------------------------------- */

@@ -46,8 +46,8 @@ struct coverage {
     struct coverage_item item[COVERAGE_ITEMS_MAX];
 };
 
-/* Make the list; nothing has been exercised. */
-void coverage_begin(struct coverage *coverage);
+/* Make the list for units with these readings: a fault that they cannot come into is not on it. Nothing has been exercised. */
+void coverage_begin(struct coverage *coverage, const struct rkm04_readings *readings);
 
 /* The client has sent a whole, well-framed message to `dnode`: 0 or the address of a unit that is there. Commands count if
  * the unit takes them: nothing in the text is wrong (P2), and no `\` follows (C1). */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "state_json.h"
+#include "unit_json.h"
 
 static const char *end_name(enum exec_end end)
 {
@@ -109,6 +110,11 @@ bool report_faults(const struct rkm04_unit *unit)
     for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
         struct rkm04_motor_state state;
         rkm04_motor_state(unit, motor, &state);
+        unsigned label = unit_awaited_label(&unit->motor[motor - 1]);
+        if (label != 0)
+            fprintf(stderr, "rkm04 exec: motor %u: command %u waits for label %u, which is not in memory\n", motor,
+                    (unsigned)state.index, label);
+        any = any || label != 0;
         if (state.fault == RKM04_FAULT_NONE)
             continue;
         any = true;

@@ -281,7 +281,7 @@ static bool start(struct serve *serve)
     allow_files(options);
     if (!start_signals(serve)) /* before anything is made that would have to be removed */
         return false;
-    coverage_begin(&serve->coverage);
+    coverage_begin(&serve->coverage, &options->config.readings);
     serve->idle.data = serve;
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
         !start_control(serve) || !has_spare_files())

@@ -72,12 +72,27 @@ static void change(struct segment *segment, unsigned station, uint8_t byte, stru
         more->count = (uint8_t)hooks->send(segment->config.context, station, byte, more->byte);
 }
 
+/* Has the unit an answer, now or later? */
+static bool answers(const struct segment_unit *unit)
+{
+    return unit->powered && unit->unit.answer.kind != 0;
+}
+
+/* Ticks until the unit's flash is written and it can send again: behind the last slot of the store (reading `store-time`). */
+static uint64_t store_left(const struct segment_unit *unit)
+{
+    uint64_t now = rkm04_now(&unit->unit), slot = (now + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS * RKM04_SLOT_TICKS;
+    return unit->unit.busy == 0 ? 0 : slot - now + (unit->unit.busy - 1u) * (uint64_t)RKM04_SLOT_TICKS + 1;
+}
+
 /* How much later than now a unit begins with its answer; ticks. 0 in the middle of one. */
 static uint64_t delay(struct segment *segment, struct segment_unit *unit)
 {
     const struct segment_hooks *hooks = segment->config.hooks;
     if (unit->begun)
         return 0;
+    if (unit->unit.busy > 0)
+        return store_left(unit);
     unit->begun = true;
     return hooks && hooks->answer ? hooks->answer(segment->config.context, (unsigned)(unit - segment->unit) + 1u) : 0;
 }
@@ -197,7 +212,7 @@ static void start_of_unit(struct segment *segment, unsigned station, uint64_t st
             change(segment, station, byte, &segment->more[station]);
     }
     send_more(segment, station, start);
-    unit->next = has_more(segment, station) || rkm04_sending(&unit->unit) ? start + WIRE_BYTE : RKM04_NEVER;
+    unit->next = has_more(segment, station) || answers(unit) ? start + WIRE_BYTE : RKM04_NEVER;
     obeyed(segment, unit);
 }
 
@@ -231,8 +246,8 @@ static void end_byte(struct segment *segment, const struct wire_byte *heard)
     } else {
         struct segment_unit *unit = &segment->unit[heard->ear - 1u];
         give_unit(segment, unit, heard->byte);
-        if (unit->powered && unit->next == RKM04_NEVER && rkm04_sending(&unit->unit))
-            unit->next = heard->end + segment->config.turnaround * (uint64_t)WIRE_TICK;
+        if (unit->next == RKM04_NEVER && answers(unit))
+            unit->next = heard->end + (segment->config.turnaround + store_left(unit)) * (uint64_t)WIRE_TICK;
     }
 }
 
@@ -255,11 +270,6 @@ static void advance_timed(struct segment *segment, uint64_t until)
 }
 
 /* ---- Bytes that take no time ---------------------------------------------------------------------------------------- */
-
-static bool answers(const struct segment_unit *unit)
-{
-    return unit->powered && rkm04_sending(&unit->unit);
-}
 
 /* Let the byte of a station be heard by the units in `ears` (bit n: unit n), the monitor, and the master if it is a unit's. */
 static void pass(struct segment *segment, unsigned station, uint32_t ears, uint8_t byte)

@@ -12,4 +12,7 @@ json_t *unit_json(struct sim *sim, unsigned number);
  * memory is short. */
 json_t *waits_for_json(const struct rkm04_unit *unit, unsigned motor);
 
+/* The label 1..80 that a jump or call of a motor waits for (C7); 0: it does not. */
+unsigned unit_awaited_label(const struct rkm04_motor *motor);
+
 #endif

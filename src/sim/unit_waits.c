@@ -45,43 +45,65 @@ static json_t *moving(const struct rkm04_motor *motor)
     }
 }
 
+/* W, or a motion that is being planned. */
 static json_t *dwelling(const struct rkm04_motor *motor, uint64_t left)
 {
-    char rest[64];
-    snprintf(rest, sizeof rest, ": %" PRIu64 " ms left", (left + TICKS_PER_MS - 1) / TICKS_PER_MS);
-    return for_command(motor, rest);
+    char text[RKM04_COMMAND_TEXT_MAX];
+    int length = (int)rkm04_format(motor->command, text);
+    return json_sprintf("the %s of %.*s: %" PRIu64 " ms left", motor->command.op == 'W' ? "end" : "begin", length, text,
+                        (left + TICKS_PER_MS - 1) / TICKS_PER_MS);
 }
 
-static json_t *held(const struct rkm04_motor *motor)
+static json_t *held(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
+    const char *others = unit->config.readings.hold_exit == RKM04_HOLD_EXIT_LATCH ? "" : ", or new commands";
     if (motor->held == RKM04_MOVING)
-        return json_sprintf("C75 to go on with the motion (%" PRIu32 " steps done), or new commands", motor->motion.done);
+        return json_sprintf("C75 to go on with the motion (%" PRIu32 " steps done)%s", motor->motion.done, others);
     if (motor->held == RKM04_DWELL)
-        return json_sprintf("C75 to go on with the dwell (%" PRIu64 " ms left), or new commands",
-                            (motor->due + TICKS_PER_MS - 1) / TICKS_PER_MS);
-    return json_string("C75 to go on, or new commands");
+        return json_sprintf("C75 to go on with the %s (%" PRIu64 " ms left)%s",
+                            motor->command.op == 'W' ? "dwell" : "planning of its motion",
+                            (motor->due + TICKS_PER_MS - 1) / TICKS_PER_MS, others);
+    return json_sprintf("C75 to go on%s", others);
+}
+
+/* O, Z, or a jump or call whose label has not arrived. */
+static json_t *waiting(const struct rkm04_motor *motor)
+{
+    char bit[16];
+    unsigned label = unit_awaited_label(motor);
+    if (label != 0)
+        return json_sprintf("label %u to arrive", label);
+    name_bit(bit, sizeof bit, (unsigned)motor->command.argument);
+    return json_sprintf("%s to be %d", bit, motor->command.op == 'O');
+}
+
+unsigned unit_awaited_label(const struct rkm04_motor *motor)
+{
+    if (motor->state != RKM04_WAIT || motor->command.op == 'O' || motor->command.op == 'Z')
+        return 0;
+    return motor->command.op == 'I' ? motor->command.argument >> 16 : motor->command.argument;
 }
 
 json_t *waits_for_json(const struct rkm04_unit *unit, unsigned number)
 {
     const struct rkm04_motor *motor = &unit->motor[number - 1];
-    char bit[16];
     switch ((enum rkm04_state)motor->state) {
     case RKM04_MOVING:
         return moving(motor);
     case RKM04_DWELL:
         return dwelling(motor, motor->due > unit->now ? motor->due - unit->now : 0);
     case RKM04_WAIT:
-        name_bit(bit, sizeof bit, (unsigned)motor->command.argument);
-        return json_sprintf("%s to be %d", bit, motor->command.op == 'O');
+        return waiting(motor);
     case RKM04_BLOCK:
         return json_string("the ] of its block");
     case RKM04_HELD:
-        return held(motor);
+        return held(unit, motor);
     case RKM04_ENDED:
         return json_string("new commands: ended by X");
     case RKM04_FAULTY:
-        return json_sprintf("new commands, or \\: fault %s", rkm04_fault_name((enum rkm04_fault)motor->fault));
+        return json_sprintf("%s\\: fault %s",
+                            unit->config.readings.fault_exit == RKM04_FAULT_EXIT_NEW ? "new commands, or " : "",
+                            rkm04_fault_name((enum rkm04_fault)motor->fault));
     default:
         return json_null();
     }

@@ -4,7 +4,8 @@
  * over, or by one motor alone: no motor influences another but by VAR, DO and T41. Get Command answers a text that is the same
  * program (P8).
  *
- * First byte: 1 speed changes take 40 ms, 2 and 4 how time is cut, 8 pulses are skipped, 16 a motor alone, 32 and 64 which.
+ * First byte: 1 readings in two more bytes, and speed changes take 40 ms, 2 and 4 how time is cut, 8 pulses are skipped, 16 a
+ * motor alone, 32 and 64 which.
  * Second byte: action before which the snapshot is taken. Then actions, see read_action(). */
 #include <string.h>
 
@@ -194,6 +195,23 @@ static void read_action(struct fuzz *fuzz)
     }
 }
 
+static void read_readings(struct fuzz *fuzz, struct rkm04_readings *readings)
+{
+    unsigned bits = fuzz_number(fuzz, 2);
+    readings->label = bits & 1;
+    readings->fault_exit = bits >> 1 & 1;
+    readings->hold_exit = bits >> 2 & 1;
+    readings->x_after = bits >> 3 & 1;
+    readings->guard_start = bits >> 4 & 1;
+    readings->v_alone = bits >> 5 & 1;
+    readings->y_eleventh = bits >> 6 & 1;
+    readings->reset_t41 = bits >> 7 & 1;
+    readings->negative_position = bits >> 8 & 1;
+    readings->input_filter = bits >> 9 & 1 ? 3 : 0;
+    readings->planning = bits >> 10 & 1 ? 5 : 0;
+    readings->store_time = bits >> 11 & 1 ? 7 : 0;
+}
+
 static void tell(struct fuzz *fuzz)
 {
     uint8_t mode = fuzz_byte(fuzz);
@@ -204,6 +222,8 @@ static void tell(struct fuzz *fuzz)
     story.cut = mode >> 1 & 3;
     story.snapshot = fuzz_byte(fuzz) % 32;
     dice = mode + 77u;
+    if (mode & 1)
+        read_readings(fuzz, &story.config.readings);
     while (story.count < ACTIONS_MAX - 1 && fuzz->left > 0 && story.used < TEXTS_MAX - 2000)
         read_action(fuzz);
     add_time(300000);

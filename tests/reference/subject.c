@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* subject: runs stories of the differential test on the core and tells what happened.
  *
- * Standard input, a line each: `i TICK MASK` inputs, `m TICK HEX` a message, `q NUMBER…` a new unit with its thirteen readings,
- * in the order of struct rkm04_readings, `e TICK` the end of the story. Standard output: `a HEX` the answer, `n TICK MOTOR WHAT VALUE` a happening,
- * `p COUNT COUNT COUNT COUNT` and so many ticks (64 bits, the machine's order) of pulses of each motor, at the end. */
+ * Standard input, a line each: `i TICK MASK` inputs, `m TICK HEX` a message, `q NUMBER...` a new unit with its thirteen
+ * readings in the order of struct rkm04_readings, `e TICK` the end of the story. Standard output: `a HEX` the answer,
+ * `n TICK MOTOR WHAT VALUE` a happening, `p COUNT COUNT COUNT COUNT` and so many ticks (64 bits, the machine's order) of pulses
+ * of each motor, at the end. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -94,11 +94,11 @@ test_it_ends_with_the_emulator() {
 
 test_colours_can_be_done_without() {
     emulator
-    exits 0 ctl bus set 'T03 J05'
+    exits 0 ctl bus set 'T03 .'
     exits 0 "$RKMCTL" advance 10ms
-    panel "see:J5  fault: no_label" colours:green,red keys:q status:0
-    NO_COLOR=1 panel "see:J5  fault: no_label" colours: keys:q status:0
-    TERM=vt100 panel "see:J5  fault: no_label" colours: keys:q status:0
+    panel "see:.  fault: no_call" colours:green,red keys:q status:0
+    NO_COLOR=1 panel "see:.  fault: no_call" colours: keys:q status:0
+    TERM=vt100 panel "see:.  fault: no_call" colours: keys:q status:0
 }
 
 test_lamps_are_ASCII_where_there_is_nothing_else() {

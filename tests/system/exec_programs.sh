@@ -124,12 +124,19 @@ test_C8_typographic_apostrophes_call_a_subroutine() {
 }
 
 test_C7_a_motor_in_fault_is_a_failure() {
-    text run.rks 'F10 R' 'J5'
+    text run.rks 'F10 R' 'E'
     run 1 --json run.rks
-    holds "$said" "$(motor 1 10 fault 3 off '"no_label"')" "the motor"
+    holds "$said" "$(motor 1 10 fault 3 off '"no_loop"')" "the motor"
     holds "$complained" "motor 1: fault at command 3: " "stderr"
     run 1 run.rks
-    holds "$said" "no_label" "the table"
+    holds "$said" "no_loop" "the table"
+}
+
+test_C7_a_motor_that_waits_for_a_label_for_good_is_a_failure() {
+    text run.rks 'F10 R' 'J5'
+    run 1 --json run.rks
+    holds "$said" "$(motor 1 10 wait 3 off null)" "the motor"
+    holds "$complained" "motor 1: command 3 waits for label 5, which is not in memory" "stderr"
 }
 
 test_E1_a_motion_that_cannot_be_computed_is_a_failure() {
