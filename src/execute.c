@@ -197,7 +197,6 @@ COMMAND(run)
 
 COMMAND(segment)
 {
-    UNUSED(n);
     if (motor->segments == 0) {
         motor->segments_forward = motor->forward;
         motor->segments_bad = false;
@@ -210,10 +209,8 @@ COMMAND(segment)
             (struct rkm04_segment){.steps = motor->count, .speed = motor->speed, .acceleration = motor->acceleration};
     if (motor->segments <= RKM04_SEGMENTS_MAX)
         motor->segments++;
-    if (READING(unit, y_eleventh) == RKM04_Y_ELEVENTH_Y && motor->segments > RKM04_SEGMENTS_MAX) {
-        motor->command.op = 'R'; /* which cannot compute them */
-        execute_command(unit, motor);
-    }
+    if (READING(unit, y_eleventh) == RKM04_Y_ELEVENTH_Y && motor->segments > RKM04_SEGMENTS_MAX)
+        do_run(unit, motor, n); /* which cannot compute them */
 }
 
 COMMAND(limit_forward)
