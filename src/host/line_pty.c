@@ -261,6 +261,7 @@ void line_pty_count_again(struct line *line)
     int others = 0;
     unsigned reopened = 0;
     struct notices counted = {0}, one = {0};
+    read_notices(line->watch, NULL, NULL);
     if (count_exclusive(line))
         return;
     /* Our own close and open give two notices; if there are more, somebody came or went meanwhile. */
@@ -277,6 +278,7 @@ void line_pty_count_again(struct line *line)
     bool somebody_came = counted.opens > reopened;
     line->doubtful = false;
     line->closings = 0;
+    line->left = line->left || (!others && somebody_came);
     if (others < 0) {
         line->tell(line->context, LINE_FAILED);
         return;
