@@ -2,6 +2,7 @@
 /* `rkm04 exec`: programs in virtual time. Its options, texts and exit status; the run itself is exec_run.c. */
 #include <argp.h>
 #include <errno.h>
+#include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,9 +50,10 @@ static const struct argp_option option_table[] = {
 };
 
 static const char doc[] =
-    "Run programs of the RKM04 in virtual time, as fast as the machine can, until every motor is idle, stopped, or waiting "
-    "for what can never come. M is the motor, 1 to 4 or 0 for all; without it 1. FILE is a program text (.rks), - standard "
-    "input. Several files for one motor are sent to it one after the other."
+    "Run programs of the RKM04 in virtual time, as fast as the machine can, until every motor is idle, stopped, or waits "
+    "for an input that no stimulus sets; without --until also until the state repeats, so that it would go on for ever. M is "
+    "the motor, 1 to 4 or 0 for all; without it 1. FILE is a program text (.rks), - standard input. Several files for one motor "
+    "are sent to it one after the other."
     "\v"
     "Lines of a stimulus file (times as in --until, from the start of the run):\n"
     "  TIME di NN 0|1        input 01 to 08\n"
@@ -73,7 +75,8 @@ static const char doc[] =
     "  rkm04 exec --readings planning=20ms drill.rks\n"
     "\n"
     "Exit status: 0 well; 1 a text was refused, a motor ended in a fault, a file could not be read or written, or the run was "
-    "interrupted; 2 wrong usage; 124 --until was reached with a motor still running.";
+    "interrupted; 2 wrong usage; 124 --until was reached with a motor still running, or without it "
+    "the program never ends: its state repeats.";
 
 /* ---- Command line ------------------------------------------------------------------------------------------------- */
 
@@ -287,6 +290,11 @@ static int exit_status(struct exec_run *run, const struct options *options, enum
             fprintf(stderr, "rkm04 exec: virtual time has come to its end with a motor still running\n");
         else
             fprintf(stderr, "rkm04 exec: --until %s reached with a motor still running\n", options->until_text);
+        return written ? STATUS_UNTIL : STATUS_FAILURE;
+    }
+    if (end == EXEC_ENDLESS) {
+        fprintf(stderr, "rkm04 exec: it never ends: what happens repeats every %" PRIu64 ".%06" PRIu64
+                " s; --until stops it at a time\n", run->period / RKM04_TICKS_PER_SECOND, run->period % RKM04_TICKS_PER_SECOND);
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
     if (end == EXEC_INTERRUPTED)

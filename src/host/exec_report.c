@@ -14,6 +14,7 @@ static const char *end_name(enum exec_end end)
     static const char *const names[] = {
         [EXEC_DONE] = "done",
         [EXEC_UNTIL] = "until",
+        [EXEC_ENDLESS] = "endless",
         [EXEC_INTERRUPTED] = "interrupted",
         [EXEC_NO_TRACE] = "no_trace",
     };
@@ -74,6 +75,7 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
     static const char *const ends[] = {
         [EXEC_DONE] = "nothing more to do",
         [EXEC_UNTIL] = "--until reached",
+        [EXEC_ENDLESS] = "the state repeats",
         [EXEC_INTERRUPTED] = "interrupted",
         [EXEC_NO_TRACE] = "stopped",
     };

@@ -144,6 +144,8 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
         run->reached = end - 1;
         if (run->trace != NULL && trace_file_failed(run->trace) != 0)
             return EXEC_NO_TRACE;
+        if (run->open && !left && (run->period = exec_repeat_look(&run->repeat, exec_run_unit(run))) > 0)
+            return EXEC_ENDLESS;
         progress_look(progress, run);
     }
     return EXEC_INTERRUPTED;
@@ -152,6 +154,7 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
 enum exec_end exec_run(struct exec_run *run)
 {
     struct progress progress;
+    run->open = run->until == RKM04_NEVER;
     if (run->until >= SIM_TIME_MAX)
         run->until = SIM_TIME_MAX - 1u;
     progress_begin(&progress);

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "exec_repeat.h"
 #include "sim.h"
 #include "stimulus.h"
 #include "trace_file.h"
@@ -13,6 +14,7 @@
 enum exec_end {
     EXEC_DONE,        /* nothing is due any more: every motor idle, stopped, or waiting for what can never come */
     EXEC_UNTIL,       /* the tick of `until` has been done */
+    EXEC_ENDLESS,     /* there is no `until`, and the state has repeated: it would go on for ever */
     EXEC_INTERRUPTED, /* by exec_run_interrupt() */
     EXEC_NO_TRACE     /* the trace could not be written */
 };
@@ -29,8 +31,11 @@ struct exec_run {
     void (*answered)(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);
     void *context;
 
+    uint64_t period;  /* out, EXEC_ENDLESS: the state repeats after so many ticks */
     uint64_t reached; /* out: the last tick in which something was done */
     size_t next;      /* inside: stimuli delivered */
+    bool open;        /* inside: there is no `until` */
+    struct exec_repeat repeat;
 };
 
 /* Power up at tick 0 with empty flash. *run must be zero; the members of the first part must be set by exec_run(). Returns false

@@ -55,6 +55,51 @@ test_M_9_2_an_endless_program_ends_with_until() {
     holds "$complained" "--until 60s reached with a motor still running" "stderr"
 }
 
+# endless PERIOD PROGRAM...: motors 1, 2, … run these programs; it is seen that they never end.
+endless() {
+    local arguments=() number=0 program
+    for program in "${@:2}"; do
+        text $((++number)).rks "$program"
+        arguments+=("$number=$number.rks")
+    done
+    run 124 --json --trace run.csv "${arguments[@]}"
+    holds "$said" '"end":"endless"' "the end"
+    holds "$complained" "it never ends: what happens repeats every $1 s; --until stops it at a time" "stderr"
+    (($(wc -c <run.csv) < 2000000)) || fail "the trace is long"
+}
+
+test_a_program_that_never_ends_is_recognised() {
+    endless 0.006000 '@1 T01 W2 C01 J1'
+    endless 16000.002000 '@1 W16000000 J1'
+    endless 4.618000 'S100 V800 A2000 @1 F1000 R W500 D R W1000 J1'
+    endless 0.151000 '@1 F10 R H J1'
+}
+
+test_an_endless_motion_is_recognised_at_its_speed() {
+    text run.rks 'S100 V1000 A2000 G+'
+    run 124 --json --trace run.csv run.rks
+    holds "$said" '"end":"endless"' "the end"
+    (($(grep -c ,m1,step, run.csv) >= 247)) || fail "it has not come to its speed"
+}
+
+test_motors_that_repeat_together_are_recognised() {
+    endless 0.030000 '@1 T01 W1 C01 J1' '@1 W2 T02 C02 J1'
+    endless 0.005000 '@1 T01 W1 C01 J1' 'S100 V200 A9000 G+' ')02 T04' 'O03'
+}
+
+test_what_repeats_for_long_and_then_ends_is_done() {
+    text run.rks 'L200 L200 W1 E E T08'
+    run 0 --json run.rks
+    holds "$said" '"end":"done"' "the end"
+}
+
+test_a_stimulus_that_is_still_to_come_is_waited_for() {
+    text run.rks '@1 W2 I01H2 J1 @2 T05'
+    text inputs '10s di 01 1'
+    run 0 --json --stimulus inputs run.rks
+    holds "$said" '"do":16' "the outputs"
+}
+
 test_until_after_the_end_changes_nothing() {
     text run.rks 'W500'
     run 0 --json --until 10s run.rks
@@ -196,7 +241,7 @@ test_the_table_for_people_shows_every_motor() {
 test_an_interrupted_run_shows_the_state_reached() {
     text run.rks 'S100 V100 A2000 G+'
     cd "$folder" || exit 1
-    start run env -u COLUMNS "$RKM04" exec --json --trace pulses.csv run.rks
+    start run env -u COLUMNS "$RKM04" exec --json --until 999999999s --trace pulses.csv run.rks
     soon "the run writes its trace" test -s pulses.csv
     kill -INT "$started"
     status_of "$started"

@@ -92,7 +92,7 @@ test_a_trace_that_cannot_be_written_is_a_failure() {
 test_a_reader_that_goes_away_ends_the_run() {
     printf 'S100 V100 A2000 G+' >"$folder/run.rks"
     cd "$folder" || exit 1
-    start run sh -c "'$RKM04' exec --trace - run.rks 2>errors | head -n 5; wait"
+    start run sh -c "'$RKM04' exec --until 999999999s --trace - run.rks 2>errors | head -n 5; wait"
     status_of "$started"
     soon "the run has told why" grep -q 'cannot write the trace' errors
 }
