@@ -25,6 +25,15 @@ test_L1_the_board_answers_as_an_RKM04_does() {
     same "" "$(grep -v 'cmsdk-ahb-gpio' "$folder/pins")" "what QEMU found wrong with the firmware"
 }
 
+test_readings_are_set_when_the_firmware_is_built() {
+    make -s -C "$tree/src/port/mps2_an385" OUT="$folder/built" READINGS='.negative_position = RKM04_NEGATIVE_POSITION_NO' \
+        >"$folder/make.out" 2>&1 || fail "the firmware is not built: $(<"$folder/make.out")"
+    firmware=$folder/built
+    mps2
+    exits 1 unit set '=-5'
+    exits 0 unit set '=5'
+}
+
 test_R8_every_step_is_a_pulse_at_the_motor_s_pin() {
     mps2
     exits 0 unit -m 1 set '\ S100 V1000 A2000 F700 R'
