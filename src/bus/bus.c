@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "log.h"
-#include "snapshot.h"
+#include "line/log.h"
+#include "record/snapshot.h"
 
 #define INJECTED_TOLD 100u /* acts of faults on demand in the log */
 

@@ -15,11 +15,11 @@
 #include "bus_coverage.h"
 #include "bus_files.h"
 #include "bus_ports.h"
-#include "command.h"
-#include "condition.h"
-#include "flash_file.h"
-#include "serve_options.h"
-#include "sim.h"
+#include "command/command.h"
+#include "condition/condition.h"
+#include "line/flash_file.h"
+#include "serve/serve_options.h"
+#include "sim/sim.h"
 
 struct bus_unit {
     char *flash_path; /* NULL: memory only */

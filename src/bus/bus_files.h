@@ -6,10 +6,10 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "record.h"
-#include "serve_options.h"
-#include "trace_file.h"
-#include "wire_file.h"
+#include "record/record.h"
+#include "serve/serve_options.h"
+#include "trace/trace_file.h"
+#include "trace/wire_file.h"
 
 struct bus;
 

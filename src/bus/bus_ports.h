@@ -6,10 +6,10 @@
 
 #include <uv.h>
 
-#include "line.h"
-#include "line_settings.h"
-#include "link_path.h"
-#include "net_port.h"
+#include "line/line.h"
+#include "line/line_settings.h"
+#include "line/link_path.h"
+#include "line/net_port.h"
 
 struct bus;
 

@@ -10,7 +10,7 @@
 
 #include <rkm04/limits.h>
 
-#include "number.h"
+#include "text/number.h"
 
 enum { HEAD = 2 /* message number and motor, or length */, TEXT_MAX = 16384 };
 

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "client_watch.h"
-#include "number.h"
+#include "text/number.h"
 
 #define WRONG_PARAMS (-32602) /* JSON-RPC 2.0 */
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "client_job.h"
-#include "number.h"
-#include "program_text.h"
+#include "text/number.h"
+#include "text/program_text.h"
 
 /* ---- Plant ------------------------------------------------------------------------------------------------------------ */
 

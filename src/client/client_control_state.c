@@ -7,7 +7,7 @@
 
 #include "client_job.h"
 #include "client_panel.h"
-#include "number.h"
+#include "text/number.h"
 
 #define TEXT_COLUMNS 100
 

@@ -10,8 +10,8 @@
 
 #include "client_cut.h"
 #include "client_port.h"
-#include "diagnose.h"
-#include "program_text.h"
+#include "text/diagnose.h"
+#include "text/program_text.h"
 
 enum { SET_COMMAND = 2, HEAD = 2 /* message number and motor */ };
 enum { FLAG_WELL, FLAG_BAD_VALUE, FLAG_UNKNOWN, FLAG_OVERFLOW }; /* of the answer, P1 */

@@ -10,7 +10,7 @@
 #include <jansson.h>
 #include <stdbool.h>
 
-#include "sim.h"
+#include "sim/sim.h"
 
 /* Why a command was refused: codes of JSON-RPC 2.0. */
 enum refusal_code {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "command.h"
-#include "unit_json.h"
+#include "device/unit_json.h"
 
 /* "1", "01", … "08" -> 1..8; 0: no input. */
 static unsigned input_named(const char *name)

@@ -14,8 +14,8 @@
 #ifndef RKM04_SIM_CONDITION_H
 #define RKM04_SIM_CONDITION_H
 
-#include "command.h"
-#include "sim.h"
+#include "command/command.h"
+#include "sim/sim.h"
 
 struct condition;
 

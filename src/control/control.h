@@ -5,7 +5,7 @@
 
 #include <uv.h>
 
-#include "bus.h"
+#include "bus/bus.h"
 
 struct control;
 

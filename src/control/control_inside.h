@@ -3,7 +3,7 @@
 #ifndef RKM04_HOST_CONTROL_INSIDE_H
 #define RKM04_HOST_CONTROL_INSIDE_H
 
-#include "condition.h"
+#include "condition/condition.h"
 #include "control.h"
 #include "control_peer.h"
 #include "control_rpc.h"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What clients can ask for: the methods that have to do with this process and its clocks. Everything else is a command of the
- * line (src/sim/command.c). */
+ * line (src/command/command.c). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "control_inside.h"
-#include "readings.h"
+#include "text/readings.h"
 
 /* ---- Answers -------------------------------------------------------------------------------------------------------- */
 

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "command.h"
+#include "command/command.h"
 
 #define RPC_DEPTH 64u /* lists and objects inside one another */
 

@@ -7,9 +7,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "lock_file.h"
-#include "log.h"
-#include "socket_address.h"
+#include "line/lock_file.h"
+#include "line/log.h"
+#include "options/socket_address.h"
 
 #define RECORD "rkm04 process %ld, control socket %ju:%ju" /* in the lock file: whose it is; device and number of the file */
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "number.h"
+#include "text/number.h"
 
 #define PORT_MAX 65535ul
 

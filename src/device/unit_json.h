@@ -3,7 +3,7 @@
 #ifndef RKM04_SIM_UNIT_JSON_H
 #define RKM04_SIM_UNIT_JSON_H
 
-#include "sim.h"
+#include "sim/sim.h"
 
 /* Of unit `number` of the line, at the present tick. Returns a new reference, or NULL if memory is short. */
 json_t *unit_json(struct sim *sim, unsigned number);

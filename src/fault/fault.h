@@ -21,7 +21,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "segment.h"
+#include "wire/segment.h"
 
 struct sim;
 struct sim_unit;

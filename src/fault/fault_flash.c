@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Faults of the flash: operations that fail, and the power that goes in the middle of one. */
-#include "sim.h"
+#include "sim/sim.h"
 
 /* An operation done in part: of the bits that had to change some have. `data`: NULL for an erase. */
 static void tear(struct sim_unit *unit, unsigned block, unsigned offset, const uint8_t *data, unsigned length)

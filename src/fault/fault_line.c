@@ -2,7 +2,7 @@
 /* Faults of bytes and answers: what the hooks of the segment do on a line with faults. */
 #include <stdio.h>
 
-#include "sim.h"
+#include "sim/sim.h"
 
 #define ESCAPE 0x7d
 #define FLAG 0x7e

@@ -7,10 +7,10 @@
 
 #include <rkm04/limits.h>
 
-#include "arguments.h"
-#include "nearest.h"
-#include "process.h"
-#include "subcommands.h"
+#include "options/arguments.h"
+#include "options/nearest.h"
+#include "options/process.h"
+#include "run/subcommands.h"
 
 #define NAMES "serve, exec, test or replay"
 

@@ -10,13 +10,13 @@
 
 #include <rkm04/limits.h>
 
-#include "arguments.h"
-#include "client_control.h"
-#include "client_link.h"
-#include "client_request.h"
-#include "client_usage.h"
-#include "nearest.h"
-#include "process.h"
+#include "options/arguments.h"
+#include "client/client_control.h"
+#include "client/client_link.h"
+#include "client/client_request.h"
+#include "client/client_usage.h"
+#include "options/nearest.h"
+#include "options/process.h"
 
 #define TIMEOUT_MS 1000
 #define TIMEOUT_MS_MAX 3600000

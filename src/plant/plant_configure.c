@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "config_tree.h"
+#include "text/config_tree.h"
 #include "plant_model.h"
-#include "sim.h"
+#include "sim/sim.h"
 
 /* The plants of all units, before they take the place of those there are. */
 struct plants {

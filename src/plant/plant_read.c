@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "config_tree.h"
+#include "text/config_tree.h"
 #include "plant_model.h"
-#include "sim.h"
+#include "sim/sim.h"
 
 #define SPEED_MAX 1000000
 #define ACCELERATION_MAX 1000000000

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "sim.h"
+#include "sim/sim.h"
 
 struct journal;
 struct journal_page; /* a piece of the past */

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "sim.h"
+#include "sim/sim.h"
 
 #define RECORD_VERSION 1
 #define RECORD_SPAN UINT64_C(100000)       /* ticks from digest to digest */

@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "readings.h"
+#include "text/readings.h"
 #include "record_line.h"
-#include "number.h"
+#include "text/number.h"
 #include "replay_inside.h"
 
 #define TEXT_MAX 255u               /* bytes of a version text */

@@ -7,7 +7,7 @@
 #ifndef RKM04_SIM_SNAPSHOT_H
 #define RKM04_SIM_SNAPSHOT_H
 
-#include "sim.h"
+#include "sim/sim.h"
 
 struct snapshot;
 

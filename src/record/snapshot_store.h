@@ -3,7 +3,7 @@
 #ifndef RKM04_SIM_SNAPSHOT_STORE_H
 #define RKM04_SIM_SNAPSHOT_STORE_H
 
-#include "command.h"
+#include "command/command.h"
 #include "journal.h"
 #include "snapshot.h"
 

@@ -5,7 +5,7 @@
 #ifndef RKM04_SIM_TALLY_H
 #define RKM04_SIM_TALLY_H
 
-#include "sim.h"
+#include "sim/sim.h"
 
 #define TALLY_UNITS (SEGMENT_UNITS + 1u) /* unit 0: the bytes on the wires */
 #define TALLY_MOTORS (RKM04_MOTORS + 1u) /* motor 0: the unit */

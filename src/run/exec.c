@@ -9,17 +9,17 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "arguments.h"
-#include "diagnose.h"
+#include "options/arguments.h"
+#include "text/diagnose.h"
 #include "exec_program.h"
 #include "exec_report.h"
 #include "exec_run.h"
-#include "output_file.h"
-#include "readings_option.h"
+#include "file/output_file.h"
+#include "options/readings_option.h"
 #include "stimulus.h"
 #include "subcommands.h"
-#include "time_value.h"
-#include "trace_file.h"
+#include "text/time_value.h"
+#include "trace/trace_file.h"
 
 struct options {
     struct argument {

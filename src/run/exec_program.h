@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "program_text.h"
+#include "text/program_text.h"
 
 /* A file of the command line. */
 struct exec_file {

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "state_json.h"
-#include "unit_json.h"
+#include "device/state_json.h"
+#include "device/unit_json.h"
 
 static const char *end_name(enum exec_end end)
 {

@@ -12,12 +12,12 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "arguments.h"
-#include "record.h"
+#include "options/arguments.h"
+#include "record/record.h"
 #include "subcommands.h"
-#include "time_value.h"
-#include "trace_file.h"
-#include "wire_file.h"
+#include "text/time_value.h"
+#include "trace/trace_file.h"
+#include "trace/wire_file.h"
 
 #define FILES_MAX 16u
 #define PROGRESS_AFTER 2.0 /* s of real time */

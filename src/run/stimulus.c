@@ -6,7 +6,7 @@
 
 #include <rkm04/limits.h>
 
-#include "time_value.h"
+#include "text/time_value.h"
 
 #define FOUND_MAX 32 /* characters of a wrong word shown in a message */
 

@@ -7,13 +7,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "arguments.h"
-#include "output_file.h"
-#include "readings_option.h"
+#include "options/arguments.h"
+#include "file/output_file.h"
+#include "options/readings_option.h"
 #include "subcommands.h"
-#include "test_case.h"
-#include "test_readings.h"
-#include "test_report.h"
+#include "scenario/test_case.h"
+#include "scenario/test_readings.h"
+#include "scenario/test_report.h"
 
 enum option_key { KEY_NO_RECORDS = 256, KEY_FORCE, KEY_READINGS, KEY_STRICT };
 

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "readings.h"
+#include "text/readings.h"
 
 struct scenario;
 

@@ -4,9 +4,9 @@
 #ifndef RKM04_SIM_SCENARIO_PARTS_H
 #define RKM04_SIM_SCENARIO_PARTS_H
 
-#include "condition.h"
-#include "config_tree.h"
-#include "readings.h"
+#include "condition/condition.h"
+#include "text/config_tree.h"
+#include "text/readings.h"
 #include "scenario.h"
 #include "scenario_bytes.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "record.h"
+#include "record/record.h"
 #include "scenario_running.h"
 
 #define LOOK_EVERY 256u /* turns of time between two questions whether the run is to end */

@@ -10,10 +10,10 @@
 
 #include <rkm04/limits.h>
 
-#include "diagnose.h"
-#include "output_file.h"
-#include "program_text.h"
-#include "subcommands.h"
+#include "text/diagnose.h"
+#include "file/output_file.h"
+#include "text/program_text.h"
+#include "run/subcommands.h"
 #include "test_readings.h"
 
 #define TEXT_MAX ((size_t)4 << 20) /* bytes of a file */

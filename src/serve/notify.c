@@ -11,9 +11,9 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "delivery.h"
-#include "log.h"
-#include "number.h"
+#include "line/delivery.h"
+#include "line/log.h"
+#include "text/number.h"
 
 #define FD_FIRST 3 /* those below are stdin, stdout (which has the line anyway) and stderr */
 #define FD_LAST 1048575

@@ -12,16 +12,16 @@
 #include <unistd.h>
 #include <uv.h>
 
-#include "bus.h"
-#include "control.h"
-#include "coverage.h"
-#include "log.h"
+#include "bus/bus.h"
+#include "control/control.h"
+#include "device/coverage.h"
+#include "line/log.h"
 #include "notify.h"
-#include "output_file.h"
+#include "file/output_file.h"
 #include "serve_options.h"
 #include "serve_report.h"
 #include "serve_sandbox.h"
-#include "subcommands.h"
+#include "run/subcommands.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
 #define FILES_A_LINE 8u  /* descriptors, beside those of flash images */

@@ -9,15 +9,15 @@
 
 #include <rkm04/link.h>
 
-#include "arguments.h"
-#include "net_port.h"
+#include "options/arguments.h"
+#include "line/net_port.h"
 #include "notify.h"
-#include "number.h"
-#include "output_file.h"
-#include "readings_option.h"
-#include "segment.h"
-#include "trace_file.h"
-#include "wire_file.h"
+#include "text/number.h"
+#include "file/output_file.h"
+#include "options/readings_option.h"
+#include "wire/segment.h"
+#include "trace/trace_file.h"
+#include "trace/wire_file.h"
 
 #define VERSION_TEXT_MAX 255
 #define IDLE_DEFAULT 10u /* s */

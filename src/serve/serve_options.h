@@ -7,10 +7,10 @@
 
 #include <rkm04/unit.h>
 
-#include "line.h"
-#include "readings.h"
-#include "serve_names.h"
-#include "virtual_clock.h"
+#include "line/line.h"
+#include "text/readings.h"
+#include "device/serve_names.h"
+#include "bus/virtual_clock.h"
 
 #define SERVE_LINES_MAX 256u
 #define SERVE_FOLDERS_MAX 16u

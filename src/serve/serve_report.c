@@ -9,10 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "delivery.h"
-#include "log.h"
+#include "line/delivery.h"
+#include "line/log.h"
 #include "notify.h"
-#include "readings.h"
+#include "text/readings.h"
 
 #define NODES_TEXT_SIZE (NODE_LIST_MAX * NODE_NAME_SIZE)
 

@@ -3,7 +3,7 @@
 #ifndef RKM04_HOST_SERVE_REPORT_H
 #define RKM04_HOST_SERVE_REPORT_H
 
-#include "bus.h"
+#include "bus/bus.h"
 
 /* What stands where, and what was found in flash, for the log. */
 void serve_report_start(const struct serve_options *options, struct bus *const *buses);

@@ -3,7 +3,7 @@
 #ifndef RKM04_HOST_SERVE_SANDBOX_H
 #define RKM04_HOST_SERVE_SANDBOX_H
 
-#include "bus.h"
+#include "bus/bus.h"
 
 /* Keep the folders of all files that are named on the command line, those of --allow-folder, and the working directory unless it
  * is / or the user's home; of other files those that are open. To be called before threads are started: they inherit it.

@@ -15,13 +15,13 @@
 
 #include <jansson.h>
 
-#include "fault.h"
-#include "plant.h"
-#include "segment.h"
-#include "serve_names.h"
-#include "time_value.h"
+#include "fault/fault.h"
+#include "plant/plant.h"
+#include "wire/segment.h"
+#include "device/serve_names.h"
+#include "text/time_value.h"
 #include "watch.h"
-#include "wire_monitor.h"
+#include "wire/wire_monitor.h"
 
 struct sim;
 struct sim_snapshots; /* snapshot.h */

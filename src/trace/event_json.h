@@ -9,7 +9,7 @@
 
 #include <stddef.h>
 
-#include "sim.h"
+#include "sim/sim.h"
 
 /* Characters that event_json() may write at most for this event. */
 size_t event_json_room(const struct watch_event *event);

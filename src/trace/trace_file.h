@@ -6,8 +6,8 @@
 
 #include <stdio.h>
 
-#include "output_file.h"
-#include "sim.h"
+#include "file/output_file.h"
+#include "sim/sim.h"
 
 #define TRACE_FILE_EXPECTED "a name that ends with .vcd, .csv or .jsonl"
 

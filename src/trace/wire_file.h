@@ -4,8 +4,8 @@
 #ifndef RKM04_SIM_WIRE_FILE_H
 #define RKM04_SIM_WIRE_FILE_H
 
-#include "output_file.h"
-#include "sim.h"
+#include "file/output_file.h"
+#include "sim/sim.h"
 
 #define WIRE_FILE_EXPECTED "a name that ends with .log or .pcapng"
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "sim.h"
+#include "sim/sim.h"
 
 #define HEAD 2 /* bytes before what is particular to a message with a motor */
 #define UNKNOWN 255

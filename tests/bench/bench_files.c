@@ -16,9 +16,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "sim.h"
-#include "trace_file.h"
-#include "wire_file.h"
+#include "sim/sim.h"
+#include "trace/trace_file.h"
+#include "trace/wire_file.h"
 
 #define SECOND ((uint64_t)RKM04_TICKS_PER_SECOND)
 #define PROGRAM "\2" "0\\C100 A60000 S2000 V16000 G+"

@@ -3,7 +3,7 @@
 #include <check.h>
 #include <stdlib.h>
 
-#include "../src/host/virtual_clock.h"
+#include "bus/virtual_clock.h"
 
 #define SECOND UINT64_C(1000000000) /* ns */
 #define BEGIN UINT64_C(123456789)   /* any ns */

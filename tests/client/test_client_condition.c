@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/host/client_condition.h"
+#include "client/client_condition.h"
 
 static void assert_means(const char *text, const char *unit, const char *expected)
 {

@@ -8,7 +8,7 @@
 
 #include <rkm04/text.h>
 
-#include "../src/host/client_cut.h"
+#include "client/client_cut.h"
 
 #define TAPE_MAX 4000
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/host/client_panel.h"
+#include "client/client_panel.h"
 
 static struct panel panel;
 static char text[PANEL_ROWS * (PANEL_COLUMNS + 1) + 1];

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "condition.h"
-#include "rig.h"
+#include "condition/condition.h"
+#include "core/rig.h"
 
 static struct sim *sim;
 static struct condition *condition;

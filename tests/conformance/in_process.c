@@ -20,8 +20,8 @@
 
 #include <rkm04/unit.h>
 
-#include "flash_fake.h"
-#include "recorder.h"
+#include "core/flash_fake.h"
+#include "core/recorder.h"
 
 static struct rkm04_unit unit;
 static struct flash_fake flash;

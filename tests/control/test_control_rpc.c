@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "control_rpc.h"
+#include "control/control_rpc.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

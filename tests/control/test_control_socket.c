@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "control_socket.h"
+#include "control/control_socket.h"
 
 static char folder[64], path[96], lock_path[112], other[96];
 static struct control_socket ours;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "plant_rig.h"
+#include "plant/plant_rig.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define SECOND UINT64_C(1000000)

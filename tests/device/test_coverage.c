@@ -5,9 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../src/host/coverage.h"
-#include "flash_fake.h"
-#include "store_rig.h"
+#include "device/coverage.h"
+#include "core/flash_fake.h"
+#include "core/store_rig.h"
 
 #define TEXT_MAX 20000
 

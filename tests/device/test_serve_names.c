@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/serve_names.h"
+#include "device/serve_names.h"
 
 /* The list as text, "1 2 5", or "none". */
 static const char *nodes(const char *text)

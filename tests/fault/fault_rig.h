@@ -5,7 +5,7 @@
 
 #include <check.h>
 
-#include "sim/command.h"
+#include "command/command.h"
 #include "sim/sim.h"
 
 #define RIG_BYTES 8192u

@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "client_control.h"
+#include "client/client_control.h"
 #include "fuzz.h"
 
 #define OUTPUT_MAX (1u << 20) /* bytes looked at */

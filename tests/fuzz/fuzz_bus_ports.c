@@ -17,7 +17,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "bus.h"
+#include "bus/bus.h"
 #include "fuzz.h"
 #include "loop_machine.h"
 

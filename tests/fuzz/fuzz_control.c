@@ -4,10 +4,10 @@
  * are left alone. First byte: how many units. */
 #include <string.h>
 
-#include "condition.h"
-#include "control_rpc.h"
+#include "condition/condition.h"
+#include "control/control_rpc.h"
 #include "fuzz.h"
-#include "snapshot.h"
+#include "record/snapshot.h"
 
 #define REQUESTS_MAX 40
 #define TIME_MAX 2000000u /* ticks */

@@ -16,8 +16,8 @@
 #include <unistd.h>
 
 #include "fuzz.h"
-#include "line.h"
-#include "log.h"
+#include "line/line.h"
+#include "line/log.h"
 
 #define CLIENTS 3u
 #define ACTIONS 200u

@@ -3,7 +3,7 @@
  * is heard is never more than a caller has room for, in order, within the receiver's data bits, and not before it was sent;
  * ends that agree hear what was sent; a change of settings is told once. */
 #include "fuzz.h"
-#include "line_settings.h"
+#include "line/line_settings.h"
 
 #include <string.h>
 

@@ -19,7 +19,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "control_inside.h"
+#include "control/control_inside.h"
 #include "fuzz.h"
 #include "loop_client.h"
 #include "loop_machine.h"

@@ -15,7 +15,7 @@
 
 #include "fuzz.h"
 #include "loop_machine.h"
-#include "net_port.h"
+#include "line/net_port.h"
 
 #define CLIENTS 4u
 #define ACTIONS 150u

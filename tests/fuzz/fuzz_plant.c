@@ -3,7 +3,7 @@
  * report their state, and take the same text again or say why not. */
 #include <string.h>
 
-#include "command.h"
+#include "command/command.h"
 #include "fuzz.h"
 
 static struct sim sim;

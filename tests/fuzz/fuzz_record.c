@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "record.h"
+#include "record/record.h"
 
 #define LOOKS_MAX 300 /* tenths of a second, at most, in which something happens */
 

@@ -5,9 +5,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "command.h"
+#include "command/command.h"
 #include "fuzz.h"
-#include "snapshot.h"
+#include "record/snapshot.h"
 
 static struct sim sim;
 

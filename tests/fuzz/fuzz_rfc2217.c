@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_rfc2217.c: any bytes of a client over telnet (RFC 2217). Replies fit their buffer and have no lone IAC, settings stay
  * within what they may be, and what is escaped for the other side is received as the same data, whatever came before. */
-#include "rfc2217.h"
+#include "line/rfc2217.h"
 
 #include "fuzz.h"
 

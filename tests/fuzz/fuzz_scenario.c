@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "scenario.h"
+#include "scenario/scenario.h"
 
 #define LOOKS_MAX 40 /* questions whether to go on: a scenario may wait for a week */
 

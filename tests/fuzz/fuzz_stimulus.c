@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "stimulus.h"
+#include "run/stimulus.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

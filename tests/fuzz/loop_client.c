@@ -8,10 +8,10 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "control_peer.h"
-#include "control_rpc.h"
+#include "control/control_peer.h"
+#include "control/control_rpc.h"
 #include "fuzz.h"
-#include "watch.h"
+#include "sim/watch.h"
 
 static unsigned lines_there;
 

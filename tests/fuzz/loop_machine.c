@@ -10,12 +10,12 @@
 #include <unistd.h>
 #include <uv.h>
 
-#include "command.h"
-#include "snapshot.h"
+#include "command/command.h"
+#include "record/snapshot.h"
 #include "fuzz.h"
-#include "log.h"
-#include "trace_file.h"
-#include "wire_file.h"
+#include "line/log.h"
+#include "trace/trace_file.h"
+#include "trace/wire_file.h"
 
 #define NS_PER_SECOND UINT64_C(1000000000)
 #define NS_PER_MS UINT64_C(1000000)

@@ -3,7 +3,7 @@
 #ifndef RKM04_TESTS_MANUAL_RIG_H
 #define RKM04_TESTS_MANUAL_RIG_H
 
-#include "rig.h"
+#include "core/rig.h"
 
 extern struct rig rig;
 extern size_t seen; /* motions of motor 1 that a test has accounted for */

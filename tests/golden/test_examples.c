@@ -6,7 +6,7 @@
 #include <check.h>
 #include <string.h>
 
-#include "rig.h"
+#include "core/rig.h"
 
 static struct rig rig;
 static size_t seen; /* motions that a test has accounted for */

@@ -4,7 +4,7 @@
 #include <check.h>
 #include <string.h>
 
-#include "rig.h"
+#include "core/rig.h"
 
 struct bytes {
     const char *text;

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "flash_file.h"
+#include "line/flash_file.h"
 
 enum disk_fault {
     DISK_WELL,

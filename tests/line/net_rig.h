@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../src/host/net_port.h"
+#include "line/net_port.h"
 
 #define LIMIT_MS 20000 /* until a condition counts as never coming true */
 #define HEARD_MAX 65536

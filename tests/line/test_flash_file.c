@@ -12,9 +12,9 @@
 #include <unistd.h>
 
 #include "disk_shim.h"
-#include "log.h"
-#include "output_file.h"
-#include "store_rig.h"
+#include "line/log.h"
+#include "file/output_file.h"
+#include "core/store_rig.h"
 
 /* So many cuts at the least, if no case was chosen. */
 #define CUTS_SHORT 2000ul

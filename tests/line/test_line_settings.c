@@ -11,7 +11,7 @@
 
 #include <rkm04/unit.h>
 
-#include "../src/host/line_settings.h"
+#include "line/line_settings.h"
 
 #define HEARD_MAX 2000
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/host/rfc2217.h"
+#include "line/rfc2217.h"
 
 #define OPENING "fffb00 fffd00 fffb03 fffd2c" /* WILL and DO BINARY, WILL SGA, DO COM-PORT */
 #define LINES "fffa2c 6bb0 fff0"              /* carrier, DSR and CTS are there */

@@ -3,7 +3,7 @@
 #ifndef RKM04_TESTS_PLANT_RIG_H
 #define RKM04_TESTS_PLANT_RIG_H
 
-#include "sim/command.h"
+#include "command/command.h"
 #include "sim/sim.h"
 
 #define RIG_INPUTS 4096u /* changes of inputs that are kept */

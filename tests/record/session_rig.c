@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/wire_monitor.h"
-#include "sim/readings.h"
+#include "wire/wire_monitor.h"
+#include "text/readings.h"
 
 static const char axis[] =
     "motors:\n"

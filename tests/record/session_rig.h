@@ -6,7 +6,7 @@
 
 #include <check.h>
 
-#include "sim/command.h"
+#include "command/command.h"
 #include "sim/sim.h"
 
 #define SECOND UINT64_C(1000000)

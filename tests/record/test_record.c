@@ -5,10 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "rig.h"
+#include "core/rig.h"
 #include "session_rig.h"
-#include "sim/record.h"
-#include "sim/snapshot.h"
+#include "record/record.h"
+#include "record/snapshot.h"
 
 static struct session session;
 static char path[64];

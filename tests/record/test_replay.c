@@ -5,10 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "rig.h"
+#include "core/rig.h"
 #include "session_rig.h"
-#include "sim/record.h"
-#include "sim/snapshot.h"
+#include "record/record.h"
+#include "record/snapshot.h"
 
 #define HEAD "{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"timed\":true,\"turnaround\":521,\"seed\":\"1\"}\n"
 #define HEAD_OUT "{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"timed\":true,\"seed\":\"1\",\"outputs\":true}\n"

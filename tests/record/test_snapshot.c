@@ -5,10 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "rig.h"
+#include "core/rig.h"
 #include "session_rig.h"
-#include "sim/journal.h"
-#include "sim/snapshot.h"
+#include "record/journal.h"
+#include "record/snapshot.h"
 
 static struct session here;
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "host/exec_program.h"
+#include "run/exec_program.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

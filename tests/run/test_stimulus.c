@@ -7,8 +7,8 @@
 
 #include <rkm04/limits.h>
 
-#include "host/stimulus.h"
-#include "sim/time_value.h"
+#include "run/stimulus.h"
+#include "text/time_value.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "rig.h"
-#include "scenario.h"
-#include "scenario_bytes.h"
+#include "core/rig.h"
+#include "scenario/scenario.h"
+#include "scenario/scenario_bytes.h"
 
 static struct scenario_result result;
 static char *said; /* errors of reading */

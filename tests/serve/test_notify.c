@@ -13,7 +13,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "../src/host/notify.h"
+#include "serve/notify.h"
 
 static char folder[] = "/tmp/test_notify.XXXXXX";
 static char path[sizeof folder + 16];

@@ -5,12 +5,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "rig.h"
-#include "session_rig.h"
-#include "sim/condition.h"
-#include "sim/record.h"
-#include "sim/scenario.h"
-#include "sim/snapshot.h"
+#include "core/rig.h"
+#include "record/session_rig.h"
+#include "condition/condition.h"
+#include "record/record.h"
+#include "scenario/scenario.h"
+#include "record/snapshot.h"
 
 static struct session session;
 

@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "rig.h"
-#include "sim/command.h"
+#include "core/rig.h"
+#include "command/command.h"
 #include "sim/sim.h"
-#include "story.h"
+#include "core/story.h"
 
 #define LINES_MAX 400000u /* bytes of what was seen */
 

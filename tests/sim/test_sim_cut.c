@@ -9,10 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "rig.h"
-#include "session_rig.h"
-#include "sim/record.h"
-#include "sim/snapshot.h"
+#include "core/rig.h"
+#include "record/session_rig.h"
+#include "record/record.h"
+#include "record/snapshot.h"
 
 #define SESSIONS 150u
 #define SESSIONS_LONG 6000u

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/config_tree.h"
+#include "text/config_tree.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

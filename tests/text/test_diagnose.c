@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/host/diagnose.h"
+#include "text/diagnose.h"
 
 /* What is said about a text, "\n" behind each error; the text is copied to size for the sanitizer to watch its end. */
 static char *said;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/program_text.h"
+#include "text/program_text.h"
 
 static void ck_mapped(const char *from, const char *to)
 {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/readings.h"
+#include "text/readings.h"
 
 /* The canonical text of what was read, or the error. */
 static const char *read_text(const char *text)

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "event_json.h"
+#include "trace/event_json.h"
 #include "trace_rig.h"
 
 static void jsonl(void)

@@ -7,9 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../src/sim/wire_file.h"
-#include "rig.h"
-#include "wire_rig.h"
+#include "trace/wire_file.h"
+#include "core/rig.h"
+#include "wire/wire_rig.h"
 
 #define sim (&wire_rig.sim)
 #define HDLC &rkm04_hdlc

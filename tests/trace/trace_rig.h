@@ -3,7 +3,7 @@
 #ifndef TRACE_RIG_H
 #define TRACE_RIG_H
 
-#include "sim/trace_file.h"
+#include "trace/trace_file.h"
 
 /* A line with these units ("1", "3,12,3"), bytes take no time, and a trace from tick 0. */
 void trace_rig_begin(const char *nodes, enum trace_format format);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "segment.h"
+#include "wire/segment.h"
 
 #define UNITS SEGMENT_UNITS
 #define STEPS INT64_C(9700000)

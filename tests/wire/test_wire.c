@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/sim/wire.h"
-#include "rig.h"
+#include "wire/wire.h"
+#include "core/rig.h"
 
 #define HEARD_MAX 4096
 #define BIT WIRE_BIT

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/sim/wire_words.h"
-#include "rig.h"
+#include "wire/wire_words.h"
+#include "core/rig.h"
 #include "wire_rig.h"
 
 #define sim (&wire_rig.sim)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/sim/wire_words.h"
+#include "wire/wire_words.h"
 
 struct wire_rig wire_rig;
 

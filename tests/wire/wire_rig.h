@@ -5,7 +5,7 @@
 
 #include <check.h>
 
-#include "../src/sim/sim.h"
+#include "sim/sim.h"
 
 #define WIRE_RIG_LINES 64
 #define WIRE_RIG_COLUMNS 400
