@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "line/log.h"
-#include "record/snapshot.h"
+#include "line/line.h"
+#include "record/record.h"
 
 #define INJECTED_TOLD 100u /* acts of faults on demand in the log */
 

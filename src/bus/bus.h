@@ -17,8 +17,8 @@
 #include "bus_ports.h"
 #include "command/command.h"
 #include "condition/condition.h"
-#include "line/flash_file.h"
-#include "serve/serve_options.h"
+#include "line/line.h"
+#include "serve/serve.h"
 #include "sim/sim.h"
 
 struct bus_unit {
@@ -139,5 +139,8 @@ void bus_log_detail(const struct bus *bus, const char *format, ...) __attribute_
 
 bool bus_time_begin(struct bus *bus, uv_loop_t *loop);
 void bus_say(const struct bus *bus, uint64_t tick, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* The other parts that rooms above use. */
+#include "virtual_clock.h"
 
 #endif

@@ -3,8 +3,8 @@
 #ifndef RKM04_HOST_BUS_COVERAGE_H
 #define RKM04_HOST_BUS_COVERAGE_H
 
-#include "device/coverage.h"
-#include "wire/wire_monitor.h"
+#include "device/device.h"
+#include "wire/wire.h"
 
 /* A message has passed (WATCH_MESSAGE). Requests count if a unit may obey them, answers if they are whole: what a collision
  * leaves of one is dropped, where the framing can tell. */

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "bus.h"
-#include "line/log.h"
-#include "file/output_file.h"
+#include "line/line.h"
+#include "file/file.h"
 
 /* The name for this line; NULL: too long (reported). */
 static const char *path_of(const struct bus *bus, const char *pattern, char path[PATH_MAX])

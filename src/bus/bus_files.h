@@ -7,9 +7,8 @@
 #include <stdio.h>
 
 #include "record/record.h"
-#include "serve/serve_options.h"
-#include "trace/trace_file.h"
-#include "trace/wire_file.h"
+#include "serve/serve.h"
+#include "trace/trace.h"
 
 struct bus;
 

@@ -7,9 +7,6 @@
 #include <uv.h>
 
 #include "line/line.h"
-#include "line/line_settings.h"
-#include "line/link_path.h"
-#include "line/net_port.h"
 
 struct bus;
 

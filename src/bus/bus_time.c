@@ -7,7 +7,7 @@
 #include <sys/timerfd.h>
 
 #include "bus.h"
-#include "line/log.h"
+#include "line/line.h"
 
 #define NS_PER_MS 1000000u
 #define NS_PER_SECOND 1000000000u

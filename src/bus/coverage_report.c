@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The report of coverage.h: for people, as JSON, and into files. */
-#include "device/coverage.h"
+#include "device/device.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "line/log.h"
-#include "file/output_file.h"
+#include "line/line.h"
+#include "file/file.h"
 
 #define JSON_ENDING ".json"
 

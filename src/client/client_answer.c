@@ -10,7 +10,7 @@
 
 #include <rkm04/limits.h>
 
-#include "text/number.h"
+#include "text/text.h"
 
 enum { HEAD = 2 /* message number and motor, or length */, TEXT_MAX = 16384 };
 

@@ -10,7 +10,7 @@
 
 #include <rkm04/unit.h>
 
-#include "text/number.h"
+#include "text/text.h"
 
 #define NAME_MAX_LENGTH 48
 #define VALUE_MAX_LENGTH 48

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "client_watch.h"
-#include "text/number.h"
+#include "text/text.h"
 
 #define WRONG_PARAMS (-32602) /* JSON-RPC 2.0 */
 

@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "client_job.h"
-#include "text/number.h"
-#include "text/program_text.h"
+#include "text/text.h"
 
 /* ---- Plant ------------------------------------------------------------------------------------------------------------ */
 

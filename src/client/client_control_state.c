@@ -7,7 +7,7 @@
 
 #include "client_job.h"
 #include "client_panel.h"
-#include "text/number.h"
+#include "text/text.h"
 
 #define TEXT_COLUMNS 100
 

@@ -10,7 +10,7 @@
 
 #include "client_condition.h"
 #include "client_job.h"
-#include "text/number.h"
+#include "text/text.h"
 
 /* ---- Waiting ---------------------------------------------------------------------------------------------------------- */
 

@@ -18,7 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "text/number.h"
+#include "text/text.h"
 
 #define TCP "tcp:"
 #define LOCK_RETRY_MS 10

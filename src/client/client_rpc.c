@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "client_port.h"
-#include "options/socket_address.h"
+#include "options/options.h"
 
 #define LINE_MAX_BYTES (64u << 20) /* longest object believed to be an answer */
 #define ROOM_FIRST 65536u

@@ -10,8 +10,7 @@
 
 #include "client_cut.h"
 #include "client_port.h"
-#include "text/diagnose.h"
-#include "text/program_text.h"
+#include "text/text.h"
 
 enum { SET_COMMAND = 2, HEAD = 2 /* message number and motor */ };
 enum { FLAG_WELL, FLAG_BAD_VALUE, FLAG_UNKNOWN, FLAG_OVERFLOW }; /* of the answer, P1 */

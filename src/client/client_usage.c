@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/number.h"
+#include "text/text.h"
 
 enum exit_status client_usage(const char *format, ...)
 {

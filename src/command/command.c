@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "text/time_value.h"
+#include "text/text.h"
 
 static const struct method {
     const char *name;

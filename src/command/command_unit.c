@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "command.h"
-#include "device/unit_json.h"
+#include "device/device.h"
 
 /* "1", "01", … "08" -> 1..8; 0: no input. */
 static unsigned input_named(const char *name)

@@ -46,4 +46,7 @@ char *condition_text(struct condition *condition);
 char *condition_wanted(struct condition *condition);
 char *condition_found(struct condition *condition);
 
+/* The other parts that rooms above use. */
+#include "condition_term.h"
+
 #endif

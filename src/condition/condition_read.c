@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "condition_term.h"
-#include "text/time_value.h"
+#include "text/text.h"
 
 #define TERMS_MAX 256 /* of a condition: each is looked at after everything that happens */
 #define DEPTH_MAX 8 /* of all and any inside one another */

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "control_inside.h"
-#include "line/log.h"
+#include "line/line.h"
 
 #define BACKLOG 128
 #define BUDGET 500000u   /* ns a turn of the loop for the lines of all clients; a unit waits no longer */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "control_inside.h"
-#include "text/readings.h"
+#include "text/text.h"
 
 /* ---- Answers -------------------------------------------------------------------------------------------------------- */
 

@@ -2,7 +2,7 @@
 /* restore with a file: its recording is replayed in pieces between the turns of the loop, so that however long it lasts nobody
  * waits for it but the client that wants it. One goes on at a time. */
 #include "control_inside.h"
-#include "record/snapshot.h"
+#include "record/record.h"
 
 #define SLICE 2000000u /* ns between two turns of the loop */
 #define NS_PER_US 1000u

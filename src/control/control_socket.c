@@ -7,9 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "line/lock_file.h"
-#include "line/log.h"
-#include "options/socket_address.h"
+#include "line/line.h"
+#include "options/options.h"
 
 #define RECORD "rkm04 process %ld, control socket %ju:%ju" /* in the lock file: whose it is; device and number of the file */
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "control_inside.h"
-#include "trace/event_json.h"
+#include "trace/trace.h"
 
 #define HEAD "{\"jsonrpc\":\"2.0\",\"method\":\"event\",\"params\":{\"subscription\":%u,"
 #define TAIL "}}\n"

@@ -4,9 +4,8 @@
 #include <string.h>
 
 #include "control_inside.h"
-#include "line/log.h"
-#include "trace/trace_file.h"
-#include "trace/wire_file.h"
+#include "line/line.h"
+#include "trace/trace.h"
 
 /* End a file. Returns 0 or the errno of the first failure. */
 static int end(struct control_trace *trace)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/number.h"
+#include "text/text.h"
 
 #define PORT_MAX 65535ul
 

@@ -21,7 +21,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "wire/segment.h"
+#include "wire/wire.h"
 
 struct sim;
 struct sim_unit;

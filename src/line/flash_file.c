@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "log.h"
-#include "file/output_file.h"
+#include "file/file.h"
 
 #define ERASED 0xff
 

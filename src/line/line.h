@@ -99,4 +99,13 @@ void line_make_uncooked(struct termios *settings);
 /* Settings of a raw line with 8N1. Leaves speed and control characters alone. */
 void line_make_raw(struct termios *settings);
 
+/* The other parts that rooms above use. */
+#include "delivery.h"
+#include "flash_file.h"
+#include "line_settings.h"
+#include "link_path.h"
+#include "lock_file.h"
+#include "log.h"
+#include "net_port.h"
+
 #endif

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "file/output_file.h"
+#include "file/file.h"
 
 /* Is the open file still the one of that name? Who held it before may have removed it between our open and our lock. */
 static bool is_there(int fd, const char *path)

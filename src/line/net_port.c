@@ -20,7 +20,7 @@
 #include <sys/socket.h>
 
 #include "log.h"
-#include "text/number.h"
+#include "text/text.h"
 
 #define DEFAULT_HOST "127.0.0.1"
 #define HOST_SIZE 256

@@ -7,10 +7,8 @@
 
 #include <rkm04/limits.h>
 
-#include "options/arguments.h"
-#include "options/nearest.h"
-#include "options/process.h"
-#include "run/subcommands.h"
+#include "options/options.h"
+#include "run/run.h"
 
 #define NAMES "serve, exec, test or replay"
 

@@ -10,13 +10,8 @@
 
 #include <rkm04/limits.h>
 
-#include "options/arguments.h"
-#include "client/client_control.h"
-#include "client/client_link.h"
-#include "client/client_request.h"
-#include "client/client_usage.h"
-#include "options/nearest.h"
-#include "options/process.h"
+#include "options/options.h"
+#include "client/client.h"
 
 #define TIMEOUT_MS 1000
 #define TIMEOUT_MS_MAX 3600000

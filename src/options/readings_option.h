@@ -5,7 +5,7 @@
 
 #include <argp.h>
 
-#include "text/readings.h"
+#include "text/text.h"
 
 #define READINGS_OPTION_HELP \
     "How the units read what the manual leaves open, as in hold-exit=latch,speed-change=500ms; `list' lists all readings " \

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/config_tree.h"
+#include "text/text.h"
 #include "plant_model.h"
 #include "sim/sim.h"
 

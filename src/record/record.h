@@ -78,4 +78,7 @@ struct replay_counts replay_counts(const struct replay *replay);
 
 void replay_free(struct replay *replay);
 
+/* The other parts that rooms above use. */
+#include "snapshot.h"
+
 #endif

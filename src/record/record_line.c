@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "text/readings.h"
+#include "text/text.h"
 
 void record_hex(FILE *out, const uint8_t *bytes, size_t length)
 {

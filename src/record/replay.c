@@ -6,7 +6,7 @@
 #include "record_line.h"
 #include "replay_inside.h"
 #include "snapshot_store.h"
-#include "text/time_value.h"
+#include "text/text.h"
 
 /* ---- Time ----------------------------------------------------------------------------------------------------------- */
 

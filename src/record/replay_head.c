@@ -2,9 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/readings.h"
+#include "text/text.h"
 #include "record_line.h"
-#include "text/number.h"
 #include "replay_inside.h"
 
 #define TEXT_MAX 255u               /* bytes of a version text */

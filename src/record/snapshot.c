@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/readings.h"
+#include "text/text.h"
 
 #define FLASH_SIZE (RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE)
 

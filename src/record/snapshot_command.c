@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "file/output_file.h"
+#include "file/file.h"
 #include "snapshot_store.h"
 
 static const char out_of_memory[] = "out of memory";

@@ -9,17 +9,15 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "options/arguments.h"
-#include "text/diagnose.h"
+#include "options/options.h"
+#include "text/text.h"
 #include "exec_program.h"
 #include "exec_report.h"
 #include "exec_run.h"
-#include "file/output_file.h"
-#include "options/readings_option.h"
+#include "file/file.h"
 #include "stimulus.h"
 #include "subcommands.h"
-#include "text/time_value.h"
-#include "trace/trace_file.h"
+#include "trace/trace.h"
 
 struct options {
     struct argument {

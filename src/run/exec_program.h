@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "text/program_text.h"
+#include "text/text.h"
 
 /* A file of the command line. */
 struct exec_file {

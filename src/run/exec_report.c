@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "device/state_json.h"
-#include "device/unit_json.h"
+#include "device/device.h"
 
 static const char *end_name(enum exec_end end)
 {

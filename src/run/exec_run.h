@@ -9,7 +9,7 @@
 #include "exec_repeat.h"
 #include "sim/sim.h"
 #include "stimulus.h"
-#include "trace/trace_file.h"
+#include "trace/trace.h"
 
 enum exec_end {
     EXEC_DONE,        /* nothing is due any more: every motor idle, stopped, or waiting for what can never come */

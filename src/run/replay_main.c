@@ -12,12 +12,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "options/arguments.h"
+#include "options/options.h"
 #include "record/record.h"
 #include "subcommands.h"
-#include "text/time_value.h"
-#include "trace/trace_file.h"
-#include "trace/wire_file.h"
+#include "text/text.h"
+#include "trace/trace.h"
 
 #define FILES_MAX 16u
 #define PROGRESS_AFTER 2.0 /* s of real time */

@@ -6,7 +6,7 @@
 
 #include <rkm04/limits.h>
 
-#include "text/time_value.h"
+#include "text/text.h"
 
 #define FOUND_MAX 32 /* characters of a wrong word shown in a message */
 

@@ -7,13 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "options/arguments.h"
-#include "file/output_file.h"
-#include "options/readings_option.h"
+#include "options/options.h"
+#include "file/file.h"
 #include "subcommands.h"
-#include "scenario/test_case.h"
-#include "scenario/test_readings.h"
-#include "scenario/test_report.h"
+#include "scenario/scenario.h"
 
 enum option_key { KEY_NO_RECORDS = 256, KEY_FORCE, KEY_READINGS, KEY_STRICT };
 

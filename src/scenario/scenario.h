@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "text/readings.h"
+#include "text/text.h"
 
 struct scenario;
 
@@ -61,5 +61,10 @@ struct scenario_result {
 enum scenario_end scenario_run(const struct scenario *scenario, FILE *record, bool (*interrupted)(void *context, uint64_t tick),
                                void *context, struct scenario_result *result);
 void scenario_result_free(struct scenario_result *result);
+
+/* The other parts that rooms above use. */
+#include "test_case.h"
+#include "test_readings.h"
+#include "test_report.h"
 
 #endif

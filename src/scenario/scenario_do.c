@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "condition/condition_term.h"
+#include "condition/condition.h"
 #include "scenario_running.h"
 
 #define TIME_FORMAT "%" PRIu64 ".%06" PRIu64 " s"

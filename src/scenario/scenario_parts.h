@@ -5,8 +5,7 @@
 #define RKM04_SIM_SCENARIO_PARTS_H
 
 #include "condition/condition.h"
-#include "text/config_tree.h"
-#include "text/readings.h"
+#include "text/text.h"
 #include "scenario.h"
 #include "scenario_bytes.h"
 

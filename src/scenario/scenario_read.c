@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "scenario_parts.h"
-#include "text/time_value.h"
+#include "text/text.h"
 
 #define TIMEOUT 60000000u /* ticks */
 #define STEPS_MAX 10000u  /* and stimuli, and conditions of `always` */

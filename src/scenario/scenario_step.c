@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "condition/condition_term.h"
-#include "file/output_file.h"
+#include "condition/condition.h"
+#include "file/file.h"
 #include "scenario_parts.h"
 
 #define SILENCE 1000000u /* ticks: how long `answer: none` listens */

@@ -10,10 +10,9 @@
 
 #include <rkm04/limits.h>
 
-#include "text/diagnose.h"
-#include "file/output_file.h"
-#include "text/program_text.h"
-#include "run/subcommands.h"
+#include "text/text.h"
+#include "file/file.h"
+#include "run/run.h"
 #include "test_readings.h"
 
 #define TEXT_MAX ((size_t)4 << 20) /* bytes of a file */

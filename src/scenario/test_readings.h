@@ -9,7 +9,7 @@
 
 #include <rkm04/readings.h>
 
-#include "text/readings.h"
+#include "text/text.h"
 #include "test_case.h"
 
 #define TEST_READINGS_TEXT_SIZE 1024 /* bytes of a list of all of them, and of pairs */

@@ -11,9 +11,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "line/delivery.h"
-#include "line/log.h"
-#include "text/number.h"
+#include "line/line.h"
+#include "text/text.h"
 
 #define FD_FIRST 3 /* those below are stdin, stdout (which has the line anyway) and stderr */
 #define FD_LAST 1048575

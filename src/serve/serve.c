@@ -14,14 +14,14 @@
 
 #include "bus/bus.h"
 #include "control/control.h"
-#include "device/coverage.h"
-#include "line/log.h"
+#include "device/device.h"
+#include "line/line.h"
 #include "notify.h"
-#include "file/output_file.h"
+#include "file/file.h"
 #include "serve_options.h"
 #include "serve_report.h"
 #include "serve_sandbox.h"
-#include "run/subcommands.h"
+#include "run/run.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
 #define FILES_A_LINE 8u  /* descriptors, beside those of flash images */

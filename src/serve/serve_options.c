@@ -9,15 +9,13 @@
 
 #include <rkm04/link.h>
 
-#include "options/arguments.h"
-#include "line/net_port.h"
+#include "options/options.h"
+#include "line/line.h"
 #include "notify.h"
-#include "text/number.h"
-#include "file/output_file.h"
-#include "options/readings_option.h"
-#include "wire/segment.h"
-#include "trace/trace_file.h"
-#include "trace/wire_file.h"
+#include "text/text.h"
+#include "file/file.h"
+#include "wire/wire.h"
+#include "trace/trace.h"
 
 #define VERSION_TEXT_MAX 255
 #define IDLE_DEFAULT 10u /* s */

@@ -8,9 +8,9 @@
 #include <rkm04/unit.h>
 
 #include "line/line.h"
-#include "text/readings.h"
-#include "device/serve_names.h"
-#include "bus/virtual_clock.h"
+#include "text/text.h"
+#include "device/device.h"
+#include "bus/bus.h"
 
 #define SERVE_LINES_MAX 256u
 #define SERVE_FOLDERS_MAX 16u

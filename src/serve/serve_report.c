@@ -9,10 +9,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "line/delivery.h"
-#include "line/log.h"
+#include "line/line.h"
 #include "notify.h"
-#include "text/readings.h"
+#include "text/text.h"
 
 #define NODES_TEXT_SIZE (NODE_LIST_MAX * NODE_NAME_SIZE)
 

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "line/log.h"
+#include "line/line.h"
 #include "sandbox.h"
 
 /* A name in which %l and %n may stand, also in that of the folder. */

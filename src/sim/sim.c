@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "record/snapshot.h"
+#include "record/record.h"
 
 #define LONGEST_ANSWER 20000000u /* ticks: more than the longest answer takes */
 

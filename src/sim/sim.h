@@ -17,11 +17,10 @@
 
 #include "fault/fault.h"
 #include "plant/plant.h"
-#include "wire/segment.h"
-#include "device/serve_names.h"
-#include "text/time_value.h"
+#include "wire/wire.h"
+#include "device/device.h"
+#include "text/text.h"
 #include "watch.h"
-#include "wire/wire_monitor.h"
 
 struct sim;
 struct sim_snapshots; /* snapshot.h */

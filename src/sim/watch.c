@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "wire/wire_monitor.h"
+#include "wire/wire.h"
 
 #define ORDER_PHASE 60u /* bit of the phase in watch_event.order */
 #define ROOM_AT_FIRST 256u

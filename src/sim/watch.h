@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "wire/segment.h"
+#include "wire/wire.h"
 
 enum watch_kind {
     WATCH_STEP,      /* a pulse; value: position of the counter after it */

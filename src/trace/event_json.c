@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "event_json.h"
 
-#include "text/digits.h"
+#include "text/text.h"
 
 #define PLAIN_ROOM 192u                                  /* every member with a number or a name */
 #define SENDERS_ROOM ((SEGMENT_UNITS + 1u) * (NODE_NAME_SIZE + 3u)) /* `from` */

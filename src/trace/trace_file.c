@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/output_file.h"
+#include "file/file.h"
 
 static const enum output_kind kinds[TRACE_FORMATS] = {
     [TRACE_CSV] = OUTPUT_CSV,

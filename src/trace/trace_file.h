@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "file/output_file.h"
+#include "file/file.h"
 #include "sim/sim.h"
 
 #define TRACE_FILE_EXPECTED "a name that ends with .vcd, .csv or .jsonl"

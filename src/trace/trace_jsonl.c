@@ -2,7 +2,7 @@
 /* One JSON object a line: `begin` with what there is, every event as in event_json.h, `end`. */
 #include <stdlib.h>
 
-#include "text/digits.h"
+#include "text/text.h"
 #include "event_json.h"
 #include "trace_writer.h"
 

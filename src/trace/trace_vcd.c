@@ -5,7 +5,7 @@
  * step is 1 for the 10 us of a pulse (R7); led is bright or dark, so a blinking one blinks; speed is what a counter of pulses
  * shows that is read at the first pulse after each millisecond, hence 0 until there is one. No date: two runs of the same
  * session give the same file (K1). */
-#include "text/digits.h"
+#include "text/text.h"
 #include "trace_writer.h"
 
 #define BLINK (RKM04_TICKS_PER_SECOND / 2u) /* ticks bright, then dark (U6) */

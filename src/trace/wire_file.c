@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/output_file.h"
+#include "file/file.h"
 #include "wire_format.h"
 
 struct wire_file {

@@ -4,7 +4,7 @@
 #ifndef RKM04_SIM_WIRE_FILE_H
 #define RKM04_SIM_WIRE_FILE_H
 
-#include "file/output_file.h"
+#include "file/file.h"
 #include "sim/sim.h"
 
 #define WIRE_FILE_EXPECTED "a name that ends with .log or .pcapng"

@@ -3,9 +3,9 @@
 #ifndef RKM04_SIM_WIRE_FORMAT_H
 #define RKM04_SIM_WIRE_FORMAT_H
 
-#include "file/output_kind.h"
+#include "file/file.h"
 #include "sim/sim.h"
-#include "text/wire_text.h"
+#include "text/text.h"
 
 /* Bytes of the longest entry: a frame in hexadecimal, and in words. */
 #define WIRE_ENTRY_MAX 131072u

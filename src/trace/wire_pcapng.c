@@ -6,7 +6,7 @@
 #include <rkm04/limits.h>
 
 #include "wire_format.h"
-#include "wire/wire_words.h"
+#include "wire/wire.h"
 
 /* Blocks. Numbers in them are little-endian. */
 #define BLOCK_SECTION 0x0A0D0D0Au

@@ -33,7 +33,7 @@
 
 #include <rkm04/unit.h>
 
-#include "wire.h"
+#include "levels.h"
 
 #define SEGMENT_UNITS RKM04_NODE_MAX    /* on one line (U4) */
 #define SEGMENT_ROOM 4096u              /* bytes of the master that may be under way */

@@ -1,89 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* wire.h: two wires of RS485 at 19200 baud 8N1 (U7), bit by bit: what each station hears of what all of them send. Pure: no
- * file, no clock.
- *
- * The level is 0 while anyone sends a 0. A station listens as a UART does: it waits for the line to fall, samples the middle of
- * the start bit, of the eight bits and of the stop bit, and has the byte when ten bits are over. A start bit that is gone in its
- * middle was none; a byte without its stop bit is lost and counted. Who sends does not hear meanwhile, and joins in the middle
- * of things if others are still at it. So a byte that nobody disturbs is heard as it was sent, and the rest comes out of the
- * bits.
- *
- * Times are parts, WIRE_TICK to a tick: a bit is 625/12 us, so nothing is ever rounded. */
-#ifndef RKM04_HOST_WIRE_H
-#define RKM04_HOST_WIRE_H
+/* wire.h: the face of the room for the two wires of a bus in virtual time: levels, bytes, units, collisions; and a monitor that finds the messages in the
+ * bytes. No file, no clock. */
+#ifndef RKM04_ROOM_WIRE_H
+#define RKM04_ROOM_WIRE_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <rkm04/limits.h>
-
-#define WIRE_TICK 12u   /* parts of a tick */
-#define WIRE_BIT 625u   /* parts of a bit at 19200 baud */
-#define WIRE_BYTE 6250u /* parts of ten bits */
-
-#define WIRE_MASTER 0u                          /* station 0; 1..16 are units */
-#define WIRE_STATIONS (1u + RKM04_NODE_MAX)
-#define WIRE_MONITOR WIRE_STATIONS              /* an ear that never sends: it hears everything */
-#define WIRE_EARS (WIRE_STATIONS + 1u)
-#define WIRE_NOISE WIRE_EARS                    /* no station: something that disturbs the line, for wire_hold() */
-#define WIRE_SIGNALS 80u /* signals that matter at a time: of each station those of the last three bytes' time, and spare ones */
-
-/* A byte on the wire, or a break. */
-struct wire_signal {
-    uint64_t start, end; /* parts; end: of the stop bit */
-    uint16_t bits;       /* start bit in bit 0, stop bit in bit 9 */
-    uint8_t station;
-    bool held;           /* a break: 0 from start to end */
-    bool collided;       /* counted already */
-};
-
-struct wire_ear {
-    uint64_t from;           /* it waits for the line to fall since then */
-    uint64_t fall;           /* when that was; RKM04_NEVER: not yet */
-    uint64_t framing_errors; /* bytes lost: the stop bit was 0 */
-    uint64_t heard;          /* bytes */
-};
-
-struct wire {
-    uint64_t sent;       /* bytes sent, by all */
-    uint64_t collisions; /* of these, bytes during which another station was sending, too */
-    uint32_t stations;   /* ears in use: bit n is station n, or the monitor */
-    unsigned count;
-    struct wire_signal signal[WIRE_SIGNALS]; /* in order of their starts */
-    struct wire_ear ear[WIRE_EARS];
-};
-
-/* What an ear has heard. */
-struct wire_byte {
-    uint64_t start, end; /* parts: of the ten bits */
-    unsigned ear;        /* station 0..16, or WIRE_MONITOR */
-    uint32_t senders;    /* who was sending meanwhile: bit n is station n; several: a collision */
-    uint8_t byte;
-    bool lost;           /* framing error: told to the monitor alone, with the bits as they were */
-};
-
-/* An idle wire without stations. */
-void wire_begin(struct wire *wire);
-
-/* A station listens from `time` on (its power comes), or no more. Both also end what it sends, at `time`. */
-void wire_join(struct wire *wire, unsigned station, uint64_t time);
-void wire_leave(struct wire *wire, unsigned station, uint64_t time);
-
-/* A station sends a byte from `start` on. The calls have to come in the order of time, to a tick: `start` must not lie more than
- * WIRE_TICK - 1 before any time given to this wire. A station's own bytes must not overlap. */
-void wire_send(struct wire *wire, unsigned station, uint8_t byte, uint64_t start);
-
-/* A station holds the line at 0 (break), or lets it go. */
-void wire_hold(struct wire *wire, unsigned station, bool on, uint64_t time);
-
-/* Make all times later by `parts`. */
-void wire_shift(struct wire *wire, uint64_t parts);
-
-/* When the next byte will have been heard if nobody sends anything more; RKM04_NEVER: never. */
-uint64_t wire_due(const struct wire *wire);
-
-/* Fetch the next byte heard by `until`; those of the same time come in the order of their ears. Returns false if there is
- * none. */
-bool wire_hear(struct wire *wire, uint64_t until, struct wire_byte *byte);
+#include "segment.h"
+#include "wire_monitor.h"
+#include "wire_words.h"
 
 #endif

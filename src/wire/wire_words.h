@@ -4,7 +4,7 @@
 #define RKM04_SIM_WIRE_WORDS_H
 
 #include "wire_monitor.h"
-#include "text/wire_text.h"
+#include "text/text.h"
 
 #define WIRE_WORDS_MAX (4u * WIRE_ANSWER_MAX + 512u) /* characters of the longest description, with names and reasons */
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "wire/wire.h"
+#include "wire/levels.h"
 #include "core/rig.h"
 
 #define HEARD_MAX 4096
