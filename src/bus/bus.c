@@ -124,7 +124,7 @@ static int flash_program(void *context, unsigned number, unsigned block, unsigne
 
 static bool open_flash(struct bus *bus)
 {
-    const struct serve_options *options = bus->options;
+    const struct bus_options *options = bus->options;
     for (unsigned at = 0; options->flash && at < options->nodes.count; at++) {
         struct bus_unit *unit = &bus->unit[at];
         char path[PATH_MAX], name[NODE_NAME_SIZE];
@@ -203,7 +203,7 @@ static void unplug(void *context, bool plugged)
 
 static bool begin_sim(struct bus *bus)
 {
-    const struct serve_options *options = bus->options;
+    const struct bus_options *options = bus->options;
     struct sim_config config = {
         .unit = options->config,
         .nodes = options->nodes,
@@ -222,7 +222,7 @@ static bool begin_sim(struct bus *bus)
     return false;
 }
 
-bool bus_begin(struct bus *bus, unsigned number, const struct serve_options *options, uv_loop_t *loop, struct line_watch *watch,
+bool bus_begin(struct bus *bus, unsigned number, const struct bus_options *options, uv_loop_t *loop, struct line_watch *watch,
                struct coverage *coverage, const struct bus_calls *calls, void *context)
 {
     bus->number = number;

@@ -18,7 +18,7 @@
 #include "command/command.h"
 #include "condition/condition.h"
 #include "line/line.h"
-#include "serve/serve.h"
+#include "bus_options.h"
 #include "sim/sim.h"
 
 struct bus_unit {
@@ -45,7 +45,7 @@ struct bus_waiter {
 
 struct bus {
     unsigned number;      /* 0, 1, … */
-    const struct serve_options *options;
+    const struct bus_options *options;
     const struct bus_calls *calls;
     void *context;
     struct coverage *coverage; /* NULL: not wanted */
@@ -80,7 +80,7 @@ struct bus {
 
 /* Prepare line `number`: open its ports and flash images, power its units up at tick 0. *bus must be zero. Failures are reported.
  * Returns false if it did not work; bus_end() is due in either case. */
-bool bus_begin(struct bus *bus, unsigned number, const struct serve_options *options, uv_loop_t *loop, struct line_watch *watch,
+bool bus_begin(struct bus *bus, unsigned number, const struct bus_options *options, uv_loop_t *loop, struct line_watch *watch,
                struct coverage *coverage, const struct bus_calls *calls, void *context);
 
 /* Everything is ready: make the link, and let time begin. Returns false if it did not work (reported). */
@@ -139,8 +139,5 @@ void bus_log_detail(const struct bus *bus, const char *format, ...) __attribute_
 
 bool bus_time_begin(struct bus *bus, uv_loop_t *loop);
 void bus_say(const struct bus *bus, uint64_t tick, const char *format, ...) __attribute__((format(printf, 3, 4)));
-
-/* The other parts that rooms above use. */
-#include "virtual_clock.h"
 
 #endif

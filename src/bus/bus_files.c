@@ -53,19 +53,19 @@ static bool begin_record(struct bus *bus)
 
 bool bus_files_begin(struct bus *bus)
 {
-    const struct serve_options *options = bus->options;
+    const struct bus_options *options = bus->options;
     struct bus_files *files = &bus->files;
     char path[PATH_MAX], *error = NULL;
     if (!begin_record(bus))
         return false;
-    for (unsigned i = 0; i < SERVE_FILES_MAX && options->trace[i]; i++) {
+    for (unsigned i = 0; i < BUS_FILES_MAX && options->trace[i]; i++) {
         if (!path_of(bus, options->trace[i], path))
             return false;
         files->trace[i] = trace_file_begin(&bus->sim, path, options->output_flags, &error);
         if (!files->trace[i])
             return complain(error);
     }
-    for (unsigned i = 0; i < SERVE_FILES_MAX && options->wire[i]; i++) {
+    for (unsigned i = 0; i < BUS_FILES_MAX && options->wire[i]; i++) {
         if (!path_of(bus, options->wire[i], path))
             return false;
         files->wire[i] = wire_file_begin(&bus->sim, path, options->output_flags, &error);
@@ -77,9 +77,9 @@ bool bus_files_begin(struct bus *bus)
 
 void bus_files_look(struct bus *bus)
 {
-    const struct serve_options *options = bus->options;
+    const struct bus_options *options = bus->options;
     struct bus_files *files = &bus->files;
-    for (unsigned i = 0; i < SERVE_FILES_MAX; i++) {
+    for (unsigned i = 0; i < BUS_FILES_MAX; i++) {
         if (files->trace[i] && trace_file_failed(files->trace[i]) != 0) {
             check(options->trace[i], trace_file_end(files->trace[i]));
             files->trace[i] = NULL;
@@ -102,10 +102,10 @@ void bus_files_look(struct bus *bus)
 
 bool bus_files_end(struct bus *bus)
 {
-    const struct serve_options *options = bus->options;
+    const struct bus_options *options = bus->options;
     struct bus_files *files = &bus->files;
     bool well = !files->failed;
-    for (unsigned i = 0; i < SERVE_FILES_MAX; i++) {
+    for (unsigned i = 0; i < BUS_FILES_MAX; i++) {
         if (files->trace[i])
             well = check(options->trace[i], trace_file_end(files->trace[i])) && well;
         if (files->wire[i])

@@ -7,14 +7,14 @@
 #include <stdio.h>
 
 #include "record/record.h"
-#include "serve/serve.h"
+#include "bus_options.h"
 #include "trace/trace.h"
 
 struct bus;
 
 struct bus_files {
-    struct trace_file *trace[SERVE_FILES_MAX];
-    struct wire_file *wire[SERVE_FILES_MAX];
+    struct trace_file *trace[BUS_FILES_MAX];
+    struct wire_file *wire[BUS_FILES_MAX];
     FILE *record_stream;
     struct record *record; /* NULL: none */
     bool failed;           /* one could not be written (reported) */

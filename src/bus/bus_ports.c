@@ -409,7 +409,7 @@ static bool poll_fd(struct bus *bus, uv_loop_t *loop, uv_poll_t *poll, int fd, u
 
 static bool open_line(struct bus *bus, uv_loop_t *loop, struct line_watch *watch)
 {
-    const struct serve_options *options = bus->options;
+    const struct bus_options *options = bus->options;
     struct bus_ports *ports = &bus->ports;
     char path[PATH_MAX];
     if (options->port) {
@@ -439,7 +439,7 @@ static bool open_line(struct bus *bus, uv_loop_t *loop, struct line_watch *watch
 
 bool bus_ports_open(struct bus *bus, uv_loop_t *loop, struct line_watch *watch)
 {
-    const struct serve_options *options = bus->options;
+    const struct bus_options *options = bus->options;
     struct bus_ports *ports = &bus->ports;
     ports->known = ports->net = line_settings_unit;
     ports->watch = watch;

@@ -88,7 +88,7 @@ enum exit_status client_print_json(json_t *object)
     json_dumpf(object, stdout, JSON_COMPACT);
     putchar('\n');
     json_decref(object);
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 /* ---- One function a message --------------------------------------------------------------------------------------- */
@@ -101,7 +101,7 @@ enum exit_status client_show_version(const struct client_answer *answer)
         return client_print_json(json_pack("{s:o}", "version", client_json_text(answer->bytes + HEAD, answer->length - HEAD)));
     print_text(answer->bytes + HEAD, answer->length - HEAD);
     putchar('\n');
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 void client_print_motor(char motor)
@@ -117,10 +117,10 @@ enum exit_status client_show_store(const struct client_answer *answer)
     if (answer->length != HEAD + 1)
         return strange(answer);
     int error = answer->bytes[HEAD];
-    enum exit_status status = error == 0 ? STATUS_WELL : STATUS_FAILURE;
+    enum exit_status status = error == 0 ? STATUS_SUCCESS : STATUS_FAILURE;
     if (answer->json) {
         enum exit_status printed = client_print_json(json_pack("{s:i,s:i}", "motor", answer->motor - '0', "error", error));
-        status = printed != STATUS_WELL ? printed : status;
+        status = printed != STATUS_SUCCESS ? printed : status;
     } else if (error == 0) {
         client_print_motor(answer->motor);
         printf("stored\n");
@@ -154,7 +154,7 @@ enum exit_status client_show_position(const struct client_answer *answer)
         else
             printf("motor %d: %" PRId64 "\n", first + i, position[i]);
     }
-    return answer->json ? client_print_json(json_pack("{s:o}", "motors", motors)) : STATUS_WELL;
+    return answer->json ? client_print_json(json_pack("{s:o}", "motors", motors)) : STATUS_SUCCESS;
 }
 
 enum exit_status client_show_command(const struct client_answer *answer)
@@ -167,7 +167,7 @@ enum exit_status client_show_command(const struct client_answer *answer)
         return client_print_json(json_pack("{s:i,s:o}", "motor", answer->motor - '0', "program", client_json_text(text, length)));
     print_text(text, length); /* nothing before it: it may be sent again as it is */
     putchar('\n');
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 /* The points of " n;[(step;speed),…]". Returns an array, or NULL if the text is not of that form. */
@@ -204,7 +204,7 @@ enum exit_status client_show_table(const struct client_answer *answer)
     json_decref(points);
     client_print_motor(answer->motor);
     printf("%s\n", text + strspn(text, " "));
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 enum exit_status client_show_progress(const struct client_answer *answer)
@@ -222,7 +222,7 @@ enum exit_status client_show_progress(const struct client_answer *answer)
         printf("%lu steps, no command\n", steps);
     else
         printf("%lu steps, command %lu\n", steps, place);
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 enum exit_status client_show_raw(const struct client_answer *answer)
@@ -233,7 +233,7 @@ enum exit_status client_show_raw(const struct client_answer *answer)
     hex[0] = '\0'; /* of a message without bytes */
     for (size_t i = 0; i < answer->length; i++)
         sprintf(hex + 2 * i, "%02x", answer->bytes[i]);
-    enum exit_status status = STATUS_WELL;
+    enum exit_status status = STATUS_SUCCESS;
     if (answer->json)
         status = client_print_json(json_pack("{s:s}", "answer", hex));
     else

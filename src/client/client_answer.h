@@ -8,12 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum exit_status {
-    STATUS_WELL = 0,
-    STATUS_FAILURE = 1,  /* refused, not stored, port lost, … */
-    STATUS_USAGE = 2,
-    STATUS_NO_ANSWER = 3
-};
+#include "text/text.h"
 
 struct client_answer {
     const uint8_t *bytes; /* the whole message */

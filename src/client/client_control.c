@@ -39,7 +39,7 @@ enum exit_status client_job_outcome(const struct client_job *job, enum client_rp
     const char *message = json_string_value(json_object_get(json, "message"));
     switch (outcome) {
     case CLIENT_RPC_RESULT:
-        return STATUS_WELL;
+        return STATUS_SUCCESS;
     case CLIENT_RPC_REFUSED:
         warnx("%s", message != NULL ? message : "the emulator refuses that");
         return json_integer_value(json_object_get(json, "code")) == WRONG_PARAMS ? STATUS_USAGE : STATUS_FAILURE;
@@ -61,7 +61,7 @@ static enum exit_status call(struct client_job *job, const char *method, json_t 
     json_t *json;
     enum client_rpc_outcome outcome = client_rpc_call(&job->rpc, method, params, timeout_ms, &json);
     enum exit_status status = client_job_outcome(job, outcome, json);
-    if (status == STATUS_WELL)
+    if (status == STATUS_SUCCESS)
         *result = json;
     else
         json_decref(json);
@@ -85,7 +85,7 @@ enum exit_status client_job_done(const struct client_job *job, json_t *result)
     if (job->json)
         return client_print_json(result);
     json_decref(result);
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 void client_job_print_members(const json_t *object, const char *const *but)
@@ -142,7 +142,7 @@ static enum exit_status simply(struct client_job *job, const char *method, json_
 {
     json_t *result;
     enum exit_status status = client_job_call(job, method, params, of_unit, &result);
-    return status == STATUS_WELL ? client_job_done(job, result) : status;
+    return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
 }
 
 static enum exit_status reset(struct client_job *job)
@@ -181,12 +181,12 @@ static enum exit_status clock_of_line(struct client_job *job)
 {
     json_t *result, *params = job->count > 0 ? json_pack("{s:s}", "clock", job->words[0]) : NULL;
     enum exit_status status = client_job_call(job, "clock", params, false, &result);
-    if (status == STATUS_WELL && !job->json) {
+    if (status == STATUS_SUCCESS && !job->json) {
         const char *name = json_string_value(json_object_get(result, "clock"));
         json_int_t t_us = json_integer_value(json_object_get(result, "t_us"));
         printf("%s, %" PRId64 ".%06d s\n", name != NULL ? name : "-", (int64_t)(t_us / 1000000), (int)(t_us % 1000000));
     }
-    return status == STATUS_WELL ? client_job_done(job, result) : status;
+    return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
 }
 
 /* The place of a file that the emulator, in its own folder, is to use. Returns a string to be freed; NULL: none (reported). */
@@ -243,7 +243,7 @@ static enum exit_status restore(struct client_job *job)
         return come_back(job, "restore");
     json_t *result, *params = client_job_file(word + 5);
     enum exit_status status = params != NULL ? client_job_call_long(job, "restore", params, &result) : STATUS_FAILURE;
-    return status == STATUS_WELL ? client_job_done(job, result) : status;
+    return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
 }
 
 /* Any method, parameters as JSON or NAME=VALUE. */
@@ -263,7 +263,7 @@ static enum exit_status call_method(struct client_job *job)
         }
     }
     enum exit_status status = client_job_call_long(job, job->words[0], client_job_params(job, params, true), &result);
-    return status == STATUS_WELL ? client_print_json(result) : status;
+    return status == STATUS_SUCCESS ? client_print_json(result) : status;
 }
 
 /* ---- All of them ------------------------------------------------------------------------------------------------------ */

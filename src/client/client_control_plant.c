@@ -27,7 +27,7 @@ static enum exit_status show_plant(struct client_job *job)
 {
     json_t *result;
     enum exit_status status = client_job_call(job, "plant.get", NULL, true, &result);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     const json_t *plant = json_object_get(result, "plant");
     if (!job->json && !json_is_object(plant))
@@ -80,7 +80,7 @@ enum exit_status client_control_plant(struct client_job *job)
     if (params == NULL)
         return set ? STATUS_FAILURE : STATUS_USAGE;
     enum exit_status status = client_job_call(job, "plant.set", params, true, &result);
-    return status == STATUS_WELL ? client_job_done(job, result) : status;
+    return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
 }
 
 /* ---- Faults ----------------------------------------------------------------------------------------------------------- */
@@ -100,7 +100,7 @@ static enum exit_status list_faults(struct client_job *job)
     json_t *result, *fault;
     size_t i;
     enum exit_status status = client_job_call(job, "fault.list", NULL, false, &result);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     json_array_foreach(json_object_get(result, "faults"), i, fault)
         if (!job->json)
@@ -121,7 +121,7 @@ static enum exit_status inject(struct client_job *job)
         return STATUS_USAGE;
     }
     enum exit_status status = client_job_call(job, "fault.inject", params, true, &result);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     if (!job->json)
         printf("fault %" JSON_INTEGER_FORMAT "\n", json_integer_value(json_object_get(result, "id")));
@@ -140,7 +140,7 @@ static enum exit_status clear(struct client_job *job)
         params = json_pack("{s:I}", "id", (json_int_t)id);
     }
     enum exit_status status = client_job_call(job, "fault.clear", params, false, &result);
-    return status == STATUS_WELL ? client_job_done(job, result) : status;
+    return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
 }
 
 enum exit_status client_control_fault(struct client_job *job)

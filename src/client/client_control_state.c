@@ -79,9 +79,9 @@ static enum exit_status show_state(struct client_job *job, const char *unit)
     json_t *result;
     json_t *params = unit != NULL ? json_pack("{s:s}", "unit", unit) : NULL;
     enum exit_status status = client_job_call(job, "state", params, false, &result);
-    if (status == STATUS_WELL && !job->json)
+    if (status == STATUS_SUCCESS && !job->json)
         print_state(result);
-    return status == STATUS_WELL ? client_job_done(job, result) : status;
+    return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
 }
 
 /* Readings that are not at their default, on a line; nothing if there are none. */
@@ -100,16 +100,16 @@ enum exit_status client_control_state(struct client_job *job)
     size_t i;
     json_t *units, *unit;
     enum exit_status status = client_job_call(job, "units", NULL, false, &units);
-    if (status == STATUS_WELL && !job->json)
+    if (status == STATUS_SUCCESS && !job->json)
         print_readings(json_object_get(units, "readings"));
-    if (status == STATUS_WELL && job->unit != NULL) {
+    if (status == STATUS_SUCCESS && job->unit != NULL) {
         json_decref(units);
         return show_state(job, job->unit);
     }
     json_array_foreach(json_object_get(units, "units"), i, unit) {
         if (i > 0 && !job->json)
             putchar('\n');
-        if (status == STATUS_WELL)
+        if (status == STATUS_SUCCESS)
             status = show_state(job, json_string_value(unit));
     }
     json_decref(units);
@@ -128,14 +128,14 @@ static enum exit_status show_inputs(struct client_job *job)
 {
     json_t *result;
     enum exit_status status = client_job_call(job, "state", NULL, true, &result);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     json_int_t mask = integer_of(result, "di"), t_us = integer_of(result, "t_us");
     json_decref(result);
     if (job->json)
         return client_print_json(json_pack("{s:I, s:I}", "t_us", t_us, "di", mask));
     print_inputs(mask);
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 /* Read "3=1", "08=0", "di3=1". Returns false if it is wrong. */
@@ -178,7 +178,7 @@ enum exit_status client_control_di(struct client_job *job)
         return show_inputs(job);
     }
     enum exit_status status = client_job_call(job, "di.set", json_pack("{s:o}", "di", inputs), true, &result);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     warn_overridden(result);
     if (!job->json)

@@ -64,12 +64,12 @@ static enum exit_status show_waited(const struct client_job *job, json_t *result
     bool holds = !json_is_false(json_object_get(result, "holds"));
     const char *text = json_string_value(json_object_get(result, "text"));
     json_int_t t_us = json_integer_value(json_object_get(result, "t_us"));
-    enum exit_status status = holds ? STATUS_WELL : STATUS_NO_ANSWER;
+    enum exit_status status = holds ? STATUS_SUCCESS : STATUS_NO_ANSWER;
     if (!holds)
         warnx("not until %" PRId64 ".%06d s: %s", (int64_t)(t_us / 1000000), (int)(t_us % 1000000), text != NULL ? text : "");
     if (job->json) {
         enum exit_status printed = client_print_json(result);
-        return printed != STATUS_WELL ? printed : status;
+        return printed != STATUS_SUCCESS ? printed : status;
     }
     if (holds) {
         print_time(t_us);
@@ -85,7 +85,7 @@ static enum exit_status wait_by(struct client_job *job, const char *method, json
     if (params == NULL)
         return STATUS_USAGE;
     enum exit_status status = client_job_call_long(job, method, params, &result);
-    return status == STATUS_WELL ? show_waited(job, result) : status;
+    return status == STATUS_SUCCESS ? show_waited(job, result) : status;
 }
 
 /* Does the clock stand until somebody advances it? Returns the exit status. */
@@ -109,12 +109,12 @@ static enum exit_status wait_stopped(struct client_job *job, json_t *params)
 {
     json_t *result, *now = json_pack("{s:O, s:i}", "until", json_object_get(params, "until"), "limit", 0);
     enum exit_status status = client_job_call(job, "wait", now, false, &result);
-    if (status == STATUS_WELL && json_is_true(json_object_get(result, "holds"))) {
+    if (status == STATUS_SUCCESS && json_is_true(json_object_get(result, "holds"))) {
         json_decref(params);
         return show_waited(job, result);
     }
     json_decref(result);
-    if (status != STATUS_WELL) {
+    if (status != STATUS_SUCCESS) {
         json_decref(params);
         return status;
     }
@@ -127,7 +127,7 @@ enum exit_status client_control_wait(struct client_job *job)
     bool stopped;
     json_t *params = until(job);
     enum exit_status status = params != NULL ? look_at_clock(job, &stopped) : STATUS_USAGE;
-    if (status != STATUS_WELL) {
+    if (status != STATUS_SUCCESS) {
         json_decref(params);
         return status;
     }
@@ -235,7 +235,7 @@ enum exit_status client_control_events(struct client_job *job)
         return STATUS_USAGE;
     listening.left = listening.count;
     enum exit_status status = look_at_clock(job, &stopped);
-    if (status != STATUS_WELL) {
+    if (status != STATUS_SUCCESS) {
         json_decref(params);
         return status;
     }
@@ -245,7 +245,7 @@ enum exit_status client_control_events(struct client_job *job)
     status = client_job_call(job, "subscribe", params, true, &result);
     json_int_t t_us = json_integer_value(json_object_get(result, "t_us"));
     json_decref(result);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     fprintf(stderr, "listening from %" PRId64 ".%06d s\n", (int64_t)(t_us / 1000000), (int)(t_us % 1000000)); /* for scripts */
     if (stopped)
@@ -258,7 +258,7 @@ enum exit_status client_control_events(struct client_job *job)
         outcome = client_rpc_listen(&job->rpc, CLIENT_RPC_FOREVER, &answer);
     status = client_job_outcome(job, outcome, answer);
     json_decref(answer);
-    if (status != STATUS_WELL || listening.left == 0 || listening.count == UINT64_MAX || ferror(stdout))
+    if (status != STATUS_SUCCESS || listening.left == 0 || listening.count == UINT64_MAX || ferror(stdout))
         return status;
     warnx("%" PRIu64 " of %" PRIu64 " events came within %s", listening.count - listening.left, listening.count, job->limit);
     return STATUS_NO_ANSWER;
@@ -272,7 +272,7 @@ static enum exit_status start_trace(struct client_job *job, json_t *params)
     if (params == NULL)
         return STATUS_FAILURE;
     enum exit_status status = client_job_call(job, "trace.start", params, false, &result);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     if (!job->json)
         printf("trace %" JSON_INTEGER_FORMAT "\n", json_integer_value(json_object_get(result, "trace")));
@@ -296,5 +296,5 @@ enum exit_status client_control_trace(struct client_job *job)
         params = json_pack("{s:I}", "trace", (json_int_t)number);
     }
     enum exit_status status = client_job_call(job, "trace.stop", params, false, &result);
-    return status == STATUS_WELL ? client_job_done(job, result) : status;
+    return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
 }

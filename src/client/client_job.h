@@ -31,7 +31,7 @@ bool client_job_connect(struct client_job *job);
 
 /* Call a method; --line and, with `of_unit`, --unit are added to `params`, whose reference is taken (NULL: none). Refusals and a
  * silent emulator are reported. The second is for what may last: there is no time limit unless one was given.
- * Returns the exit status; *result is a new reference if that is STATUS_WELL, otherwise NULL. */
+ * Returns the exit status; *result is a new reference if that is STATUS_SUCCESS, otherwise NULL. */
 enum exit_status client_job_call(struct client_job *job, const char *method, json_t *params, bool of_unit, json_t **result);
 enum exit_status client_job_call_long(struct client_job *job, const char *method, json_t *params, json_t **result);
 

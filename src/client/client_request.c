@@ -76,7 +76,7 @@ static enum exit_status take_hex(struct asking *a, const char *text)
         a->raw[a->raw_length++] = (uint8_t)(high << 4 | low);
         text++;
     }
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 /* Look at what stands behind the command. Returns the exit status if it is wrong. */
@@ -91,19 +91,19 @@ static enum exit_status take_words(struct asking *a)
         return client_usage("%s takes one argument: put it in quotes", a->command->name);
     for (size_t i = 0; operand == HEX_OPERAND && i < request->count; i++) {
         enum exit_status status = take_hex(a, request->words[i]);
-        if (status != STATUS_WELL)
+        if (status != STATUS_SUCCESS)
             return status;
     }
     if (operand != NO_OPERAND && (request->count == 0 || (operand == HEX_OPERAND && a->raw_length == 0)))
         return client_usage("%s needs %s", a->command->name, operands[operand]);
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 static enum exit_status check(struct asking *a)
 {
     const struct client_request *request = a->request;
     enum exit_status status = take_words(a);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     if (request->port == NULL)
         return client_usage("no port: expected -p PORT, a serial device, a pseudo terminal or tcp:HOST:PORT");
@@ -112,7 +112,7 @@ static enum exit_status check(struct asking *a)
                             request->port);
     if (a->command->motors == ONE_MOTOR && request->motor == 0)
         return client_usage("%s can be asked of one motor only: -m 1 to 4", a->command->name);
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 /* ---- Work ------------------------------------------------------------------------------------------------------------- */
@@ -140,7 +140,7 @@ static enum exit_status ask(const struct asking *a, struct client *client, char 
     case CLIENT_SENT:
         if (command->show != client_show_store && !raw)
             warnx("note: no unit answers what is sent to all of them");
-        return a->request->json ? client_print_json(json_pack("{s:b}", "broadcast", 1)) : STATUS_WELL;
+        return a->request->json ? client_print_json(json_pack("{s:b}", "broadcast", 1)) : STATUS_SUCCESS;
     case CLIENT_SILENT:
         return STATUS_NO_ANSWER;
     default:
@@ -170,7 +170,7 @@ enum exit_status client_request(const struct client_request *request, const char
     static struct asking a;
     a = (struct asking){.request = request, .command = find(name)};
     enum exit_status status = check(&a);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     client.port = request->port;
     client.framing = request->framing;

@@ -146,7 +146,7 @@ static enum exit_status print_json_result(const struct sending *s)
 static enum exit_status print_result(const struct sending *s)
 {
     bool overflow = s->flag == FLAG_OVERFLOW, failed = is_refusal(s->flag) || (overflow && !s->send->allow_overflow);
-    enum exit_status status = failed ? STATUS_FAILURE : STATUS_WELL;
+    enum exit_status status = failed ? STATUS_FAILURE : STATUS_SUCCESS;
     if (is_refusal(s->flag)) {
         report_refusal(s);
         explain_rest(s);
@@ -157,9 +157,9 @@ static enum exit_status print_result(const struct sending *s)
     }
     if (s->send->json) {
         enum exit_status printed = print_json_result(s);
-        return printed != STATUS_WELL ? printed : status;
+        return printed != STATUS_SUCCESS ? printed : status;
     }
-    if (status != STATUS_WELL || s->send->client->node == 0)
+    if (status != STATUS_SUCCESS || s->send->client->node == 0)
         return status;
     client_print_motor(s->send->motor);
     if (s->file)
@@ -183,12 +183,12 @@ static enum exit_status send_piece(struct sending *s)
         return STATUS_NO_ANSWER;
     if (outcome == CLIENT_LOST || (outcome == CLIENT_ANSWERED && !take_answer(s)))
         return STATUS_FAILURE;
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 static enum exit_status send_pieces(struct sending *s)
 {
-    enum exit_status status = STATUS_WELL;
+    enum exit_status status = STATUS_SUCCESS;
     s->begun = client_now();
     s->send->client->progress = on_progress;
     s->send->client->context = s;
@@ -196,13 +196,13 @@ static enum exit_status send_pieces(struct sending *s)
         s->total += s->cut.piece[i].length;
     while (s->piece < s->cut.pieces) {
         status = send_piece(s);
-        if (status != STATUS_WELL || is_refusal(s->flag))
+        if (status != STATUS_SUCCESS || is_refusal(s->flag))
             break;
         s->piece++;
     }
     s->send->client->progress = NULL;
     end_bar(s);
-    if (status == STATUS_WELL)
+    if (status == STATUS_SUCCESS)
         return print_result(s);
     explain_rest(s);
     return status;

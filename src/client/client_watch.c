@@ -56,16 +56,16 @@ static enum exit_status find_units(struct watching *w)
 {
     json_t *result;
     enum exit_status status = client_job_call(w->job, "units", NULL, false, &result);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     w->units = json_incref(json_object_get(result, "units"));
     json_decref(result);
     if (w->job->unit == NULL)
-        return STATUS_WELL;
+        return STATUS_SUCCESS;
     for (w->shown = 0; w->shown < json_array_size(w->units); w->shown++) {
         const char *name = shown_unit(w);
         if (name != NULL && strcmp(name, w->job->unit) == 0)
-            return STATUS_WELL;
+            return STATUS_SUCCESS;
     }
     return client_usage("there is no unit %s on the line: `rkmctl call units' names them", w->job->unit);
 }
@@ -89,7 +89,7 @@ static enum exit_status show_once(struct watching *w)
 {
     static struct panel panel;
     enum exit_status status = client_job_call(w->job, "state", state_params(w), false, &w->state);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     if (w->job->json)
         return client_print_json(json_incref(w->state));
@@ -97,7 +97,7 @@ static enum exit_status show_once(struct watching *w)
     struct panel_view view = view_of(w, NULL);
     client_panel_draw(&panel, &view, PANEL_ROWS, TEXT_COLUMNS);
     client_panel_print(&panel, stdout);
-    return STATUS_WELL;
+    return STATUS_SUCCESS;
 }
 
 /* ---- The terminal ----------------------------------------------------------------------------------------------------- */
@@ -263,7 +263,7 @@ static enum exit_status show_live(struct watching *w)
             fit(w);
     }
     close_screen(w);
-    enum exit_status status = outcome == CLIENT_RPC_NOTHING ? STATUS_WELL : client_job_outcome(w->job, outcome, json);
+    enum exit_status status = outcome == CLIENT_RPC_NOTHING ? STATUS_SUCCESS : client_job_outcome(w->job, outcome, json);
     json_decref(json);
     if (told_to_end != 0 && told_to_end != SIGINT) { /* Ctrl-C is as good as q; by the others one is ended */
         signal(told_to_end, SIG_DFL);
@@ -281,7 +281,7 @@ enum exit_status client_watch(struct client_job *job)
     if (live && (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO)))
         return client_usage("watch: expected a terminal on standard input and output; --once prints one picture as text");
     enum exit_status status = find_units(&w);
-    if (status == STATUS_WELL)
+    if (status == STATUS_SUCCESS)
         status = live ? show_live(&w) : show_once(&w);
     json_decref(w.units);
     json_decref(w.state);

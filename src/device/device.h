@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* device.h: the face of the room for what a device on a bus is to everything around it: its names and numbers, its state as JSON and in words. */
+/* device.h: the face of the room for what a device on a bus is to everything around it: its names and numbers, its state as
+ * JSON and in words. */
 #ifndef RKM04_ROOM_DEVICE_H
 #define RKM04_ROOM_DEVICE_H
 

@@ -9,6 +9,7 @@
 
 #include "options/options.h"
 #include "run/run.h"
+#include "serve/serve.h"
 
 #define NAMES "serve, exec, test or replay"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* options.h: the face of the room for the command line: options that several programs share, numbers that fit, addresses, names that are near. */
+/* options.h: the face of the room for the command line: options that several programs share, numbers that fit, addresses,
+ * names that are near. */
 #ifndef RKM04_ROOM_OPTIONS_H
 #define RKM04_ROOM_OPTIONS_H
 

@@ -18,7 +18,7 @@ void record_hex(FILE *out, const uint8_t *bytes, size_t length)
 /* ---- Head ----------------------------------------------------------------------------------------------------------- */
 
 /* A text as "name", or as "name_hex" if it is not UTF-8. */
-static bool put_text(json_t *head, const char *name, const char *text)
+static bool put_string(json_t *head, const char *name, const char *text)
 {
     json_t *string = json_string(text);
     if (string)
@@ -52,10 +52,10 @@ static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
     return put(head, "rkm04_record", json_integer(RECORD_VERSION)) && put(head, "program", json_string("rkm04 " RKM04_VERSION)) &&
            put(head, "nodes", nodes) &&
            put(head, "framing", json_string(config->unit.framing ? config->unit.framing->name : rkm04_hdlc.name)) &&
-           put_text(head, "version_text", config->unit.version_text ? config->unit.version_text : RKM04_VERSION_TEXT) &&
+           put_string(head, "version_text", config->unit.version_text ? config->unit.version_text : RKM04_VERSION_TEXT) &&
            put(head, "readings", readings_json(&config->unit.readings)) &&
            put(head, "timed", json_boolean(config->timed)) && put(head, "turnaround", json_integer(config->turnaround)) &&
-           put(head, "seed", json_string(seed)) && (!sim->plant_text || put_text(head, "plant", sim->plant_text)) &&
+           put(head, "seed", json_string(seed)) && (!sim->plant_text || put_string(head, "plant", sim->plant_text)) &&
            put(head, "outputs", json_boolean(outputs));
 }
 

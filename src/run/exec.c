@@ -16,7 +16,7 @@
 #include "exec_run.h"
 #include "file/file.h"
 #include "stimulus.h"
-#include "subcommands.h"
+#include "run.h"
 #include "trace/trace.h"
 
 struct options {
@@ -297,7 +297,7 @@ static int exit_status(struct exec_run *run, const struct options *options, enum
     }
     if (end == EXEC_INTERRUPTED)
         fprintf(stderr, "rkm04 exec: interrupted\n");
-    return end == EXEC_INTERRUPTED || fault || !written ? STATUS_FAILURE : STATUS_WELL;
+    return end == EXEC_INTERRUPTED || fault || !written ? STATUS_FAILURE : STATUS_SUCCESS;
 }
 
 /* What goes wrong with the trace. Returns whether nothing did. */
@@ -365,7 +365,7 @@ static int run_traced(struct exec_run *run, const struct options *options, const
     }
     setvbuf(file, NULL, _IONBF, 0); /* gathered in a buffer already */
     int status = run_programs(run, options, inputs, file);
-    if (output_file_close(file) != 0 && status == STATUS_WELL) {
+    if (output_file_close(file) != 0 && status == STATUS_SUCCESS) {
         tell_trace(options, errno);
         status = STATUS_FAILURE;
     }

@@ -14,7 +14,7 @@
 
 #include "options/options.h"
 #include "record/record.h"
-#include "subcommands.h"
+#include "run.h"
 #include "text/text.h"
 #include "trace/trace.h"
 
@@ -295,7 +295,7 @@ static int run(struct replay *replay, FILE *in, const char *name, const struct o
     well = (options->json ? report_json(replay, name, end) : report_text(replay, name, end)) && well;
     if (fflush(stdout) != 0)
         well = check("standard output", errno);
-    return end == REPLAY_WRONG ? STATUS_USAGE : end == REPLAY_SAME && well ? STATUS_WELL : STATUS_FAILURE;
+    return end == REPLAY_WRONG ? STATUS_USAGE : end == REPLAY_SAME && well ? STATUS_SUCCESS : STATUS_FAILURE;
 }
 
 int replay_main(int argc, char **argv)

@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* run.h: the face of the room for `rkm04 exec`, `test`, `replay`: runs in virtual time, from the options to the exit status. */
-#ifndef RKM04_ROOM_RUN_H
-#define RKM04_ROOM_RUN_H
+/* run.h: the face of the room for `rkm04 exec`, `test` and `replay`: runs in virtual time, from the options to the exit status.
+ *
+ * argv[0] is the name for messages ("rkm04 exec"), the rest the command's own arguments. Each returns the exit status
+ * (text/exit_status.h), or ends the program with it. */
+#ifndef RKM04_RUN_H
+#define RKM04_RUN_H
 
-#include "subcommands.h"
+int exec_main(int argc, char **argv);   /* programs in virtual time */
+int test_main(int argc, char **argv);   /* scenarios in virtual time */
+int replay_main(int argc, char **argv); /* a recording, again in virtual time */
 
 #endif

@@ -9,8 +9,11 @@
 
 #include "options/options.h"
 #include "file/file.h"
-#include "subcommands.h"
-#include "scenario/scenario.h"
+#include "run.h"
+#include "text/text.h"
+#include "test_case.h"
+#include "test_readings.h"
+#include "test_report.h"
 
 enum option_key { KEY_NO_RECORDS = 256, KEY_FORCE, KEY_READINGS, KEY_STRICT };
 
@@ -157,11 +160,11 @@ static void catch_signals(void)
 /* Read all files, to tell all their errors. Returns 0 or the exit status. */
 static int read_all(struct test_case *tests, const struct options *options)
 {
-    int status = STATUS_WELL;
+    int status = STATUS_SUCCESS;
     for (size_t i = 0; i < options->paths; i++) {
         int wrong = test_case_read(&tests[i], options->path[i]);
-        if (wrong == STATUS_USAGE || status == STATUS_WELL)
-            status = wrong != STATUS_WELL ? wrong : status;
+        if (wrong == STATUS_USAGE || status == STATUS_SUCCESS)
+            status = wrong != STATUS_SUCCESS ? wrong : status;
     }
     return status;
 }
@@ -235,7 +238,7 @@ static int run(struct test_case *tests, const struct options *options)
 {
     FILE *junit = NULL;
     int status = read_all(tests, options);
-    if (status != STATUS_WELL)
+    if (status != STATUS_SUCCESS)
         return status;
     if (options->junit != NULL) {
         char *why;
@@ -256,7 +259,7 @@ static int run(struct test_case *tests, const struct options *options)
         (options->strict && test_report_dependent(tests, options->paths) > 0))
         return STATUS_FAILED;
     well = well && !test_case_interrupted() && test_report_count(tests, options->paths, TEST_PASSED) == options->paths;
-    return well ? STATUS_WELL : STATUS_FAILURE;
+    return well ? STATUS_SUCCESS : STATUS_FAILURE;
 }
 
 int test_main(int argc, char **argv)

@@ -62,9 +62,4 @@ enum scenario_end scenario_run(const struct scenario *scenario, FILE *record, bo
                                void *context, struct scenario_result *result);
 void scenario_result_free(struct scenario_result *result);
 
-/* The other parts that rooms above use. */
-#include "test_case.h"
-#include "test_readings.h"
-#include "test_report.h"
-
 #endif

@@ -21,7 +21,8 @@
 #include "serve_options.h"
 #include "serve_report.h"
 #include "serve_sandbox.h"
-#include "run/run.h"
+#include "serve.h"
+#include "text/text.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
 #define FILES_A_LINE 8u  /* descriptors, beside those of flash images */
@@ -33,8 +34,8 @@ static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
 #define END_SIGNALS (sizeof end_signals / sizeof end_signals[0])
 
 struct serve {
-    struct serve_options options;
-    struct bus *bus[SERVE_LINES_MAX];
+    struct bus_options options;
+    struct bus *bus[BUS_LINES_MAX];
     struct line_watch watch;
     struct coverage coverage;
     struct coverage_files coverage_files;
@@ -136,7 +137,7 @@ static bool start_signals(struct serve *serve)
 }
 
 /* Many lines need more files than a process gets unasked. */
-static void allow_files(const struct serve_options *options)
+static void allow_files(const struct bus_options *options)
 {
     struct rlimit limit;
     rlim_t wanted = options->lines * (FILES_A_LINE + (options->flash ? options->nodes.count : 0)) + FILES_BESIDE;
@@ -177,7 +178,7 @@ static bool start_watch(struct serve *serve)
 /* When all inputs are read and valid. */
 static bool start_files(struct serve *serve)
 {
-    const struct serve_options *options = &serve->options;
+    const struct bus_options *options = &serve->options;
     for (unsigned i = 0; i < options->lines; i++)
         if (!bus_files_begin(serve->bus[i]))
             return false;
@@ -226,7 +227,7 @@ static bool default_control(const struct serve *serve, char path[PATH_MAX])
 
 static bool start_control(struct serve *serve)
 {
-    const struct serve_options *options = &serve->options;
+    const struct bus_options *options = &serve->options;
     const struct control_calls control_calls = {.shutdown = on_shutdown, .presence = on_presence, .context = serve};
     char path[PATH_MAX];
     if (options->no_control)
@@ -264,7 +265,7 @@ static char *read_text(const char *path)
 }
 
 /* The plant, for all buses. Before signals are handled: it may come through a pipe, and take its time. */
-static bool read_plant(struct serve_options *options)
+static bool read_plant(struct bus_options *options)
 {
     if (options->plant)
         options->plant_text = read_text(options->plant);
@@ -277,7 +278,7 @@ static bool read_plant(struct serve_options *options)
 
 static bool start(struct serve *serve)
 {
-    const struct serve_options *options = &serve->options;
+    const struct bus_options *options = &serve->options;
     allow_files(options);
     if (!start_signals(serve)) /* before anything is made that would have to be removed */
         return false;
@@ -307,7 +308,7 @@ static void close_handle(uv_handle_t *handle, void *unused)
 
 static void report_coverage(struct serve *serve)
 {
-    const struct serve_options *options = &serve->options;
+    const struct bus_options *options = &serve->options;
     double percent = coverage_percent(&serve->coverage);
     if (options->coverage && !coverage_write(&serve->coverage, &serve->coverage_files))
         serve->status = STATUS_FAILURE;
@@ -315,7 +316,7 @@ static void report_coverage(struct serve *serve)
     if (options->min_coverage >= 0 && (int)(percent * 10 + 0.5) < options->min_coverage) {
         log_error("clients have exercised %.1f %% of the protocol: expected at least %d.%d %%", percent,
                   options->min_coverage / 10, options->min_coverage % 10);
-        if (serve->status == STATUS_WELL)
+        if (serve->status == STATUS_SUCCESS)
             serve->status = STATUS_COVERAGE;
     }
 }
@@ -343,7 +344,7 @@ static enum exit_status run(struct serve *serve)
     if (!read_plant(&serve->options) || !check("make an event loop", uv_loop_init(&serve->loop)))
         return STATUS_FAILURE;
     if (start(serve)) {
-        serve->status = STATUS_WELL;
+        serve->status = STATUS_SUCCESS;
         uv_run(&serve->loop, UV_RUN_DEFAULT);
         notify_stopping();
         for (unsigned i = 0; i < serve->options.lines; i++)

@@ -156,7 +156,7 @@ static long read_number(const char *text, long high)
     return number_read(text, 0, (uint64_t)high, &value) ? (long)value : -1;
 }
 
-static void set_framing(struct serve_options *options, const char *text, struct argp_state *state)
+static void set_framing(struct bus_options *options, const char *text, struct argp_state *state)
 {
     options->config.framing = rkm04_framing_named(text);
     if (options->config.framing)
@@ -251,25 +251,25 @@ static void add_file(const char *name, const char *text, bool known, const char 
     read_pattern(name, text, state);
     if (!known)
         argp_error(state, "--%s: `%s' is wrong: expected %s", name, text, expected);
-    while (at < SERVE_FILES_MAX && list[at])
+    while (at < BUS_FILES_MAX && list[at])
         at++;
-    if (at == SERVE_FILES_MAX)
-        argp_error(state, "--%s: expected at most %u files", name, SERVE_FILES_MAX);
+    if (at == BUS_FILES_MAX)
+        argp_error(state, "--%s: expected at most %u files", name, BUS_FILES_MAX);
     list[at] = text;
 }
 
-static void add_folder(struct serve_options *options, const char *text, struct argp_state *state)
+static void add_folder(struct bus_options *options, const char *text, struct argp_state *state)
 {
     struct stat found;
     unsigned at = 0;
     if (stat(text, &found) != 0 || !S_ISDIR(found.st_mode))
         argp_error(state, "--allow-folder: `%s' is wrong: expected a folder that is there", text);
-    while (at < SERVE_FOLDERS_MAX && options->folder[at])
+    while (at < BUS_FOLDERS_MAX && options->folder[at])
         at++;
-    if (at < SERVE_FOLDERS_MAX)
+    if (at < BUS_FOLDERS_MAX)
         options->folder[at] = text;
     else
-        argp_error(state, "--allow-folder: expected at most %u folders", SERVE_FOLDERS_MAX);
+        argp_error(state, "--allow-folder: expected at most %u folders", BUS_FOLDERS_MAX);
 }
 
 static bool read_late(const char *text, struct argp_state *state)
@@ -280,12 +280,12 @@ static bool read_late(const char *text, struct argp_state *state)
 }
 
 /* A file for each line needs a name for each. */
-static void check_patterns(const struct serve_options *options, struct argp_state *state)
+static void check_patterns(const struct bus_options *options, struct argp_state *state)
 {
     const char *const *lists[] = {options->trace, options->wire, &options->record};
     static const char *const names[] = {"trace", "wire", "record"};
     for (size_t which = 0; which < sizeof lists / sizeof lists[0]; which++) {
-        for (unsigned at = 0; at < (which < 2 ? SERVE_FILES_MAX : 1) && lists[which][at]; at++) {
+        for (unsigned at = 0; at < (which < 2 ? BUS_FILES_MAX : 1) && lists[which][at]; at++) {
             if (name_pattern_has(lists[which][at], 'n'))
                 argp_error(state, "--%s: %%n names a unit, but the file is about the line: expected %%l", names[which]);
             if (options->lines > 1 && !name_pattern_has(lists[which][at], 'l'))
@@ -295,7 +295,7 @@ static void check_patterns(const struct serve_options *options, struct argp_stat
 }
 
 /* What does not go together. */
-static void check_together(struct serve_options *options, struct argp_state *state)
+static void check_together(struct bus_options *options, struct argp_state *state)
 {
     bool net = options->tcp || options->rfc2217;
     if (options->port && options->link)
@@ -328,7 +328,7 @@ static void check_together(struct serve_options *options, struct argp_state *sta
 /* Options of the units and of time. */
 static error_t read_unit_option(int key, char *text, struct argp_state *state)
 {
-    struct serve_options *options = state->input;
+    struct bus_options *options = state->input;
     switch (key) {
     case KEY_NODE:
         if (!node_list_read(&options->nodes, text))
@@ -364,7 +364,7 @@ static error_t read_unit_option(int key, char *text, struct argp_state *state)
 /* Options of the line. */
 static error_t read_line_option(int key, char *text, struct argp_state *state)
 {
-    struct serve_options *options = state->input;
+    struct bus_options *options = state->input;
     switch (key) {
     case KEY_BAUD:
         options->baud = read_baud(text, state);
@@ -373,7 +373,7 @@ static error_t read_line_option(int key, char *text, struct argp_state *state)
         options->turnaround = number("turnaround", text, 0, SEGMENT_TURNAROUND_MAX, " of us", state);
         return 0;
     case KEY_LINES:
-        options->lines = number("lines", text, 1, SERVE_LINES_MAX, "", state);
+        options->lines = number("lines", text, 1, BUS_LINES_MAX, "", state);
         return 0;
     case KEY_LINK:
         options->link = read_pattern("link", text, state);
@@ -401,7 +401,7 @@ static error_t read_line_option(int key, char *text, struct argp_state *state)
 /* Options for tests. */
 static error_t read_test_option(int key, char *text, struct argp_state *state)
 {
-    struct serve_options *options = state->input;
+    struct bus_options *options = state->input;
     switch (key) {
     case KEY_LATE:
         options->late_skips = read_late(text, state);
@@ -443,7 +443,7 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
 
 static error_t read_option(int key, char *text, struct argp_state *state)
 {
-    struct serve_options *options = state->input;
+    struct bus_options *options = state->input;
     switch (key) {
     case KEY_READY_FD:
         options->ready_fd = notify_fd_read(text);
@@ -474,10 +474,10 @@ static error_t read_option(int key, char *text, struct argp_state *state)
     }
 }
 
-void serve_options_read(struct serve_options *options, int argc, char **argv)
+void serve_options_read(struct bus_options *options, int argc, char **argv)
 {
     static const struct argp argp = {.options = table, .parser = read_option, .doc = doc};
-    *options = (struct serve_options){
+    *options = (struct bus_options){
         .config = {.framing = &rkm04_hdlc, .version_text = RKM04_VERSION_TEXT},
         .nodes = {.count = 1, .node = {1}},
         .lines = 1,

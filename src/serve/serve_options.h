@@ -1,59 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* serve_options.h: the options of `rkm04 serve`. */
-#ifndef RKM04_HOST_SERVE_OPTIONS_H
-#define RKM04_HOST_SERVE_OPTIONS_H
+/* serve_options.h: the options of `rkm04 serve`, read from the command line. */
+#ifndef RKM04_SERVE_OPTIONS_H
+#define RKM04_SERVE_OPTIONS_H
 
-#include <stdbool.h>
-
-#include <rkm04/unit.h>
-
-#include "line/line.h"
-#include "text/text.h"
-#include "device/device.h"
 #include "bus/bus.h"
-
-#define SERVE_LINES_MAX 256u
-#define SERVE_FOLDERS_MAX 16u
-#define SERVE_FILES_MAX 8u /* traces, and logs of the wires */
-
-struct serve_options {
-    struct rkm04_config config; /* --framing, --version-text, --readings; node: of the first unit */
-    readings_set readings_named; /* by --readings and --speed-change-latency */
-    struct node_list nodes;     /* --node */
-    unsigned lines;             /* --lines */
-    bool pty;                   /* lines have a pty of their own */
-    const char *link;           /* NULL: the default */
-    const char *port;           /* NULL: none */
-    const char *tcp;            /* NULL: none */
-    const char *rfc2217;        /* NULL: none */
-    const char *flash;          /* NULL: memory only */
-    const char *coverage;       /* NULL: no report */
-    int min_coverage;           /* tenths of a per cent; -1: not asked for */
-    const char *clock_text;     /* as given: "real", "x10", "max", "stepped" */
-    struct virtual_clock clock;
-    unsigned baud;              /* 19200, or 0: bytes take no time */
-    uint32_t turnaround;        /* us */
-    enum line_rts rts;
-    bool strict_line;
-    bool exit_when_idle;
-    unsigned idle_seconds;      /* of --exit-when-idle */
-    bool late_skips;            /* --late */
-    uint64_t seed;              /* of faults on demand */
-    const char *plant;          /* file; NULL: none */
-    char *plant_text;           /* what stands in it, from read_plant() */
-    const char *trace[SERVE_FILES_MAX], *wire[SERVE_FILES_MAX]; /* patterns; NULL: no more */
-    const char *record;         /* pattern; NULL: none */
-    unsigned output_flags;      /* of output_file.h: --force */
-    const char *control;        /* socket; NULL: the default */
-    bool no_control;
-    bool verbose;
-    bool no_sandbox;            /* --no-sandbox */
-    const char *folder[SERVE_FOLDERS_MAX]; /* --allow-folder; NULL: no more */
-    int ready_fd;               /* -1: none */
-};
 
 /* Read the command line. The strings of *options point into argv. Ends the program itself after --help, --version (status 0)
  * and wrong usage (status 2, with what was expected on stderr). */
-void serve_options_read(struct serve_options *options, int argc, char **argv);
+void serve_options_read(struct bus_options *options, int argc, char **argv);
 
 #endif

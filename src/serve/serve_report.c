@@ -59,7 +59,7 @@ static void tell_flash(struct bus *bus)
     }
 }
 
-void serve_report_start(const struct serve_options *options, struct bus *const *buses)
+void serve_report_start(const struct bus_options *options, struct bus *const *buses)
 {
     char readings[READINGS_TEXT_SIZE];
     for (unsigned i = 0; i < options->lines; i++)
@@ -102,7 +102,7 @@ static json_t *ports_json(const struct bus *bus)
 }
 
 /* With several lines the ports at the top are those of line 0, and `lines` has all. */
-static json_t *ready_json(const struct serve_options *options, struct bus *const *buses, const char *control)
+static json_t *ready_json(const struct bus_options *options, struct bus *const *buses, const char *control)
 {
     json_t *ready = ports_json(buses[0]), *lines = NULL;
     json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:o, s:s?, s:s?}", "node", (int)options->config.node, "nodes",
@@ -123,7 +123,7 @@ static json_t *ready_json(const struct serve_options *options, struct bus *const
     return NULL;
 }
 
-bool serve_report_ready(const struct serve_options *options, struct bus *const *buses, const char *control)
+bool serve_report_ready(const struct bus_options *options, struct bus *const *buses, const char *control)
 {
     json_t *ready = ready_json(options, buses, control);
     char *text = ready ? json_dumps(ready, JSON_COMPACT) : NULL, *line = NULL;

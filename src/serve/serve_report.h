@@ -6,10 +6,10 @@
 #include "bus/bus.h"
 
 /* What stands where, and what was found in flash, for the log. */
-void serve_report_start(const struct serve_options *options, struct bus *const *buses);
+void serve_report_start(const struct bus_options *options, struct bus *const *buses);
 
 /* The READY line on stdout, on --ready-fd and to the service manager. Returns false if it could not be told (reported). */
-bool serve_report_ready(const struct serve_options *options, struct bus *const *buses, const char *control);
+bool serve_report_ready(const struct bus_options *options, struct bus *const *buses, const char *control);
 
 /* Counters of a line, for the log. */
 void serve_report_end(struct bus *bus);

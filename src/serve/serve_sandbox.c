@@ -10,7 +10,7 @@
 #include "sandbox.h"
 
 /* A name in which %l and %n may stand, also in that of the folder. */
-static void allow_pattern(struct sandbox *sandbox, const struct serve_options *options, const char *pattern)
+static void allow_pattern(struct sandbox *sandbox, const struct bus_options *options, const char *pattern)
 {
     char path[PATH_MAX], name[NODE_NAME_SIZE];
     unsigned lines = pattern && name_pattern_has(pattern, 'l') ? options->lines : 1;
@@ -46,7 +46,7 @@ static void report(const char *what)
         log_at(0, "this kernel does not confine %s", what);
 }
 
-void serve_sandbox_files(const struct serve_options *options, struct bus *const *buses, const char *control)
+void serve_sandbox_files(const struct bus_options *options, struct bus *const *buses, const char *control)
 {
     struct sandbox sandbox;
     if (options->no_sandbox)
@@ -54,7 +54,7 @@ void serve_sandbox_files(const struct serve_options *options, struct bus *const 
     sandbox_begin(&sandbox);
     allow_pattern(&sandbox, options, options->flash);
     allow_pattern(&sandbox, options, options->record);
-    for (unsigned i = 0; i < SERVE_FILES_MAX; i++) {
+    for (unsigned i = 0; i < BUS_FILES_MAX; i++) {
         allow_pattern(&sandbox, options, options->trace[i]);
         allow_pattern(&sandbox, options, options->wire[i]);
     }
@@ -66,14 +66,14 @@ void serve_sandbox_files(const struct serve_options *options, struct bus *const 
         sandbox_allow_beside(&sandbox, control);
     for (unsigned i = 0; options->pty && i < options->lines; i++)
         sandbox_allow_beside(&sandbox, buses[i]->ports.link.path);
-    for (unsigned i = 0; i < SERVE_FOLDERS_MAX && options->folder[i]; i++)
+    for (unsigned i = 0; i < BUS_FOLDERS_MAX && options->folder[i]; i++)
         sandbox_allow(&sandbox, options->folder[i]);
     allow_working_directory(&sandbox);
     if (!sandbox_close_files(&sandbox))
         report("files");
 }
 
-void serve_sandbox_calls(const struct serve_options *options)
+void serve_sandbox_calls(const struct bus_options *options)
 {
     if (!options->no_sandbox && !sandbox_close_calls())
         report("system calls");

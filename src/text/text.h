@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* text.h: the face of the room for reading and writing text: YAML with places (config_tree), times, numbers, digits, bytes and words for people, program
+/* text.h: the face of the room for reading and writing text: YAML with places (config_tree), times, numbers, digits, bytes and
+ * words for people, program
  * texts with their mistakes, option texts. Knows nothing of buses and units but the public headers of the core. */
 #ifndef RKM04_ROOM_TEXT_H
 #define RKM04_ROOM_TEXT_H
@@ -7,6 +8,7 @@
 #include "config_tree.h"
 #include "diagnose.h"
 #include "digits.h"
+#include "exit_status.h"
 #include "number.h"
 #include "program_text.h"
 #include "readings.h"

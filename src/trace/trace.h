@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* trace.h: the face of the room for files about what happens on a bus: CSV, VCD, JSON lines; the log of the wires and pcapng; events as JSON. */
+/* trace.h: the face of the room for files about what happens on a bus: CSV, VCD, JSON lines; the log of the wires and pcapng;
+ * events as JSON. */
 #ifndef RKM04_ROOM_TRACE_H
 #define RKM04_ROOM_TRACE_H
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* wire.h: the face of the room for the two wires of a bus in virtual time: levels, bytes, units, collisions; and a monitor that finds the messages in the
+/* wire.h: the face of the room for the two wires of a bus in virtual time: levels, bytes, units, collisions; and a monitor
+ * that finds the messages in the
  * bytes. No file, no clock. */
 #ifndef RKM04_ROOM_WIRE_H
 #define RKM04_ROOM_WIRE_H

@@ -29,7 +29,7 @@
 static const uint8_t request[] = {0x7e, 0x01, 0x00, 0x08, 0x58, 0x10, 0x7e}; /* message 8 to unit 1, which does not know it */
 static const uint8_t answer[] = {0x08, 0x00, 0x00, 0xdb}; /* the middle of it; FF around it is doubled by RFC 2217 */
 
-static struct serve_options options;
+static struct bus_options options;
 static uv_loop_t loop;
 static struct line_watch watch;
 static uv_poll_t noticed;
@@ -59,7 +59,7 @@ static void start(uint8_t mode)
     static const struct bus_calls calls = {.failed = on_failed, .presence = on_presence};
     static const char *const clocks[] = {"real", "max", "x10", "x0.5"};
     machine_path(link_pattern, "bus");
-    options = (struct serve_options){
+    options = (struct bus_options){
         .config = {.framing = &rkm04_hdlc},
         .lines = 1,
         .clock_text = clocks[mode >> 4 & 3],

@@ -35,7 +35,7 @@
 #define RECEIVED_MAX 12000000u /* bytes */
 #define DESCRIPTORS 256
 
-static struct serve_options options;
+static struct bus_options options;
 static uv_loop_t loop;
 static struct line_watch notices;
 static uv_poll_t noticed;
@@ -81,7 +81,7 @@ static void choose(uint8_t mode)
     static const char *const nodes[] = {"1", "3,3", "1,2,7", "1"}, *const clocks[] = {"stepped", "stepped", "max", "real"};
     machine_path(socket_path, "control");
     machine_path(link_pattern, "bus%l");
-    options = (struct serve_options){
+    options = (struct bus_options){
         .config = {.framing = &rkm04_hdlc},
         .lines = (mode & 3) == 3 ? 2 : 1,
         .clock_text = clocks[mode >> 6],

@@ -58,7 +58,7 @@ test_the_manual_pages_have_every_kind_of_event() {
         grep -qE "^[.]BR $kind [,.]$" <(manual rkmctl) || fail "the kind $kind is not in rkmctl(1)"
     done
     # Rows of a CSV trace: ",dir," and so on, in the table of trace_csv.c.
-    for kind in $(grep -oE '",[a-z]+,"' "$source/src/sim/trace_csv.c" | tr -d '",'); do
+    for kind in $(grep -oE '",[a-z]+,"' "$source/src/trace/trace_csv.c" | tr -d '",'); do
         grep -qE "^(m1|unit),([a-z]+\|)*$kind[,|]" <(manual rkm04) || fail "the event $kind is not in rkm04(1)"
     done
 }

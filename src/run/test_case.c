@@ -12,7 +12,6 @@
 
 #include "text/text.h"
 #include "file/file.h"
-#include "run/run.h"
 #include "test_readings.h"
 
 #define TEXT_MAX ((size_t)4 << 20) /* bytes of a file */
@@ -91,7 +90,7 @@ int test_case_read(struct test_case *test, const char *path)
     }
     test->scenario = scenario_read(test->file, text, length, &files, stderr);
     free(text);
-    return test->scenario != NULL ? STATUS_WELL : STATUS_USAGE;
+    return test->scenario != NULL ? STATUS_SUCCESS : STATUS_USAGE;
 }
 
 const char *test_case_name(const struct test_case *test)

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "scenario.h"
+#include "scenario/scenario.h"
 
 enum test_outcome {
     TEST_NOT_RUN,
