@@ -251,6 +251,12 @@ void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t lim
     }
 }
 
+uint64_t motion_next_report(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
+{
+    const struct rkm04_motion *motion = &motor->motion;
+    return pulses_are_seen(unit) ? motion->ramp.next : ramp_quiet_pulses(&motion->ramp, room_before_mark(motion));
+}
+
 uint64_t motion_mark_due(const struct rkm04_motor *motor)
 {
     return room_before_mark(&motor->motion) == 0 ? motor->motion.ramp.next : RKM04_NEVER;

@@ -19,6 +19,9 @@ bool motion_compound_possible(const struct rkm04_motor *motor);
  * outputs (C12). */
 void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit);
 
+/* A tick before which the motor reports nothing to the port; RKM04_NEVER: it does not move. */
+uint64_t motion_next_report(const struct rkm04_unit *unit, const struct rkm04_motor *motor);
+
 /* Tick of the pulse that motion_run() stopped short of; RKM04_NEVER: none. */
 uint64_t motion_mark_due(const struct rkm04_motor *motor);
 

@@ -240,6 +240,18 @@ uint64_t ramp_quiet_until(const struct rkm04_ramp *ramp)
     return ramp->end.tick - margin;
 }
 
+uint64_t ramp_quiet_pulses(const struct rkm04_ramp *ramp, uint32_t most)
+{
+    if (ramp->next == RKM04_NEVER || ramp->left == 0)
+        return ramp->next;
+    int64_t w = ramp->w.whole + 1;
+    if (ramp->slope > 0)
+        w += 2 * ramp->slope * (int64_t)(ramp->end.tick - ramp->at);
+    uint64_t quiet = ramp->next + (uint64_t)(ramp->step / w) * most, end = ramp_quiet_until(ramp);
+    quiet = quiet < end ? quiet : end;
+    return quiet > ramp->next ? quiet : ramp->next;
+}
+
 /* ---- Pulses ------------------------------------------------------------------------------------------------------- */
 
 /* Here, not in the loop of ramp_pulses.c that asks it: there it would take the registers. */

@@ -67,6 +67,16 @@ uint64_t rkm04_next_event(const struct rkm04_unit *unit)
     return next < unit->now ? unit->now : next;
 }
 
+uint64_t rkm04_next_report(const struct rkm04_unit *unit)
+{
+    uint64_t next = next_slot(unit);
+    for (unsigned i = 0; i < RKM04_MOTORS; i++) {
+        uint64_t report = motion_next_report(unit, &unit->motor[i]);
+        next = report < next ? report : next;
+    }
+    return next < unit->now ? unit->now : next;
+}
+
 /* All pulses due up to and including `limit`. Between slots motors meet in one thing only, the outputs that their pulses set
  * (C12): those come in order of time. */
 static void run_motors(struct rkm04_unit *unit, uint64_t limit)

@@ -270,6 +270,10 @@ void rkm04_advance(struct rkm04_unit *unit, uint64_t ticks);
  * Doing nothing until then and advancing past it is the same as advancing all along. */
 uint64_t rkm04_next_event(const struct rkm04_unit *unit);
 
+/* The same, but pulses do not count while nobody sees them (no `step` and `steps` in the port, or T41): up to then nothing is
+ * reported, and only counters change. */
+uint64_t rkm04_next_report(const struct rkm04_unit *unit);
+
 /* What can be seen of a motor. */
 struct rkm04_motor_state {
     int32_t position;  /* counter */

@@ -117,8 +117,8 @@ static void deliver(struct exec_run *run, const struct stimulus *s)
  * outside. RKM04_NEVER: nothing is to be done. */
 static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
 {
-    uint64_t end = sim_next_event(&run->sim);
-    if (end != RKM04_NEVER)
+    uint64_t end = sim_next_report(&run->sim);
+    if (end <= run->until)
         end = (end + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS * RKM04_SLOT_TICKS + 1;
     if (stimulus < end)
         end = stimulus;

@@ -322,6 +322,11 @@ uint64_t sim_next_event(const struct sim *sim)
     return earlier(segment_next_event(&sim->segment), earlier(plants_next(sim), faults_next(sim)));
 }
 
+uint64_t sim_next_report(const struct sim *sim)
+{
+    return earlier(segment_next_report(&sim->segment), earlier(plants_next(sim), faults_next(sim)));
+}
+
 /* The first slot of a unit after `tick`: its time began when it was powered up. */
 static uint64_t slot_after(const struct sim *sim, unsigned number, uint64_t tick)
 {

@@ -110,6 +110,9 @@ uint64_t sim_due(const struct sim *sim);
  * RKM04_NEVER: nothing ever does. */
 uint64_t sim_next_event(const struct sim *sim);
 
+/* The same, without pulses that nobody sees: for who does not look at counters on the way. */
+uint64_t sim_next_report(const struct sim *sim);
+
 /* ---- The master ------------------------------------------------------------------------------------------------------- */
 
 /* As segment_room(), segment_take(), segment_purge(), segment_break(); taken down in the journal, and subject to faults. */

@@ -538,16 +538,26 @@ uint64_t segment_due(const struct segment *segment)
     return tick_of(earlier(wire_due(&segment->wire), start == RKM04_NEVER ? RKM04_NEVER : start + WIRE_BYTE));
 }
 
-uint64_t segment_next_event(const struct segment *segment)
+static uint64_t next_of_units(const struct segment *segment, uint64_t (*next_of)(const struct rkm04_unit *))
 {
     uint64_t next = RKM04_NEVER;
     for (unsigned i = 0; i < segment->units; i++) {
         const struct segment_unit *unit = &segment->unit[i];
-        uint64_t event = unit->powered ? rkm04_next_event(&unit->unit) : RKM04_NEVER;
+        uint64_t event = unit->powered ? next_of(&unit->unit) : RKM04_NEVER;
         if (event != RKM04_NEVER)
             next = earlier(next, event + unit->since);
     }
     return next;
+}
+
+uint64_t segment_next_event(const struct segment *segment)
+{
+    return next_of_units(segment, rkm04_next_event);
+}
+
+uint64_t segment_next_report(const struct segment *segment)
+{
+    return next_of_units(segment, rkm04_next_report);
 }
 
 bool segment_in_frame(const struct segment *segment)

@@ -209,6 +209,9 @@ uint64_t segment_next_event(const struct segment *segment);
 /* Has the master left a frame unfinished: did the bytes passed so far end in the middle of one, as the units see it? */
 bool segment_in_frame(const struct segment *segment);
 
+/* The same, without pulses that nobody sees (rkm04_next_report). */
+uint64_t segment_next_report(const struct segment *segment);
+
 /* Is the line at rest: no byte under way, no answer to come? (Motors may run: segment_next_event().) */
 bool segment_idle(const struct segment *segment);
 

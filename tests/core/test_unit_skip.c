@@ -175,6 +175,73 @@ START_TEST(C12_an_output_comes_on_at_its_pulse_however_many_are_passed_over)
 }
 END_TEST
 
+/* ---- From report to report ------------------------------------------------------------------------------------------ */
+
+struct reports {
+    uint64_t count, digest, last;
+};
+
+static void on_report(void *context, uint64_t tick, unsigned motor, enum rkm04_event what, uint32_t value)
+{
+    struct reports *reports = context;
+    reports->count++;
+    reports->last = tick;
+    reports->digest = (reports->digest ^ tick ^ (uint64_t)motor << 60 ^ (uint64_t)what << 50 ^ (uint64_t)value << 20) *
+                      UINT64_C(0x100000001b3);
+}
+
+static void on_outputs(void *context, uint64_t tick, uint8_t mask)
+{
+    on_report(context, tick, 5, 0, mask);
+}
+
+static const struct rkm04_port reporting = {.event = on_report, .outputs = on_outputs};
+
+/* One unit to `end` in one call, another one from report to report: nothing is reported before it is due, and the same in all.
+ * Returns the number of calls. */
+static unsigned from_report_to_report(const char *text, uint64_t end)
+{
+    const struct rkm04_config config = {.node = 1};
+    struct reports whole = {0}, pieces = {0};
+    unsigned calls = 0;
+    rkm04_init(&seen, &config, &reporting, &whole);
+    rkm04_init(&unseen, &config, &reporting, &pieces);
+    both_set(text);
+    rkm04_advance(&seen, end);
+    for (uint64_t now; (now = rkm04_now(&unseen)) < end; calls++) {
+        uint64_t report = rkm04_next_report(&unseen), count = pieces.count;
+        ck_assert_uint_ge(report, rkm04_next_event(&unseen));
+        report = report < end ? report : end;
+        rkm04_advance(&unseen, report - now);
+        ck_assert_msg(pieces.count == count, "%s: reported at %lu, before %lu", text, pieces.last, report);
+        rkm04_advance(&unseen, report < end);
+    }
+    ck_assert_msg(whole.digest == pieces.digest && whole.count == pieces.count, "%s: not the same reports", text);
+    ck_assert_int_eq(seen.motor[0].position, unseen.motor[0].position);
+    return calls;
+}
+
+START_TEST(K3_nothing_is_reported_before_the_next_report)
+{
+    char text[400];
+    seed = (uint32_t)_i + 77;
+    int length = sprintf(text, "\\ T53 S%u ", any(1, 2000));
+    for (uint32_t segments = any(1, 6); segments > 0; segments--)
+        length += sprintf(text + length, "V%u A%u F%u Y ", any(1, 16000), any(1, any(0, 1) ? 60000 : 50), any(1, 30000));
+    sprintf(text + length, "R W7 C53 B%u R )3", any(1, 3000));
+    from_report_to_report(text, 100 * UINT64_C(1000000));
+}
+END_TEST
+
+START_TEST(K3_a_long_motion_that_nobody_sees_is_done_in_few_reports)
+{
+    const uint64_t second = 1000000;
+    ck_assert_uint_lt(from_report_to_report("\\ S1 V16000 A1 G+", 100000 * second), 20);
+    ck_assert_uint_lt(from_report_to_report("\\ S100 V16000 A20000 F16000000 YYYYYYYYYY R", 11000 * second), 60);
+    ck_assert_uint_lt(from_report_to_report("\\ T55 S100 V16000 A20000 F16000000 YYYY V100 Y R", 170000 * second), 200);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("unit_skip");
@@ -185,6 +252,8 @@ int main(void)
     tcase_add_test(one, U3_the_longest_motion_ends_at_the_tick_of_its_closed_form_without_a_sink);
     tcase_add_test(one, P9_an_endless_motion_goes_on_past_2_to_the_32_steps);
     tcase_add_test(one, C12_an_output_comes_on_at_its_pulse_however_many_are_passed_over);
+    tcase_add_loop_test(one, K3_nothing_is_reported_before_the_next_report, 0, 300);
+    tcase_add_test(one, K3_a_long_motion_that_nobody_sees_is_done_in_few_reports);
     suite_add_tcase(suite, one);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_NORMAL);
