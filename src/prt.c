@@ -69,40 +69,52 @@ static bool is_request(struct rkm04_command command)
     return command.op == 'K' || (command.op == 'C' && command.argument == 75);
 }
 
-/* Store a checked text. */
-static enum flag store_text(struct rkm04_unit *unit, struct rkm04_motor *motor, struct rkm04_reader reader)
+/* Store a command, unless the memory is full and kept (T40). Returns false then. *flag: it was full. */
+static bool store_command(struct rkm04_motor *motor, struct rkm04_command command, enum flag *flag)
 {
-    struct rkm04_program *program = &motor->program;
+    if (program_count(&motor->program) == RKM04_PROGRAM_MAX) {
+        *flag = FLAG_OVERFLOW;
+        if (motor->keep)
+            return false;
+    }
+    program_append(&motor->program, command);
+    return true;
+}
+
+/* Store a checked text in the memory of these motors, bit 0 is motor 1; it is read once. */
+static enum flag store_text(struct rkm04_unit *unit, uint8_t motors, struct rkm04_reader reader)
+{
     struct rkm04_command command;
     enum flag flag = FLAG_RIGHT;
-    uint64_t first = program->written;
-    while (rkm04_read(&reader, &command) == RKM04_READ_COMMAND) {
+    uint64_t first[RKM04_MOTORS];
+    uint8_t open = motors;
+    for (unsigned i = 0; i < RKM04_MOTORS; i++)
+        first[i] = unit->motor[i].program.written;
+    while (open != 0 && rkm04_read(&reader, &command) == RKM04_READ_COMMAND) {
         if (is_request(command)) /* ignored inside a longer text (C3) */
             continue;
-        if (program_count(program) == RKM04_PROGRAM_MAX) {
-            flag = FLAG_OVERFLOW;
-            if (motor->keep)
-                break;
-        }
-        program_append(program, command);
+        for (unsigned i = 0; i < RKM04_MOTORS; i++)
+            if ((open >> i & 1) != 0 && !store_command(&unit->motor[i], command, &flag))
+                open = (uint8_t)(open & ~(1u << i));
     }
-    if (program->written != first)
-        interp_stored(unit, motor, first);
+    for (unsigned i = 0; i < RKM04_MOTORS; i++)
+        if (unit->motor[i].program.written != first[i])
+            interp_stored(unit, &unit->motor[i], first[i]);
     return flag;
 }
 
-/* Last stage, for one motor: each decides for itself (P3). */
-static enum flag obey_text(struct rkm04_unit *unit, struct rkm04_motor *motor, const struct text *text)
+/* Obey a text for one motor, which decides for itself (P3). Returns false if there is nothing to be stored. */
+static bool obey_text(struct rkm04_unit *unit, struct rkm04_motor *motor, const struct text *text)
 {
     if (text->commands == 1 && is_request(text->sole)) {
         interp_request(motor, (char)text->sole.op);
-        return FLAG_RIGHT;
+        return false;
     }
     if (text->commands == 1 && text->sole.op == 'V' && interp_change_speed(unit, motor, (uint16_t)text->sole.argument))
-        return FLAG_RIGHT;
+        return false;
     if (text->reset)
         interp_reset(unit, motor);
-    return store_text(unit, motor, text->program);
+    return true;
 }
 
 static bool is_motor(uint8_t character)
@@ -124,14 +136,11 @@ int prt_set_command(struct rkm04_unit *unit, uint8_t motor, const uint8_t *bytes
         return (int)flag;
     }
     unit->touched = true;
-    for (unsigned i = 0; i < RKM04_MOTORS; i++) {
-        if (motor != '0' && motor != '1' + i)
-            continue;
-        enum flag one = obey_text(unit, &unit->motor[i], &text);
-        if (one > flag)
-            flag = one;
-    }
-    return (int)flag;
+    uint8_t storing = 0;
+    for (unsigned i = 0; i < RKM04_MOTORS; i++)
+        if ((motor == '0' || motor == '1' + i) && obey_text(unit, &unit->motor[i], &text))
+            storing = (uint8_t)(storing | 1u << i);
+    return (int)store_text(unit, storing, text.program);
 }
 
 /* ---- Answers ------------------------------------------------------------------------------------------------------------ */
