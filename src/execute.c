@@ -205,8 +205,10 @@ COMMAND(segment)
     if (motor->count == 0 || motor->forward != motor->segments_forward)
         motor->segments_bad = true;
     if (motor->segments < RKM04_SEGMENTS_MAX)
-        motor->segment[motor->segments] =
-            (struct rkm04_segment){.steps = motor->count, .speed = motor->speed, .acceleration = motor->acceleration};
+        motor->segment[motor->segments] = (struct rkm04_segment){.steps = motor->count,
+                                                                 .speed = motor->speed,
+                                                                 .acceleration = motor->acceleration,
+                                                                 .deceleration = motor->acceleration};
     if (motor->segments <= RKM04_SEGMENTS_MAX)
         motor->segments++;
     if (READING(unit, y_eleventh) == RKM04_Y_ELEVENTH_Y && motor->segments > RKM04_SEGMENTS_MAX)

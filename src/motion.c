@@ -126,7 +126,8 @@ static bool prepare(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm
     motion->changed = false;
     motion->start_speed = motor->start_speed;
     motion->segments = 1;
-    motion->segment[0] = (struct rkm04_segment){.steps = 0, .speed = motor->speed, .acceleration = motor->acceleration};
+    motion->segment[0] = (struct rkm04_segment){
+        .speed = motor->speed, .acceleration = motor->acceleration, .deceleration = motor->acceleration};
     motion->profile.count = 0;
     return true;
 }
@@ -244,10 +245,15 @@ static uint32_t room_before_mark(const struct rkm04_motion *motion)
 void motion_run(struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t limit)
 {
     struct rkm04_motion *motion = &motor->motion;
-    while (motion->ramp.next <= limit && room_before_mark(motion) > 0) {
-        if (!pulses_are_seen(unit))
-            count_pulses(motor, ramp_skip(&motion->ramp, limit, room_before_mark(motion)));
-        run_pulses(unit, motor, limit, room_before_mark(motion));
+    while (motion->ramp.next <= limit) {
+        uint32_t room = room_before_mark(motion);
+        if (room == 0)
+            return;
+        if (!pulses_are_seen(unit)) {
+            count_pulses(motor, ramp_skip(&motion->ramp, limit, room));
+            room = room_before_mark(motion);
+        }
+        run_pulses(unit, motor, limit, room);
     }
 }
 

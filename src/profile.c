@@ -161,9 +161,9 @@ static unsigned segment_at(const struct rkm04_motion *motion, struct rkm04_place
 static void reach_limit(struct rkm04_motion *motion, struct state *state, struct rkm04_place end, uint64_t limit, uint64_t leave)
 {
     struct rkm04_profile *profile = &motion->profile;
-    uint16_t acceleration = motion->segment[state->segment].acceleration;
+    uint16_t deceleration = motion->segment[state->segment].deceleration;
     uint64_t jump = q_of(motion->start_speed);
-    uint64_t at_once = lower(lower(limit, jump), raised(leave, energy(acceleration, state->at, end)));
+    uint64_t at_once = lower(lower(limit, jump), raised(leave, energy(deceleration, state->at, end)));
     if (state->moving && at_once > state->q + ROUNDING) {
         add_break(profile, state->at, state->q, 0);
         state->q = at_once;
@@ -171,11 +171,11 @@ static void reach_limit(struct rkm04_motion *motion, struct state *state, struct
     if (state->q <= limit)
         return;
     uint64_t floor = lower(state->q, jump > limit ? jump : limit);
-    struct rkm04_place down = ahead(state->at, state->q - floor, acceleration);
+    struct rkm04_place down = ahead(state->at, state->q - floor, deceleration);
     if (floor < state->q)
-        add_break(profile, state->at, state->q, -(int32_t)acceleration);
+        add_break(profile, state->at, state->q, -(int32_t)deceleration);
     if (before(end, down)) {
-        state->q = lowered(state->q, energy(acceleration, state->at, end));
+        state->q = lowered(state->q, energy(deceleration, state->at, end));
         state->at = end;
         return;
     }
@@ -185,26 +185,39 @@ static void reach_limit(struct rkm04_motion *motion, struct state *state, struct
     state->at = down;
 }
 
+/* q at which a rise from q meets the fall to `leave`, with nothing between them: q + gain * part, where the way is shared so that
+ * both come out the same. gain: of the whole way, rising. */
+static uint64_t peak_of(const struct rkm04_segment *segment, uint64_t q, uint64_t leave, uint64_t gain)
+{
+    const uint32_t a = segment->acceleration, d = segment->deceleration;
+    uint64_t rest;
+    if (a == d)
+        return q / 2 + leave / 2 + gain / 2;
+    struct wide sum = wide_sum(wide_product(q, d), wide_product(leave, a));
+    sum = wide_sum(sum, wide_product(gain, d));
+    return wide_divide(sum, a + d, &rest);
+}
+
 /* The break points of one segment from *state to its end with speed `leave` there (R1 between two border speeds). */
 static void plan_segment(struct rkm04_motion *motion, const struct state *state, struct rkm04_place end, uint64_t leave)
 {
     struct rkm04_profile *profile = &motion->profile;
     const struct rkm04_segment *segment = &motion->segment[state->segment];
-    int32_t slope = segment->acceleration;
     uint64_t limit = q_of(segment->speed);
     uint64_t gain = energy(segment->acceleration, state->at, end);
-    uint64_t peak = lower(limit, state->q / 2 + leave / 2 + gain / 2);
+    uint64_t peak = lower(limit, peak_of(segment, state->q, leave, gain));
     struct rkm04_place top = state->at;
     if (peak > state->q) {
-        add_break(profile, state->at, state->q, slope);
+        add_break(profile, state->at, state->q, segment->acceleration);
         top = ahead(state->at, peak - state->q, segment->acceleration);
     }
-    struct rkm04_place fall = peak > leave ? behind(end, peak - leave, segment->acceleration) : end;
-    bool level = stretches(segment->acceleration, top, fall); /* at the limit: below it the two are the same place */
+    struct rkm04_place fall = peak > leave ? behind(end, peak - leave, segment->deceleration) : end;
+    /* At the limit: below it the two are the same place. */
+    bool level = stretches(slower(segment->acceleration, segment->deceleration), top, fall);
     if (level)
         add_break(profile, top, peak, 0);
     if (peak > leave)
-        add_break(profile, level ? fall : top, peak, -slope);
+        add_break(profile, level ? fall : top, peak, -(int32_t)segment->deceleration);
 }
 
 /* The speeds at the segments' ends: limits, then what can be braked from, then what can be reached (R4). */
@@ -215,12 +228,12 @@ static void plan_borders(const struct rkm04_motion *motion, const struct state *
     for (unsigned i = last; i-- > from->segment;)
         leave[i] = q_of(slower(motion->segment[i].speed, motion->segment[i + 1].speed));
     for (unsigned i = last; i > from->segment; i--) {
-        uint64_t gain = energy(motion->segment[i].acceleration, end_of(motion, i - 1), end_of(motion, i));
+        uint64_t gain = energy(motion->segment[i].deceleration, end_of(motion, i - 1), end_of(motion, i));
         leave[i - 1] = lower(leave[i - 1], raised(leave[i], gain));
     }
     if (!from->moving) {
         struct rkm04_place end = end_of(motion, from->segment);
-        uint64_t gain = energy(motion->segment[from->segment].acceleration, from->at, end);
+        uint64_t gain = energy(motion->segment[from->segment].deceleration, from->at, end);
         *start = lower(*start, raised(leave[from->segment], gain));
     }
 }
@@ -230,13 +243,13 @@ static void plan_steps(struct rkm04_motion *motion, struct state state)
     uint64_t leave[RKM04_SEGMENTS_MAX];
     plan_borders(motion, &state, &state.q, leave);
     for (; state.segment < motion->segments; state.segment++) {
-        uint16_t acceleration = motion->segment[state.segment].acceleration;
+        const struct rkm04_segment *segment = &motion->segment[state.segment];
         struct rkm04_place end = end_of(motion, state.segment);
-        reach_limit(motion, &state, end, q_of(motion->segment[state.segment].speed), leave[state.segment]);
-        uint64_t gain = energy(acceleration, state.at, end);
-        uint64_t out = lower(leave[state.segment], raised(state.q, gain));
-        if (out < lowered(state.q, gain)) /* a present speed that cannot be braked in time */
-            out = lowered(state.q, gain);
+        reach_limit(motion, &state, end, q_of(segment->speed), leave[state.segment]);
+        uint64_t out = lower(leave[state.segment], raised(state.q, energy(segment->acceleration, state.at, end)));
+        uint64_t least = lowered(state.q, energy(segment->deceleration, state.at, end));
+        if (out < least) /* a present speed that cannot be braked in time */
+            out = least;
         plan_segment(motion, &state, end, out);
         state.q = out;
         state.at = end;
@@ -353,29 +366,44 @@ struct stop {
     uint32_t step;
 };
 
-/* What lies less than this above a whole number of steps, in units of 1/(8e12 * acceleration) step, counts as that number.
+/* What lies less than this above a whole number of steps, in units of 1/(8e12 * deceleration) step, counts as that number.
  * Irrational ways shall (R5: a millionth of a step), rational ones only as far as they were rounded up: not at all, or after a
  * change of speed, whose place is kept with 2^-34 of speed2, by a hundred units of the acceleration there at each; the next
  * rational way above a whole number then is 4 000 000 units off. */
-static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint16_t acceleration)
+static uint64_t tolerance_of_stop(const struct rkm04_motion *motion, uint16_t deceleration)
 {
     if (!motion->ramp.exact)
-        return (uint64_t)4 * acceleration * (uint64_t)motion->ramp.step / 1000000;
+        return (uint64_t)4 * deceleration * (uint64_t)motion->ramp.step / 1000000;
     if (!motion->changed)
         return 1;
-    uint16_t least = acceleration;
+    uint16_t least = deceleration;
     for (unsigned i = 0; i < motion->segments; i++)
-        least = slower(least, motion->segment[i].acceleration);
-    return (uint64_t)100000 * acceleration / least;
+        least = slower(least, slower(motion->segment[i].acceleration, motion->segment[i].deceleration));
+    return (uint64_t)100000 * deceleration / least;
 }
 
-/* Steps from stop->step to the end of the ramp at this acceleration, rounded up. */
-static uint32_t steps_of_stop(const struct rkm04_motion *motion, const struct stop *stop, uint16_t acceleration)
+/* The motion is y behind stop->step. */
+static void set_offset(struct stop *stop, struct rkm04_fixed y, uint16_t deceleration)
 {
-    const uint64_t unit = (uint64_t)4 * acceleration * (uint64_t)motion->ramp.step;
+    const uint64_t factor = (uint64_t)4 * deceleration;
+    stop->offset = (uint64_t)y.whole * factor + wide_high(y.part, factor);
+}
+
+/* Steps from stop->step to the end of the ramp at this deceleration, rounded up. */
+static uint32_t steps_of_stop(const struct rkm04_motion *motion, const struct stop *stop, uint16_t deceleration)
+{
+    const uint64_t unit = (uint64_t)4 * deceleration * (uint64_t)motion->ramp.step;
     struct wide way = wide_sum(stop->energy, (struct wide){0, stop->offset});
     uint64_t rest, steps = wide_divide(way, unit, &rest);
-    return (uint32_t)steps + (rest >= tolerance_of_stop(motion, acceleration));
+    return (uint32_t)steps + (rest >= tolerance_of_stop(motion, deceleration));
+}
+
+/* Steps from motion->done to the end of a stop in the first segment. */
+static uint32_t first_stop(const struct rkm04_motion *motion, struct stop stop, struct rkm04_fixed y)
+{
+    const uint16_t deceleration = motion->segment[0].deceleration;
+    set_offset(&stop, y, deceleration);
+    return steps_of_stop(motion, &stop, deceleration);
 }
 
 /* The last step of a stop from `state`, where 2e12 * position lies `y` behind the last whole step, and the break points of its
@@ -383,47 +411,51 @@ static uint32_t steps_of_stop(const struct rkm04_motion *motion, const struct st
 static uint32_t plan_stop(struct rkm04_motion *motion, struct state *state, struct stop stop, struct rkm04_fixed y)
 {
     for (;; state->segment++) {
-        uint16_t acceleration = motion->segment[state->segment].acceleration;
-        uint64_t factor = (uint64_t)4 * acceleration;
-        stop.offset = (uint64_t)y.whole * factor + wide_high(y.part, factor);
-        uint32_t last = stop.step + steps_of_stop(motion, &stop, acceleration);
+        uint16_t deceleration = motion->segment[state->segment].deceleration;
+        set_offset(&stop, y, deceleration);
+        uint32_t last = stop.step + steps_of_stop(motion, &stop, deceleration);
         bool falling = (stop.energy.high | stop.energy.low) != 0;
-        add_break(&motion->profile, state->at, state->q, falling ? -(int32_t)acceleration : 0);
+        add_break(&motion->profile, state->at, state->q, falling ? -(int32_t)deceleration : 0);
         if (motion->kind != RKM04_MOTION_STEPS)
             return last;
         struct rkm04_place end = end_of(motion, state->segment);
         uint32_t end_step = ramp_step_of(end);
         if (last <= end_step || end_step == motion->total)
             return (uint32_t)lower(last, motion->total);
-        struct wide lost = wide_product(factor * (uint64_t)motion->ramp.step, end_step - stop.step);
+        struct wide lost = wide_product((uint64_t)4 * deceleration * (uint64_t)motion->ramp.step, end_step - stop.step);
         lost = wide_difference(lost, (struct wide){0, stop.offset});
         stop.energy = wide_difference(stop.energy, lost);
-        state->q = lowered(state->q, energy(acceleration, state->at, end));
+        state->q = lowered(state->q, energy(deceleration, state->at, end));
         state->at = end;
         stop.step = end_step;
         y = (struct rkm04_fixed){0};
     }
 }
 
-bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
+/* How the stop of a motion begins at `tick`. *y: where it is behind the last whole step. */
+static struct stop stop_at(const struct rkm04_motion *motion, uint64_t tick, struct rkm04_fixed *y)
 {
-    struct rkm04_profile *profile = &motion->profile;
-    if (on_final_ramp(motion))
-        return true;
-    const int64_t w_end = ramp_speed_unit(&motion->ramp) * motion->start_speed;
-    struct state state = present(motion, tick);
+    const uint64_t w_end = (uint64_t)ramp_speed_unit(&motion->ramp) * motion->start_speed;
     struct stop stop = {.step = motion->done};
-    struct rkm04_fixed y, w;
-    look_behind_step(motion, tick, &y, &w);
-    struct wide square = square_of(w), square_end = wide_product((uint64_t)w_end, (uint64_t)w_end);
+    struct rkm04_fixed w;
+    look_behind_step(motion, tick, y, &w);
+    struct wide square = square_of(w), square_end = wide_product(w_end, w_end);
     if (wide_less(square_end, square))
         stop.energy = wide_difference(square, square_end);
+    return stop;
+}
+
+/* Stop from `state`, the present one. Returns false if no further step is to be done. */
+static bool stop_from(struct rkm04_motion *motion, uint64_t tick, struct state state)
+{
+    struct rkm04_profile *profile = &motion->profile;
+    struct rkm04_fixed y;
+    struct stop stop = stop_at(motion, tick, &y);
     uint64_t q_end = lower(state.q, q_of(motion->start_speed));
-    mark_present(profile);
     uint32_t last = plan_stop(motion, &state, stop, y);
-    uint16_t acceleration = motion->segment[state.segment].acceleration;
-    struct rkm04_place slow = ahead(state.at, lowered(state.q, q_end), acceleration);
-    if (stretches(acceleration, slow, place_at(last)))
+    uint16_t deceleration = motion->segment[state.segment].deceleration;
+    struct rkm04_place slow = ahead(state.at, lowered(state.q, q_end), deceleration);
+    if (stretches(deceleration, slow, place_at(last)))
         add_break(profile, slow, q_end, 0);
     profile->endless = false;
     add_end(profile, place_at(last), q_end);
@@ -431,6 +463,79 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
         return false;
     ramp_go_on(&motion->ramp, profile, tick);
     return true;
+}
+
+bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
+{
+    if (on_final_ramp(motion))
+        return true;
+    struct state state = present(motion, tick);
+    mark_present(&motion->profile);
+    return stop_from(motion, tick, state);
+}
+
+/* ---- Any goal from any state ------------------------------------------------------------------------------------------ */
+
+/* One segment without places yet, of the goal's speeds. */
+static void set_goal(struct rkm04_motion *motion, const struct profile_goal *goal)
+{
+    motion->kind = goal->kind == PROFILE_TO_PLACE ? RKM04_MOTION_STEPS : RKM04_MOTION_ENDLESS;
+    motion->start_speed = goal->start_speed;
+    motion->segments = 1;
+    motion->segment[0] = (struct rkm04_segment){.speed = (uint16_t)(goal->speed < 0 ? -goal->speed : goal->speed),
+                                                .acceleration = goal->acceleration,
+                                                .deceleration = goal->deceleration};
+    motion->total = 0;
+    if (goal->kind == PROFILE_TO_PLACE)
+        motion->total = (uint32_t)(goal->way < 0 ? -goal->way : goal->way);
+    motion->segment[0].steps = motion->total;
+    motion->profile.count = motion->profile.leg = 0;
+}
+
+static enum profile_answer go_from_rest(struct rkm04_motion *motion, uint64_t tick, uint32_t rate,
+                                        const struct profile_goal *goal)
+{
+    motion->moving = false;
+    if (goal->kind == PROFILE_TO_STOP || (goal->kind == PROFILE_TO_PLACE && goal->way == 0))
+        return PROFILE_STANDS;
+    set_goal(motion, goal);
+    motion->forward = (goal->kind == PROFILE_TO_PLACE ? goal->way : goal->speed) > 0;
+    motion->done = 0;
+    motion->changed = false;
+    motion->moving = true;
+    profile_plan(motion);
+    ramp_begin(&motion->ramp, &motion->profile, tick, rate);
+    return PROFILE_MOVES;
+}
+
+enum profile_answer profile_go(struct rkm04_motion *motion, uint64_t tick, uint32_t rate, const struct profile_goal *goal)
+{
+    if (!motion->moving)
+        return go_from_rest(motion, tick, rate, goal);
+    struct state state = present(motion, tick);
+    struct rkm04_fixed y;
+    state.at.high -= (uint64_t)motion->done << 32; /* anew from the pulse sent last: no motion runs out of places */
+    state.segment = 0;
+    motion->done = 0;
+    motion->changed = true;
+    set_goal(motion, goal);
+    const struct stop stop = stop_at(motion, tick, &y);
+    const bool forward = motion->forward;
+    int64_t way = forward ? goal->way : -goal->way, speed = forward ? goal->speed : -goal->speed;
+    if (goal->kind == PROFILE_TO_PLACE && way >= first_stop(motion, stop, y)) {
+        motion->moving = way > 0;
+        if (way == 0)
+            return PROFILE_STANDS;
+    } else if (goal->kind != PROFILE_FOR_EVER || speed < 0) {
+        motion->kind = RKM04_MOTION_ENDLESS; /* a stop that no planned end cuts short */
+        motion->moving = stop_from(motion, tick, state);
+        if (motion->moving)
+            return goal->kind == PROFILE_TO_STOP ? PROFILE_MOVES : PROFILE_TURNS;
+        return go_from_rest(motion, tick, rate, goal);
+    }
+    plan_from(motion, state);
+    ramp_go_on(&motion->ramp, &motion->profile, tick);
+    return PROFILE_MOVES;
 }
 
 /* ---- What the host sees --------------------------------------------------------------------------------------------- */

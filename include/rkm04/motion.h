@@ -24,7 +24,8 @@ extern "C" {
 struct rkm04_segment {
     uint32_t steps;        /* N; 1..160 000 000 in a compound, up to 4 147 483 648 with G (U3) */
     uint16_t speed;        /* V, 1..16 000 steps/s */
-    uint16_t acceleration; /* A, 1..60 000 steps/s^2 */
+    uint16_t acceleration; /* A, 1..60 000 steps/s^2: of rising speed */
+    uint16_t deceleration; /* of falling speed; the RKM04 has one A for both */
 };
 
 /* 64.64 fixed point, value = whole + part / 2^64. */

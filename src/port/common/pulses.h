@@ -3,7 +3,7 @@
  * here until a timer's interrupt does it, whatever the main loop is busy with. Knows no board: it calls the struct pulse_pins.
  *
  *     main loop                                 timer interrupt
- *     rkm04_advance -> on_step -> pulses_step   pulses_play -> pins.step; arm the timer for the tick returned
+ *     rkm04_advance -> on_steps -> pulses_put    pulses_play -> pins.step; arm the timer for the tick returned
  *
  * One lane a motor, one for the outputs: a lane is filled in the order of its ticks, lanes are merged when played. Ticks here
  * have 32 bits: what waits lies far less than 2^31 us ahead. */

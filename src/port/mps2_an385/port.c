@@ -12,10 +12,11 @@ static void put(unsigned lane, uint64_t tick, uint8_t item)
     pulses_put(&board_pulses, lane, (uint32_t)tick, item);
 }
 
-static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
+static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward)
 {
-    (void)context, (void)position;
-    put(motor, tick, PULSE_STEP);
+    (void)context, (void)position, (void)forward;
+    for (size_t i = 0; i < count; i++)
+        put(motor, tick[i], PULSE_STEP);
 }
 
 static void on_direction(void *context, uint64_t tick, unsigned motor, bool forward)
@@ -31,7 +32,7 @@ static void on_outputs(void *context, uint64_t tick, uint8_t mask)
 }
 
 const struct rkm04_port port = {
-    .step = on_step,
+    .steps = on_steps,
     .direction = on_direction,
     .outputs = on_outputs,
     .flash_read = flash_read,
