@@ -122,7 +122,7 @@ static void look_who_watches(struct sim *sim)
 
 /* ---- Flash ---------------------------------------------------------------------------------------------------------- */
 
-/* The memory holds every byte inverted: what has not been written is 0 and costs nothing until it is touched. */
+/* The memory is there once something has been written, and holds every byte inverted: what has not been is 0. */
 static void invert(uint8_t *to, const uint8_t *from, unsigned length)
 {
     for (unsigned i = 0; i < length; i++)
@@ -146,9 +146,12 @@ int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void 
     const struct sim_flash *flash = &unit->sim->config.flash;
     if (flash->read)
         return flash->read(flash->context, unit->number, block, offset, data, length);
-    if (!within(block, offset, length) || !memory_of(unit))
+    if (!within(block, offset, length))
         return 1;
-    invert(data, unit->memory + block * RKM04_FLASH_BLOCK_SIZE + offset, length);
+    if (!unit->memory)
+        memset(data, 0xFF, length);
+    else
+        invert(data, unit->memory + block * RKM04_FLASH_BLOCK_SIZE + offset, length);
     return 0;
 }
 

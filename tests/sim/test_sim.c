@@ -224,6 +224,26 @@ START_TEST(U5_inputs_stay_when_the_power_goes_and_comes)
 }
 END_TEST
 
+START_TEST(flash_costs_nothing_until_something_is_stored)
+{
+    uint8_t byte = 0;
+    one = line(false, 1, WATCH_BIT(WATCH_MOTION));
+    sim_advance(&one->sim, 100000);
+    sim_power(&one->sim, 1, false);
+    sim_power(&one->sim, 1, true);
+    ck_assert_ptr_null(one->sim.unit[0].memory);
+    ck_assert_int_eq(sim_flash_read(&one->sim.unit[0], 7, 4095, &byte, 1), 0);
+    ck_assert_uint_eq(byte, 0xFF);
+    ck_assert_int_eq(sim_flash_program(&one->sim.unit[0], 7, 4088, "ABCDEFG", 8), 0);
+    ck_assert_ptr_nonnull(one->sim.unit[0].memory);
+    ck_assert_int_eq(sim_flash_read(&one->sim.unit[0], 7, 4088, &byte, 1), 0);
+    ck_assert_uint_eq(byte, 'A');
+    ck_assert_int_eq(sim_flash_read(&one->sim.unit[0], 6, 0, &byte, 1), 0);
+    ck_assert_uint_eq(byte, 0xFF);
+    line_ends(one);
+}
+END_TEST
+
 START_TEST(pulses_cost_nothing_while_nobody_wants_them)
 {
     one = line(false, 1, WATCH_BIT(WATCH_MOTION));
@@ -306,6 +326,7 @@ int main(void)
     tcase = tcase_create("units");
     tcase_add_test(tcase, an_input_is_told_when_it_changes_and_reaches_the_unit);
     tcase_add_test(tcase, U5_inputs_stay_when_the_power_goes_and_comes);
+    tcase_add_test(tcase, flash_costs_nothing_until_something_is_stored);
     tcase_add_test(tcase, pulses_cost_nothing_while_nobody_wants_them);
     suite_add_tcase(suite, tcase);
     tcase = tcase_create("commands");
