@@ -247,8 +247,9 @@ uint64_t ramp_quiet_pulses(const struct rkm04_ramp *ramp, uint32_t most)
     int64_t w = ramp->w.whole + 1;
     if (ramp->slope > 0)
         w += 2 * ramp->slope * (int64_t)(ramp->end.tick - ramp->at);
-    uint64_t quiet = ramp->next + (uint64_t)(ramp->step / w) * most, end = ramp_quiet_until(ramp);
-    quiet = quiet < end ? quiet : end;
+    uint64_t quiet = ramp_quiet_until(ramp), fastest = ramp->next + (uint64_t)(ramp->step / w) * most;
+    if (most != UINT32_MAX && fastest < quiet)
+        quiet = fastest;
     return quiet > ramp->next ? quiet : ramp->next;
 }
 

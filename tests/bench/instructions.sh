@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 # instructions.sh: instructions of the core, counted by callgrind: the same on every run, whatever the machine does besides.
-# One JSON object a line. Needs valgrind. CC and CFLAGS may be set; CFLAGS are those of a release build (cmake --preset release)
-# otherwise.
+# One JSON object a line. Needs valgrind. CC and CFLAGS may be set; CFLAGS are those of a release build otherwise, without
+# -fcf-protection, which adds an instruction a call: the peers in docs/DESIGN.md were measured without.
 #
 # Counted is what is spent inside rkm04_advance, the sink included, which stores one time stamp a pulse: once with pulses in
 # blocks (port.steps), once one by one (port.step, "single").
