@@ -17,11 +17,12 @@ unset CFLAGS
 found=$(./instructions.sh | sed -n 's/.*"work":"\([a-z]*\)","sink":"\([a-z]*\)".*_pulse":\([0-9.]*\)}/\1 \2 \3/p')
 [[ $(wc -l <<<"$found") == 8 ]] || { echo "regression: instructions.sh did not count eight figures" >&2; exit 1; }
 if [[ ${1-} == --renew ]]; then
-    echo "$found" >$figures
+    printf '%s\n' '# SPDX-License-Identifier: MIT' '# work, sink, instructions a pulse: regression.sh --renew' "$found" >$figures
     cat $figures
     exit
 fi
 awk '
+    /^#/ { next }
     NR == FNR { wanted[$1 " " $2] = $3; next }
     { most = 1.03 * wanted[$1 " " $2]
       printf "%-9s %-7s %7.2f instructions a pulse, at most %.2f\n", $1, $2, $3, most

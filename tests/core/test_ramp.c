@@ -19,8 +19,10 @@ static struct rkm04_motion motion;
 static void begin(uint32_t rate, unsigned start_speed, const struct ref_segment *of)
 {
     motion = (struct rkm04_motion){.kind = RKM04_MOTION_STEPS, .segments = 1, .start_speed = (uint16_t)start_speed};
-    motion.segment[0] = (struct rkm04_segment){
-        .steps = (uint32_t)of->steps, .speed = (uint16_t)of->speed, .acceleration = (uint16_t)of->acceleration};
+    motion.segment[0] = (struct rkm04_segment){.steps = (uint32_t)of->steps,
+                                               .speed = (uint16_t)of->speed,
+                                               .acceleration = (uint16_t)of->acceleration,
+                                               .deceleration = (uint16_t)of->acceleration};
     motion.total = (uint32_t)of->steps;
     profile_plan(&motion);
     ramp_begin(&motion.ramp, &motion.profile, 0, rate);
