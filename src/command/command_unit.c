@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "command.h"
-#include "device/device.h"
+#include "unit_state.h"
 
 /* "1", "01", … "08" -> 1..8; 0: no input. */
 static unsigned input_named(const char *name)
@@ -33,7 +33,7 @@ json_t *command_state(struct sim *sim, const json_t *params, struct refusal *ref
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
     if (number == 0)
         return NULL;
-    json_t *state = unit_json(sim, number);
+    json_t *state = unit_state(sim, number);
     return state ? state : refuse(refusal, REFUSED_MEMORY, "memory is short");
 }
 

@@ -108,12 +108,6 @@ static json_t *parameters_json(const struct rkm04_motor *motor)
                      (int)motor->forward, "segments", (int)motor->segments);
 }
 
-static json_t *true_position_json(const struct plant *plant, unsigned motor)
-{
-    int64_t position;
-    return plant && plant_position(plant, motor, &position) ? json_integer(position) : json_null();
-}
-
 /* Put `value` into the object, which is NULL if memory has been short. */
 static void put(json_t *object, const char *name, json_t *value)
 {
@@ -123,14 +117,14 @@ static void put(json_t *object, const char *name, json_t *value)
         json_object_set_new(object, name, value);
 }
 
-static void put_motor(json_t *object, const struct sim_unit *unit, const struct rkm04_unit *core, unsigned number)
+static void put_motor(json_t *object, const struct rkm04_unit *unit, unsigned number)
 {
-    const struct rkm04_motor *motor = &core->motor[number - 1];
+    const struct rkm04_motor *motor = &unit->motor[number - 1];
     struct rkm04_motor_state state;
-    rkm04_motor_state(core, number, &state);
-    put(object, "true_position", true_position_json(unit->plant, number));
+    rkm04_motor_state(unit, number, &state);
+    put(object, "true_position", json_null());
     put(object, "command", command_json(motor, state.index));
-    put(object, "waits_for", waits_for_json(core, number));
+    put(object, "waits_for", waits_for_json(unit, number));
     put(object, "lit", json_boolean(state.lit));
     put(object, "speed", json_integer(state.speed));
     put(object, "steps", json_integer(state.steps));
@@ -139,7 +133,7 @@ static void put_motor(json_t *object, const struct sim_unit *unit, const struct 
     put(object, "held",
         motor->state == RKM04_HELD ? json_string(rkm04_state_name((enum rkm04_state)motor->held)) : json_null());
     put(object, "guards", guards_json(motor));
-    put(object, "profile", profile_json(core, number));
+    put(object, "profile", profile_json(unit, number));
     put(object, "parameters", parameters_json(motor));
     put(object, "functions", functions_json(motor));
     put(object, "loops", loops_json(motor));
@@ -158,28 +152,13 @@ static json_t *counters_json(const struct rkm04_unit *unit)
                      (json_int_t)counters.dropped);
 }
 
-static json_t *line_json(const struct segment *segment)
+json_t *unit_json(const struct rkm04_unit *unit, uint64_t tick)
 {
-    struct segment_counters counters = segment_counters(segment);
-    return json_pack("{s:I, s:I, s:I, s:I}", "bytes", (json_int_t)counters.bytes, "collisions",
-                     (json_int_t)counters.collisions, "framing_errors", (json_int_t)counters.framing_errors, "overruns",
-                     (json_int_t)counters.overruns);
-}
-
-json_t *unit_json(struct sim *sim, unsigned number)
-{
-    const struct sim_unit *unit = &sim->unit[number - 1];
-    const struct rkm04_unit *core = sim_core(sim, number);
-    json_t *state = state_json(core, sim_now(sim)), *motors = json_object_get(state, "motors");
+    json_t *state = state_json(unit, tick), *motors = json_object_get(state, "motors");
     for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
-        put_motor(json_array_get(motors, motor - 1), unit, core, motor);
-    put(state, "unit", json_string(unit->name));
-    put(state, "node", json_integer(core->config.node));
-    put(state, "switch", json_integer(sim->config.nodes.node[number - 1]));
-    put(state, "powered", json_boolean(sim_powered(sim, number)));
-    put(state, "since_us", json_integer((json_int_t)segment_since(&sim->segment, number)));
-    put(state, "simulation", json_boolean(core->simulation));
-    put(state, "counters", counters_json(core));
-    put(state, "line", line_json(&sim->segment));
+        put_motor(json_array_get(motors, motor - 1), unit, motor);
+    put(state, "node", json_integer(unit->config.node));
+    put(state, "simulation", json_boolean(unit->simulation));
+    put(state, "counters", counters_json(unit));
     return state;
 }

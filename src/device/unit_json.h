@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* unit_json.h: everything that can be seen of a unit, as JSON: what state_json() gives, and more (docs/CONTROL.md, `state`). */
+/* unit_json.h: everything that a unit knows of itself, as JSON: what state_json() gives, and more (docs/CONTROL.md, `state`). */
 #ifndef RKM04_SIM_UNIT_JSON_H
 #define RKM04_SIM_UNIT_JSON_H
 
-#include "sim/sim.h"
+#include <jansson.h>
+#include <stdint.h>
 
-/* Of unit `number` of the line, at the present tick. Returns a new reference, or NULL if memory is short. */
-json_t *unit_json(struct sim *sim, unsigned number);
+#include <rkm04/unit.h>
+
+/* Everything that a unit itself knows, at `tick` of the bus: state_json(), more of each motor (with `true_position` null, a place
+ * for what the plant knows), node, simulation, counters. Returns a new reference, or NULL if memory is short. */
+json_t *unit_json(const struct rkm04_unit *unit, uint64_t tick);
 
 /* What motor 1..4 of `unit` waits for, in words. Returns a new reference: a string, or JSON null if it waits for nothing; NULL:
  * memory is short. */
