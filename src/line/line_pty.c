@@ -81,16 +81,20 @@ bool line_watch_open(struct line_watch *watch)
     return false;
 }
 
+static void close_descriptor(int *fd)
+{
+    if (*fd >= 0)
+        close(*fd);
+    *fd = -1;
+}
+
 void line_watch_close(struct line_watch *watch)
 {
-    int *fds[] = {&watch->fd, &watch->notices, &watch->timer};
     if (watch->fd < 0)
         return; /* it was never opened */
-    for (size_t i = 0; i < sizeof fds / sizeof fds[0]; i++) {
-        if (*fds[i] >= 0)
-            close(*fds[i]);
-        *fds[i] = -1;
-    }
+    close_descriptor(&watch->fd);
+    close_descriptor(&watch->notices);
+    close_descriptor(&watch->timer);
 }
 
 /* Have the new line watched. Returns false if it is not possible in any way (errno). */
@@ -260,13 +264,13 @@ void line_pty_count_again(struct line *line)
 {
     int others = 0;
     unsigned reopened = 0;
-    struct notices counted = {0}, one = {0};
+    struct notices counted = {0};
     read_notices(line->watch, NULL, NULL);
     if (count_exclusive(line))
         return;
     /* Our own close and open give two notices; if there are more, somebody came or went meanwhile. */
     for (unsigned tries = 0; tries < COUNT_TRIES; tries++) {
-        one = (struct notices){0};
+        struct notices one = {0};
         others = anybody_else(line);
         reopened += line->slave >= 0;
         read_notices(line->watch, line, &one);

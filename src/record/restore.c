@@ -148,9 +148,11 @@ static bool read_file(struct restore *restore, struct refusal *refusal)
     if (in)
         fclose(in);
     if (well) {
-        char *less = realloc(text, length + 1u);
-        restore->text = less ? less : text;
+        restore->text = text;
         restore->length = length;
+        text = realloc(restore->text, length + 1u);
+        if (text)
+            restore->text = text;
         return true;
     }
     free(text);
