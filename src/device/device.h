@@ -1,12 +1,175 @@
 /* SPDX-License-Identifier: MIT */
-/* device.h: the face of the room for what a device on a bus is to everything around it: its names and numbers, its state as
- * JSON and in words. */
+/* device.h: the face of the room for what a device on a bus is to everything around it. One const struct device_kind for each
+ * kind of device; the rooms above know units through it alone.
+ *
+ * To add a kind: a folder with its core, one file here that fills in a struct device_kind (rkm04_device.c is the example), and
+ * one row in device_kinds[] of device_kinds.c. A test program adds kinds without touching that table: it defines
+ *
+ *     const struct device_kind *const device_kinds_added[] = {&fake_device, NULL};
+ *
+ * which the linker finds; a program that does not define it has the kinds of the table alone.
+ *
+ * Time. Everything around a unit counts in us. A unit may count finer: `ticks_per_us` of its ticks make one us. `now`, `advance`,
+ * `next_event` and `next_report` are in us since its power-up; the ticks that a unit tells its port are its own. */
 #ifndef RKM04_ROOM_DEVICE_H
 #define RKM04_ROOM_DEVICE_H
 
+#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "coverage.h"
 #include "serve_names.h"
-#include "state_json.h"
-#include "unit_json.h"
+
+#define DEVICE_NEVER UINT64_MAX   /* no time */
+#define DEVICE_AXES_MAX 16u       /* of a unit; axis 1..DEVICE_AXES_MAX, 0 is the unit */
+#define DEVICE_BITS_MAX 32u       /* inputs, outputs, variables: bit 0 is the first */
+#define DEVICE_SETTINGS_SIZE 64u  /* bytes that a kind has for its own settings */
+#define DEVICE_ERROR_SIZE 256u    /* bytes of a message */
+
+/* A unit of any kind: kind->size bytes of plain memory. Copying them is a snapshot; what is copied back, or elsewhere, needs
+ * kind->attach() before anything else. */
+struct device_unit;
+
+/* Settings of a unit. All zero but `node` is the default of every kind. */
+struct device_config {
+    uint8_t node;                /* its address, 1..kind->addresses */
+    union {
+        uint8_t byte[DEVICE_SETTINGS_SIZE];
+        uint64_t whole;
+        const void *pointer;
+    } own;                       /* the kind's; what it points to must stay while the config or a unit with it is used */
+};
+
+/* What happens in a unit, beside steps, direction and outputs. */
+enum device_event {
+    DEVICE_EVENT_MOTION,   /* value 1: a motion begins, 0: it has ended */
+    DEVICE_EVENT_COMMAND,  /* value: place from 1 of the command being executed; 0: none */
+    DEVICE_EVENT_LED,      /* value: kind->led_name() */
+    DEVICE_EVENT_VARIABLE, /* axis 0; value: all variables, the first in bit 0 */
+    DEVICE_EVENT_FAULT,    /* value: kind->fault_name(); 0: none */
+    DEVICE_EVENT_POSITION  /* value: counter, as two's complement, that no step led to */
+};
+
+/* What a unit tells and asks; called from within begin, receive, send and advance. `axis` from 1, `tick` of the unit. What
+ * concerns one axis comes in the order of time. Any may be NULL. None may call back into the unit. */
+struct device_port {
+    /* `count` >= 1 steps of an axis at tick[0] to tick[count - 1]; position: of the counter after the first, each further one
+     * counts it up (forward) or down. A device that drives coils tells a step for each row of its table; the levels are
+     * outputs. */
+    void (*steps)(void *context, unsigned axis, const uint64_t *tick, size_t count, int32_t position, bool forward);
+    void (*direction)(void *context, uint64_t tick, unsigned axis, bool forward);
+    void (*outputs)(void *context, uint64_t tick, uint32_t mask);
+    void (*event)(void *context, uint64_t tick, unsigned axis, enum device_event what, uint32_t value);
+    /* Flash, blocks 0..kind->flash_blocks-1; erased bytes read FF. Return 0, or another value if it failed. */
+    int (*flash_read)(void *context, unsigned block, unsigned offset, void *data, unsigned length);
+    int (*flash_erase)(void *context, unsigned block);
+    int (*flash_program)(void *context, unsigned block, unsigned offset, const void *data, unsigned length);
+};
+
+/* What can be seen of an axis. */
+struct device_axis {
+    int32_t position;  /* counter */
+    uint32_t steps;    /* done in the present motion */
+    uint32_t speed;    /* steps/s, rounded down; 0: it does not move */
+    uint16_t index;    /* place from 1 of the command being executed; 0: none */
+    uint16_t commands; /* in memory */
+    uint8_t state;     /* kind->state_name() */
+    uint8_t fault;     /* kind->fault_name(); 0: none */
+    uint8_t led;       /* kind->led_name(); 0: off */
+    bool lit;          /* is the LED bright now? */
+    bool idle;         /* it has nothing more to do */
+    bool moving;
+    bool stopping;     /* on a stop ramp */
+    bool forward;      /* direction output */
+};
+
+/* Counters since power-up, mod 2^32. */
+struct device_counters {
+    uint32_t frames;  /* that ended on the wires as this unit hears them: its requests, those of others, and dropped ones */
+    uint32_t answers; /* that have gone out whole */
+};
+
+/* A kind of device. Every function is set unless it says otherwise. */
+struct device_kind {
+    const char *name;        /* "rkm04": of options, scenarios, recordings */
+    const char *description; /* for people, one line */
+
+    size_t size;             /* bytes of a unit */
+    unsigned axes, inputs, outputs, variables; /* 0..DEVICE_AXES_MAX, 0..DEVICE_BITS_MAX */
+    unsigned first_variable; /* number of the first variable: 80 is VAR 80 */
+    unsigned addresses;      /* 1..addresses are addresses; at most 247 */
+    unsigned ticks_per_us;
+    unsigned slot;           /* us of the period in which it looks at inputs and executes commands */
+    unsigned pulse;          /* us of a step pulse */
+    unsigned program;        /* commands that an axis can have in memory; 0: it has no program */
+    unsigned flash_blocks, flash_block_size; /* 0: no flash */
+    unsigned request_max, answer_max; /* bytes of the longest message, without framing */
+
+    /* Power up at us 0 with the node and settings of `config`, which are copied; `port` must stay. */
+    void (*begin)(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context);
+    /* Give a unit that has been copied, or whose port has changed, its surroundings. `config`: the settings that it had at begin,
+     * with pointers of its own. */
+    void (*attach)(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context);
+
+    uint64_t (*now)(const struct device_unit *unit);              /* the first us that is not yet done */
+    void (*advance)(struct device_unit *unit, uint64_t us);       /* do the us now .. now + us - 1 */
+    uint64_t (*next_event)(const struct device_unit *unit);       /* >= now: when something is due of itself; DEVICE_NEVER */
+    uint64_t (*next_report)(const struct device_unit *unit);      /* the same, without steps while the port has no `steps` */
+
+    /* The bus. `receive` NULL: the device has none, and none of these is called. */
+    size_t (*receive)(struct device_unit *unit, const uint8_t *bytes, size_t length); /* returns how many it took */
+    size_t (*send)(struct device_unit *unit, uint8_t *bytes, size_t room); /* bytes of its answer; 0: nothing now */
+    bool (*has_answer)(const struct device_unit *unit);           /* is there an answer, now or later? */
+    uint64_t (*answer_wait)(const struct device_unit *unit);      /* us until it can begin with that answer; 0: now */
+    struct device_counters (*counters)(const struct device_unit *unit);
+    /* Where the check value of the answer that is about to go out can be made wrong so that the frame stays as long: the byte *at
+     * of the answer, bits *mask. NULL: its frames have none. Returns false: these have none. */
+    bool (*find_check_value)(const struct device_unit *unit, uint32_t *at, uint8_t *mask);
+    /* A message without framing at the present us, as if from the host. Returns the length of the answer, which may be more than
+     * `room`; 0: none. NULL: not possible. */
+    size_t (*exchange)(struct device_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room);
+
+    void (*set_inputs)(struct device_unit *unit, uint32_t mask);
+    uint32_t (*inputs_of)(const struct device_unit *unit);
+    uint32_t (*outputs_of)(const struct device_unit *unit);
+    uint32_t (*variables_of)(const struct device_unit *unit);
+    unsigned (*node)(const struct device_unit *unit);             /* the address, as read at power-up */
+    void (*axis)(const struct device_unit *unit, unsigned axis, struct device_axis *state); /* 1..axes */
+
+    /* A text from `set` or from the key `program:`, for an axis (0: all), at the present us. Returns 0; or a flag from 1, and a
+     * message. NULL: it takes no texts. */
+    int (*set_text)(struct device_unit *unit, unsigned axis, const char *text, size_t length, char error[DEVICE_ERROR_SIZE]);
+
+    /* Is there a fault, or does the axis wait for what only new commands can bring? Then the text says what. */
+    bool (*is_stuck)(const struct device_unit *unit, unsigned axis, char text[DEVICE_ERROR_SIZE]);
+
+    /* Names for people, conditions and traces; NULL behind the last one. */
+    const char *(*state_name)(unsigned state);
+    const char *(*fault_name)(unsigned fault);
+    const char *(*led_name)(unsigned led);
+
+    /* JSON (docs/CONTROL.md, `state`), new references, NULL if memory is short. state: {t_us, motors: [{motor, position, state,
+     * index, led, fault}], di, do, var}. describe: that, `true_position` null for each axis, `node`, and what else there is. */
+    json_t *(*state)(const struct device_unit *unit, uint64_t t_us);
+    json_t *(*describe)(const struct device_unit *unit, uint64_t t_us);
+
+    /* Settings by name: "framing", "readings", "version_text" of an RKM04. put: into a recording's head. read: from a head or a
+     * scenario, a name that is not there is left alone. Returns false and a message. unlike: what differs but for the node, in
+     * words; NULL: nothing. */
+    void (*put_settings)(const struct device_config *config, json_t *object);
+    bool (*read_setting)(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
+    const char *(*unlike)(const struct device_config *a, const struct device_config *b);
+
+    bool has_coverage;       /* coverage.h knows its messages and commands */
+};
+
+/* The kind of this name, or the one at `at` from 0 on: NULL if there is none. */
+const struct device_kind *device_kind_named(const char *name);
+const struct device_kind *device_kind_at(unsigned at);
+
+/* The kind that is meant where none is named: the RKM04. */
+extern const struct device_kind rkm04_device;
 
 #endif

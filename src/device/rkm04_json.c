@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "unit_json.h"
-
+/* The state of an RKM04 as JSON. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "state_json.h"
+#include "rkm04_device.h"
 
 #define TABLE_TEXT_MAX 1024u /* message 6: 34 points of two numbers of ten and five digits, and more */
 
@@ -124,7 +123,7 @@ static void put_motor(json_t *object, const struct rkm04_unit *unit, unsigned nu
     rkm04_motor_state(unit, number, &state);
     put(object, "true_position", json_null());
     put(object, "command", command_json(motor, state.index));
-    put(object, "waits_for", waits_for_json(unit, number));
+    put(object, "waits_for", rkm04_waits_json(unit, number));
     put(object, "lit", json_boolean(state.lit));
     put(object, "speed", json_integer(state.speed));
     put(object, "steps", json_integer(state.steps));
@@ -152,9 +151,34 @@ static json_t *counters_json(const struct rkm04_unit *unit)
                      (json_int_t)counters.dropped);
 }
 
-json_t *unit_json(const struct rkm04_unit *unit, uint64_t tick)
+static json_t *motor_state_json(const struct rkm04_unit *unit, unsigned motor)
 {
-    json_t *state = state_json(unit, tick), *motors = json_object_get(state, "motors");
+    struct rkm04_motor_state state;
+    rkm04_motor_state(unit, motor, &state);
+    const char *fault = state.fault == RKM04_FAULT_NONE ? NULL : rkm04_fault_name(state.fault);
+    return json_pack("{s:i, s:I, s:s, s:i, s:s, s:s?}", "motor", (int)motor, "position", (json_int_t)state.position, "state",
+                     rkm04_state_name(state.state), "index", (int)state.index, "led", rkm04_led_name(state.led), "fault",
+                     fault);
+}
+
+json_t *rkm04_json_state(const struct rkm04_unit *unit, uint64_t tick)
+{
+    json_t *motors = json_array();
+    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+        if (motors != NULL && json_array_append_new(motors, motor_state_json(unit, motor)) != 0) {
+            json_decref(motors);
+            motors = NULL;
+        }
+    }
+    if (motors == NULL)
+        return NULL;
+    return json_pack("{s:I, s:o, s:i, s:i, s:i}", "t_us", (json_int_t)tick, "motors", motors, "di",
+                     (int)rkm04_inputs(unit), "do", (int)rkm04_outputs(unit), "var", (int)rkm04_variables(unit));
+}
+
+json_t *rkm04_json_describe(const struct rkm04_unit *unit, uint64_t tick)
+{
+    json_t *state = rkm04_json_state(unit, tick), *motors = json_object_get(state, "motors");
     for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
         put_motor(json_array_get(motors, motor - 1), unit, motor);
     put(state, "node", json_integer(unit->config.node));

@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "unit_json.h"
+#include "rkm04_device.h"
 
 #define TICKS_PER_MS 1000u
 
@@ -70,21 +70,21 @@ static json_t *held(const struct rkm04_unit *unit, const struct rkm04_motor *mot
 static json_t *waiting(const struct rkm04_motor *motor)
 {
     char bit[16];
-    unsigned label = unit_awaited_label(motor);
+    unsigned label = rkm04_awaited_label(motor);
     if (label != 0)
         return json_sprintf("label %u to arrive", label);
     name_bit(bit, sizeof bit, (unsigned)motor->command.argument);
     return json_sprintf("%s to be %d", bit, motor->command.op == 'O');
 }
 
-unsigned unit_awaited_label(const struct rkm04_motor *motor)
+unsigned rkm04_awaited_label(const struct rkm04_motor *motor)
 {
     if (motor->state != RKM04_WAIT || motor->command.op == 'O' || motor->command.op == 'Z')
         return 0;
     return motor->command.op == 'I' ? motor->command.argument >> 16 : motor->command.argument;
 }
 
-json_t *waits_for_json(const struct rkm04_unit *unit, unsigned number)
+json_t *rkm04_waits_json(const struct rkm04_unit *unit, unsigned number)
 {
     const struct rkm04_motor *motor = &unit->motor[number - 1];
     switch ((enum rkm04_state)motor->state) {

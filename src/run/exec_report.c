@@ -97,30 +97,13 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
 
 bool report_faults(const struct rkm04_unit *unit)
 {
-    static const char *const reasons[] = {
-        [RKM04_FAULT_NO_LABEL] = "a jump or call to a label that is not in memory",
-        [RKM04_FAULT_LOOP_LEVELS] = "more than 8 loops inside one another",
-        [RKM04_FAULT_NO_LOOP] = "E without a loop",
-        [RKM04_FAULT_CALL_LEVELS] = "more than 6 calls inside one another",
-        [RKM04_FAULT_NO_CALL] = ". without a call",
-        [RKM04_FAULT_OVERWRITTEN] = "the start of the loop or the place to return to has been overwritten",
-        [RKM04_FAULT_MOTION] = "the compound motion cannot be computed: more than ten segments, two directions, or a segment "
-                               "without steps",
-    };
+    char text[DEVICE_ERROR_SIZE];
     bool any = false;
-    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
-        struct rkm04_motor_state state;
-        rkm04_motor_state(unit, motor, &state);
-        unsigned label = unit_awaited_label(&unit->motor[motor - 1]);
-        if (label != 0)
-            fprintf(stderr, "rkm04 exec: motor %u: command %u waits for label %u, which is not in memory\n", motor,
-                    (unsigned)state.index, label);
-        any = any || label != 0;
-        if (state.fault == RKM04_FAULT_NONE)
+    for (unsigned motor = 1; motor <= rkm04_device.axes; motor++) {
+        if (!rkm04_device.is_stuck((const struct device_unit *)unit, motor, text))
             continue;
         any = true;
-        fprintf(stderr, "rkm04 exec: motor %u: fault at command %u: %s\n", motor, (unsigned)state.index,
-                reasons[state.fault]);
+        fprintf(stderr, "rkm04 exec: motor %u: %s\n", motor, text);
     }
     return any;
 }
@@ -129,7 +112,7 @@ bool report_faults(const struct rkm04_unit *unit)
 
 static bool print_json(FILE *out, json_t *answers, struct exec_run *run, enum exec_end end)
 {
-    json_t *state = state_json(exec_run_unit(run), run->reached);
+    json_t *state = rkm04_device.state((const struct device_unit *)exec_run_unit(run), run->reached);
     bool well = state != NULL && json_object_set_new(state, "end", json_string(end_name(end))) == 0 &&
                 json_object_set(state, "answers", answers) == 0 && json_dumpf(state, out, JSON_COMPACT) == 0;
     json_decref(state);

@@ -19,7 +19,7 @@ void report_begin(struct report *report, bool json);
 /* Take note of the answer to a message of the stimulus; `context` is a struct report. */
 void report_answer(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);
 
-/* Print the final state on `out`: the object of state_json.h with `end` ("done", "until", "interrupted", "no_trace") and
+/* Print the final state on `out`: the object of device_kind.state with `end` ("done", "until", "interrupted", "no_trace") and
  * `answers`, a list of {t_us, message, answer}; or a table. Frees the report.
  * Returns false if it could not be written; that has been reported. */
 bool report_end(struct report *report, struct exec_run *run, enum exec_end end, FILE *out);

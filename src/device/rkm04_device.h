@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+/* rkm04_device.h: the RKM04 as a kind of device, what is only true of it. For the room, and for tests that look into an RKM04. */
+#ifndef RKM04_DEVICE_RKM04_DEVICE_H
+#define RKM04_DEVICE_RKM04_DEVICE_H
+
+#include <jansson.h>
+
+#include <rkm04/unit.h>
+
+#include "device.h"
+
+/* A unit: what struct device_unit is for this kind. */
+struct rkm04_device {
+    struct rkm04_unit unit;
+    struct rkm04_port port;          /* calls that pass on to `outer` */
+    const struct device_port *outer;
+    void *context;                   /* of `outer` */
+};
+
+/* The RKM04 in a unit of this kind. */
+struct rkm04_unit *rkm04_of(struct device_unit *unit);
+
+/* Settings of an RKM04 as they lie in a config; `node` is that of the config. */
+struct rkm04_config rkm04_settings(const struct device_config *config);
+void rkm04_settings_put(struct device_config *config, const struct rkm04_config *settings);
+
+/* ---- rkm04_json.c, rkm04_waits.c: as struct device_kind's of the same names ------------------------------------------ */
+
+json_t *rkm04_json_state(const struct rkm04_unit *unit, uint64_t tick);
+json_t *rkm04_json_describe(const struct rkm04_unit *unit, uint64_t tick);
+
+/* What motor 1..4 of `unit` waits for, in words. Returns a new reference: a string, or JSON null if it waits for nothing; NULL:
+ * memory is short. */
+json_t *rkm04_waits_json(const struct rkm04_unit *unit, unsigned motor);
+
+/* The label 1..80 that a jump or call of a motor waits for (C7); 0: it does not. */
+unsigned rkm04_awaited_label(const struct rkm04_motor *motor);
+
+/* ---- rkm04_settings.c: as struct device_kind's ------------------------------------------------------------------------- */
+
+void rkm04_put_settings(const struct device_config *config, json_t *object);
+bool rkm04_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
+const char *rkm04_settings_unlike(const struct device_config *a, const struct device_config *b);
+
+#endif
