@@ -178,7 +178,7 @@ static bool configure_plant(struct bus *bus)
     char *said = NULL;
     size_t length;
     FILE *errors = text ? open_memstream(&said, &length) : NULL;
-    bool well = !text || (errors && plant_configure(&bus->sim, bus->options->plant, text, strlen(text), errors));
+    bool well = !text || (errors && sim_configure_plants(&bus->sim, bus->options->plant, text, strlen(text), errors));
     if (errors)
         fclose(errors);
     if (said)

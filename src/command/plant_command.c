@@ -42,7 +42,7 @@ json_t *command_plant_get(struct sim *sim, const json_t *params, struct refusal 
 
 /* ---- A new plant ---------------------------------------------------------------------------------------------------- */
 
-/* The first error out of what plant_configure() says. Of a plant given as an object the place says nothing. */
+/* The first error out of what sim_configure_plants() says. Of a plant given as an object the place says nothing. */
 static json_t *refuse_plant(struct refusal *refusal, char *errors, bool object)
 {
     char *end = strchr(errors, '\n'), *text = object ? strstr(errors, "error: ") : NULL;
@@ -56,7 +56,7 @@ static json_t *configure_text(struct sim *sim, const char *text, bool object, st
     char *errors = NULL;
     size_t size;
     FILE *out = open_memstream(&errors, &size);
-    bool well = out && plant_configure(sim, "plant", text, text ? strlen(text) : 0, out);
+    bool well = out && sim_configure_plants(sim, "plant", text, text ? strlen(text) : 0, out);
     bool told = out && fclose(out) == 0 && size > 0;
     json_t *result = well ? json_pack("{s:I}", "t_us", (json_int_t)sim_now(sim)) : NULL;
     if (!well && told)
@@ -91,7 +91,7 @@ static json_t *place(struct sim *sim, struct sim_unit *unit, unsigned motor, int
     while (plant_take_change(unit->plant, sim_now(sim) + 1u, &change)) {
         /* it counts from now on */
     }
-    sim_look_at_inputs(sim, unit->number);
+    sim_update_inputs(sim, unit->number);
     return report(sim, unit->number, refusal);
 }
 

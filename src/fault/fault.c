@@ -188,7 +188,7 @@ static void apply(struct sim *sim)
     if (disturbed != sim->segment.disturbed)
         segment_disturb(&sim->segment, disturbed);
     for (unsigned number = 1; number <= sim_units(sim); number++)
-        sim_look_at_inputs(sim, number);
+        sim_update_inputs(sim, number);
     if (unplugged == sim->faults.unplugged)
         return;
     sim->faults.unplugged = unplugged;

@@ -10,7 +10,7 @@
 struct plant *plant_new(void)
 {
     struct plant *plant = calloc(1, sizeof *plant);
-    for (unsigned at = 0; plant && at < RKM04_MOTORS; at++) {
+    for (unsigned at = 0; plant && at < PLANT_AXES; at++) {
         plant->motor[at].low = INT64_MIN;
         plant->motor[at].high = INT64_MAX;
         plant->motor[at].stall.last = RKM04_NEVER;
@@ -250,7 +250,7 @@ void plant_step(struct plant *plant, uint64_t tick, unsigned number, bool forwar
 
 bool plant_position(const struct plant *plant, unsigned number, int64_t *position)
 {
-    const struct plant_motor *motor = number >= 1 && number <= RKM04_MOTORS ? &plant->motor[number - 1u] : NULL;
+    const struct plant_motor *motor = number >= 1 && number <= PLANT_AXES ? &plant->motor[number - 1u] : NULL;
     if (!motor || !motor->present)
         return false;
     *position = motor->position;
@@ -274,8 +274,8 @@ static bool do_next(struct plant *plant, uint64_t tick)
 {
     struct plant_switch *contact = next_bounce(plant);
     uint64_t first = contact ? contact->next : RKM04_NEVER;
-    unsigned at = RKM04_MOTORS;
-    for (unsigned i = 0; i < RKM04_MOTORS; i++) {
+    unsigned at = PLANT_AXES;
+    for (unsigned i = 0; i < PLANT_AXES; i++) {
         const struct plant_motor *motor = &plant->motor[i];
         if (motor->pulses == 0 || motor->pulse[motor->first].tick + 1u >= first)
             continue;
@@ -286,7 +286,7 @@ static bool do_next(struct plant *plant, uint64_t tick)
         plant->now = tick > plant->now ? tick : plant->now;
         return false;
     }
-    if (at < RKM04_MOTORS)
+    if (at < PLANT_AXES)
         move(plant, at);
     else
         bounce(contact);
@@ -344,7 +344,7 @@ struct plant *plant_copy(const struct plant *plant, uint64_t shift)
     if (!copy)
         return NULL;
     *copy = *plant;
-    for (unsigned at = 0; at < RKM04_MOTORS; at++)
+    for (unsigned at = 0; at < PLANT_AXES; at++)
         shift_motor(&copy->motor[at], shift);
     for (unsigned i = 0; i < copy->switches; i++) {
         shift_time(&copy->contact[i].next, shift);
@@ -360,7 +360,7 @@ struct plant *plant_copy(const struct plant *plant, uint64_t shift)
 
 static struct plant_motor *motor_of(struct plant *plant, unsigned number)
 {
-    struct plant_motor *motor = plant && number >= 1 && number <= RKM04_MOTORS ? &plant->motor[number - 1u] : NULL;
+    struct plant_motor *motor = plant && number >= 1 && number <= PLANT_AXES ? &plant->motor[number - 1u] : NULL;
     return motor && motor->present ? motor : NULL;
 }
 

@@ -15,10 +15,11 @@
 
 #include <rkm04/limits.h>
 
-struct sim;
-struct sim_unit;
+struct config_node; /* text/config_tree.h */
 struct plant;
 
+#define PLANT_AXES 4u
+#define PLANT_INPUTS 8u
 #define PLANT_POSITION_MAX INT64_C(1000000000000) /* steps, either way, of everything configured */
 
 enum plant_news {
@@ -46,12 +47,17 @@ struct plant_change {
     bool level;
 };
 
-/* Configure the plants of all units from a YAML text: replaces those there are, true positions begin at the counters plus the
- * configured offset. NULL: no plant. Errors are written to `errors` as NAME:LINE:COLUMN: error: expected …, and nothing is
- * changed. Returns false then. Inputs follow at once. */
-bool plant_configure(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors);
+/* What a plant has to know of the device whose motors it moves. */
+struct plant_device {
+    unsigned axes, inputs;        /* at most PLANT_AXES, PLANT_INPUTS */
+    int64_t position[PLANT_AXES]; /* the counters, in steps */
+};
 
-/* Every unit's plant is gone. */
+/* Read the plant of one unit from a map, to begin at tick `now`: true positions are the counters plus the configured offsets.
+ * `seed` chooses how switches bounce. Returns NULL: errors have been reported. */
+struct plant *plant_read(const struct config_node *node, const struct plant_device *device, uint64_t now, uint64_t seed);
+
+/* NULL: nothing. */
 void plant_free(struct plant *plant);
 
 /* Inputs it drives, mask; and their levels now. */

@@ -20,7 +20,7 @@ static json_t *angle_json(const struct plant_motor *motor)
 static json_t *motors_json(const struct plant *plant)
 {
     json_t *list = json_array();
-    for (unsigned at = 0; at < RKM04_MOTORS; at++) {
+    for (unsigned at = 0; at < PLANT_AXES; at++) {
         const struct plant_motor *motor = &plant->motor[at];
         if (!motor->present)
             continue;

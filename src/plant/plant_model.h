@@ -78,7 +78,7 @@ struct plant_switch {
 };
 
 struct plant {
-    struct plant_motor motor[RKM04_MOTORS];
+    struct plant_motor motor[PLANT_AXES];
     unsigned switches;
     struct plant_switch contact[PLANT_SWITCHES];
     uint8_t mask, levels; /* as told */
@@ -86,10 +86,6 @@ struct plant {
     unsigned reports;
     struct plant_report report[PLANT_REPORTS];
 };
-
-/* Read the plant of one unit from a map. `seed` chooses how switches bounce. Returns NULL: errors have been reported. */
-struct config_node;
-struct plant *plant_read(const struct config_node *node, struct sim_unit *unit, uint64_t seed);
 
 /* Set a switch to where its motor stands, without bouncing. */
 void plant_switch_begin(const struct plant *plant, struct plant_switch *contact);

@@ -5,7 +5,6 @@
 
 #include "text/text.h"
 #include "plant_model.h"
-#include "sim/sim.h"
 
 #define SPEED_MAX 1000000
 #define ACCELERATION_MAX 1000000000
@@ -123,18 +122,16 @@ static bool read_stall(const struct config_node *motor, struct plant_stall *to)
 }
 
 /* Where it stands: the counter and the offset. */
-static bool read_offset(const struct config_node *node, unsigned number, struct sim_unit *unit, struct plant_motor *to)
+static bool read_offset(const struct config_node *node, int64_t counter, struct plant_motor *to)
 {
-    struct rkm04_motor_state state;
     int64_t offset = 0;
-    if (!read_position(node, "offset", "the offset", &offset) ||
-        !rkm04_motor_state(sim_core(unit->sim, unit->number), number, &state))
+    if (!read_position(node, "offset", "the offset", &offset))
         return false;
-    to->position = state.position + offset;
+    to->position = counter + offset;
     if (to->position >= to->low && to->position <= to->high)
         return true;
     return config_error(node, "expected a motor between its end stops, found it at %lld (counter %lld, offset %lld)",
-                        (long long)to->position, (long long)state.position, (long long)offset);
+                        (long long)to->position, (long long)counter, (long long)offset);
 }
 
 /* `1:` and nothing behind it, or null. */
@@ -144,14 +141,13 @@ static bool is_nothing(const struct config_node *node)
     return text && (*text == '\0' || strcmp(text, "~") == 0 || strcmp(text, "null") == 0);
 }
 
-static bool read_motor(const struct config_node *node, unsigned number, struct sim_unit *unit, struct plant *plant)
+static bool read_motor(const struct config_node *node, int64_t counter, struct plant_motor *to)
 {
     static const char *const names[] = {"offset", "stops", "turn", "stall", "jam", "missing_lead", NULL};
-    struct plant_motor *to = &plant->motor[number - 1u];
     const struct config_node *turn = config_get(node, "turn");
     to->present = true;
     if (is_nothing(node))
-        return read_offset(node, number, unit, to);
+        return read_offset(node, counter, to);
     if (!is_map(node, "a motor, as in {offset: 0}") || !config_keys(node, names))
         return false;
     if (turn && !config_integer(turn, "the steps of a turn", 2, PLANT_POSITION_MAX, &to->turn))
@@ -159,19 +155,24 @@ static bool read_motor(const struct config_node *node, unsigned number, struct s
     if (turn && config_get(node, "stops"))
         return config_error(turn, "expected turn or stops: a turntable has no end");
     return read_stops(node, to) && read_jams(node, to) && read_stall(node, &to->stall) &&
-           read_flag(node, "missing_lead", "whether a lead is missing", &to->no_lead) && read_offset(node, number, unit, to);
+           read_flag(node, "missing_lead", "whether a lead is missing", &to->no_lead) && read_offset(node, counter, to);
 }
 
-static bool read_motors(const struct config_node *node, struct sim_unit *unit, struct plant *plant)
+static bool read_motors(const struct config_node *node, const struct plant_device *device, struct plant *plant)
 {
-    static const char *const numbers[] = {"1", "2", "3", "4", NULL};
+    static const char *const names[PLANT_AXES] = {"1", "2", "3", "4"};
+    const char *numbers[PLANT_AXES + 1u] = {NULL};
+    for (unsigned at = 0; at < device->axes; at++)
+        numbers[at] = names[at];
     if (!node)
         return true;
     if (!is_map(node, "motors by number, as in {1: {offset: 0}}") || !config_keys(node, numbers))
         return false;
-    for (size_t i = 0; i < config_count(node); i++)
-        if (!read_motor(config_at(node, i), (unsigned)(config_key(node, i)[0] - '0'), unit, plant))
+    for (size_t i = 0; i < config_count(node); i++) {
+        unsigned at = (unsigned)(config_key(node, i)[0] - '1');
+        if (!read_motor(config_at(node, i), device->position[at], &plant->motor[at]))
             return false;
+    }
     return true;
 }
 
@@ -216,7 +217,8 @@ static bool read_hysteresis(const struct config_node *node, const struct plant_m
            config_error(node, "expected a switch that lets go again: with its hysteresis it is actuated all around");
 }
 
-static bool read_switch(const struct config_node *node, struct plant *plant, struct plant_switch *to)
+static bool read_switch(const struct config_node *node, const struct plant_device *device, const struct plant *plant,
+                        struct plant_switch *to)
 {
     static const char *const names[] = {"input",      "motor",  "at_least",        "at_most", "between",
                                         "hysteresis", "bounce", "normally_closed", NULL};
@@ -226,9 +228,10 @@ static bool read_switch(const struct config_node *node, struct plant *plant, str
     int64_t in, number;
     if (!input || !motor)
         return config_error(node, "expected input and motor, as in {input: 01, motor: 1, at_most: 0}");
-    if (!config_integer(input, "an input", 1, 8, &in) || !config_integer(motor, "a motor", 1, RKM04_MOTORS, &number))
+    if (!config_integer(input, "an input", 1, device->inputs, &in) ||
+        !config_integer(motor, "a motor", 1, device->axes, &number))
         return false;
-    struct plant_motor *moves = &plant->motor[number - 1];
+    const struct plant_motor *moves = &plant->motor[number - 1];
     to->input = (uint8_t)in;
     to->motor = (uint8_t)number;
     if (!read_zone(node, moves, to) || !read_hysteresis(node, moves, to) ||
@@ -239,15 +242,15 @@ static bool read_switch(const struct config_node *node, struct plant *plant, str
 }
 
 /* Switches may name a motor that nothing else is said about. */
-static bool add_motor(const struct config_node *node, struct sim_unit *unit, struct plant *plant, unsigned number)
+static bool add_motor(const struct config_node *node, int64_t counter, struct plant_motor *motor)
 {
-    struct plant_motor *motor = &plant->motor[number - 1u];
-    bool well = motor->present || read_offset(node, number, unit, motor);
+    bool is_good = motor->present || read_offset(node, counter, motor);
     motor->present = true;
-    return well;
+    return is_good;
 }
 
-static bool read_switches(const struct config_node *node, struct sim_unit *unit, struct plant *plant, uint64_t seed)
+static bool read_switches(const struct config_node *node, const struct plant_device *device, struct plant *plant,
+                          uint64_t seed)
 {
     if (!node)
         return true;
@@ -258,19 +261,19 @@ static bool read_switches(const struct config_node *node, struct sim_unit *unit,
         if (plant->switches == PLANT_SWITCHES)
             return config_error(item, "expected at most %u switches", PLANT_SWITCHES);
         struct plant_switch *to = &plant->contact[plant->switches];
-        if (!read_switch(item, plant, to))
+        if (!read_switch(item, device, plant, to))
             return false;
         to->random = ((seed ^ plant->switches) + 1u) * UINT64_C(0x9E3779B97F4A7C15) | 1u; /* not 0 */
         plant->switches++;
         plant->mask |= (uint8_t)(1u << (to->input - 1u));
-        if (!add_motor(item, unit, plant, to->motor))
+        if (!add_motor(item, device->position[to->motor - 1u], &plant->motor[to->motor - 1u]))
             return false;
         plant_switch_begin(plant, to);
     }
     return true;
 }
 
-struct plant *plant_read(const struct config_node *node, struct sim_unit *unit, uint64_t seed)
+struct plant *plant_read(const struct config_node *node, const struct plant_device *device, uint64_t now, uint64_t seed)
 {
     static const char *const names[] = {"motors", "switches", NULL};
     struct plant *plant = NULL;
@@ -281,9 +284,9 @@ struct plant *plant_read(const struct config_node *node, struct sim_unit *unit, 
         config_error(node, "memory is short");
         return NULL;
     }
-    plant->now = sim_now(unit->sim);
-    if (!read_motors(config_get(node, "motors"), unit, plant) ||
-        !read_switches(config_get(node, "switches"), unit, plant, seed)) {
+    plant->now = now;
+    if (!read_motors(config_get(node, "motors"), device, plant) ||
+        !read_switches(config_get(node, "switches"), device, plant, seed)) {
         plant_free(plant);
         return NULL;
     }

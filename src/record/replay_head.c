@@ -150,7 +150,7 @@ static bool set_plant(struct replay *replay, const char *plant)
     char *messages = NULL;
     size_t size;
     FILE *errors = open_memstream(&messages, &size);
-    bool well = errors && plant_configure(replay->sim, "plant", plant, strlen(plant), errors);
+    bool well = errors && sim_configure_plants(replay->sim, "plant", plant, strlen(plant), errors);
     if (errors)
         fclose(errors);
     if (!well) {

@@ -307,7 +307,7 @@ static bool put_later(struct sim *sim, const struct snapshot *snapshot, uint64_t
     free(sim->plant_text);
     sim->plant_text = text;
     for (unsigned number = 1; number <= sim_units(sim); number++) {
-        sim_look_at_inputs(sim, number);
+        sim_update_inputs(sim, number);
         tell_changes(sim, number, &before[number - 1u]);
     }
     if (sim->config.adapter && unplugged != sim->faults.unplugged)

@@ -213,7 +213,7 @@ bool scenario_power_up(const struct scenario *scenario, struct sim *sim, FILE *e
     if (!sim_begin(sim, &scenario->config))
         return false;
     return scenario->plant == NULL ||
-           plant_configure(sim, scenario->plant_name != NULL ? scenario->plant_name : "plant", scenario->plant,
+           sim_configure_plants(sim, scenario->plant_name != NULL ? scenario->plant_name : "plant", scenario->plant,
                            scenario->plant_length, errors);
 }
 

@@ -198,7 +198,7 @@ static void set_inputs(struct sim *sim, struct sim_unit *unit, uint64_t tick)
     watch_add(&sim->watch, WATCH_DELIVERED, event);
 }
 
-void sim_look_at_inputs(struct sim *sim, unsigned number)
+void sim_update_inputs(struct sim *sim, unsigned number)
 {
     set_inputs(sim, &sim->unit[number - 1u], sim_now(sim));
     look_who_watches(sim); /* a plant may have come or gone */
@@ -207,7 +207,7 @@ void sim_look_at_inputs(struct sim *sim, unsigned number)
 void sim_set_di(struct sim *sim, unsigned number, uint8_t mask)
 {
     sim->unit[number - 1u].di = mask;
-    sim_look_at_inputs(sim, number);
+    sim_update_inputs(sim, number);
 }
 
 static void tell_plant(struct sim *sim, const struct sim_unit *unit)
@@ -418,7 +418,7 @@ void sim_power(struct sim *sim, unsigned number, bool on)
     if (!on)
         return;
     tell_power(sim, number, true);
-    sim_look_at_inputs(sim, number);
+    sim_update_inputs(sim, number);
 }
 
 /* ---- Watching ------------------------------------------------------------------------------------------------------- */

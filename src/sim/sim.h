@@ -62,7 +62,7 @@ struct sim_unit {
     struct rkm04_port port;     /* `steps` is set while somebody wants pulses */
     uint8_t di;                 /* inputs set by hand: DI 01 in bit 0 */
     uint8_t forward;            /* direction outputs: motor 1 in bit 0 */
-    struct plant *plant;        /* NULL: none. Who changes it calls sim_look_at_inputs() */
+    struct plant *plant;        /* NULL: none. Who changes it calls sim_update_inputs() */
     uint8_t *memory;            /* flash without a file, RKM04_FLASH_BLOCKS blocks, inverted; NULL: not used yet */
 };
 
@@ -141,9 +141,14 @@ void sim_power(struct sim *sim, unsigned number, bool on);
 /* Inputs set by hand, mask of DI. What the plant drives or a fault holds comes before it. */
 void sim_set_di(struct sim *sim, unsigned number, uint8_t mask);
 
-/* Look anew what the inputs of a unit are: set by hand, driven by the plant, held by a fault. To be called by whoever changed
+/* Set the inputs of a unit anew from what is set by hand, driven by the plant, held by a fault. To be called by whoever changed
  * one of these. */
-void sim_look_at_inputs(struct sim *sim, unsigned number);
+void sim_update_inputs(struct sim *sim, unsigned number);
+
+/* Configure the plants of all units from a YAML text: replaces those there are, true positions begin at the counters plus the
+ * configured offset. NULL: no plant. Errors are written to `errors` as NAME:LINE:COLUMN: error: expected …, and nothing is
+ * changed. Returns false then. Inputs follow at once. */
+bool sim_configure_plants(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors);
 
 /* Flash of a unit as it is, without faults on demand. As in struct rkm04_port. */
 int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);

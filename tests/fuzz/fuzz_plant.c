@@ -38,13 +38,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memset(&sim, 0, sizeof sim);
     const char *nodes = size > 0 && data[0] == 'u' ? "3,5,5" : "3";
     FUZZ_CHECK(node_list_read(&config.nodes, nodes) && sim_begin(&sim, &config), "no memory");
-    bool well = plant_configure(&sim, "plant", (const char *)data, size, errors);
+    bool well = sim_configure_plants(&sim, "plant", (const char *)data, size, errors);
     fflush(errors);
     FUZZ_CHECK(well == (length == 0), "%d: %s", well, said);
     if (well) {
         run_programs();
         check_state();
-        well = plant_configure(&sim, "plant", (const char *)data, size, errors); /* unless a motor has left its end stops */
+        well = sim_configure_plants(&sim, "plant", (const char *)data, size, errors); /* unless a motor has left its end stops */
         fflush(errors);
         FUZZ_CHECK(well == (length == 0), "%d: %s", well, said);
         run_programs();

@@ -26,7 +26,7 @@ bool plant_rig_configure(struct plant_rig *rig, const char *plant)
     char *said = NULL;
     size_t length;
     FILE *errors = open_memstream(&said, &length);
-    bool well = plant_configure(&rig->sim, "plant", plant, plant ? strlen(plant) : 0, errors);
+    bool well = sim_configure_plants(&rig->sim, "plant", plant, plant ? strlen(plant) : 0, errors);
     fclose(errors);
     ck_assert_uint_lt(length, sizeof rig->errors);
     strcpy(rig->errors, said);

@@ -12,7 +12,7 @@
 struct plant_rig {
     struct sim sim;
     struct watcher watcher;
-    char errors[2000];         /* what plant_configure() said */
+    char errors[2000];         /* what sim_configure_plants() said */
     unsigned inputs, news;
     struct {
         uint64_t tick;

@@ -289,7 +289,7 @@ void session_begin(struct session *session, const struct session_kind *kind)
     *session = (struct session){.dice = 88172645463325252u};
     ck_assert(node_list_read(&config.nodes, kind->nodes));
     ck_assert(sim_begin(&session->sim, &config));
-    ck_assert(!kind->plant || plant_configure(&session->sim, "plant", kind->plant, strlen(kind->plant), stderr));
+    ck_assert(!kind->plant || sim_configure_plants(&session->sim, "plant", kind->plant, strlen(kind->plant), stderr));
     session_forget(session);
     session->watcher = (struct watcher){.kinds = WATCH_ALL, .see = see, .context = session};
     sim_watch(&session->sim, &session->watcher);

@@ -337,7 +337,7 @@ START_TEST(the_flash_and_the_plant_at_the_beginning_are_part_of_a_record)
     sim_power(&session.sim, 1, true);
     sim_advance(&session.sim, 0);
     static const char plant[] = "switches: [{input: 04, motor: 1, at_least: 3}]";
-    ck_assert(plant_configure(&session.sim, "plant", plant, strlen(plant), stderr));
+    ck_assert(sim_configure_plants(&session.sim, "plant", plant, strlen(plant), stderr));
     struct taken taken;
     begin_record(&taken);
     sim_advance(&session.sim, SECOND);

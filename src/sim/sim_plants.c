@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* plant_configure.c: the plants of a line from one text. */
+/* sim_plants.c: the plants of a bus from one text: one for each unit, hung on the sim. */
+#include "sim.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "text/text.h"
-#include "plant_model.h"
-#include "sim/sim.h"
 
 /* The plants of all units, before they take the place of those there are. */
 struct plants {
@@ -16,6 +16,17 @@ static void free_plants(struct plants *plants)
 {
     for (unsigned at = 0; at < SEGMENT_UNITS; at++)
         plant_free(plants->of[at]);
+}
+
+static struct plant *read_plant(struct sim *sim, const struct config_node *node, unsigned number)
+{
+    struct plant_device device = {.axes = RKM04_MOTORS, .inputs = RKM04_INPUTS};
+    for (unsigned axis = 1; axis <= device.axes; axis++) {
+        struct rkm04_motor_state state;
+        if (rkm04_motor_state(sim_core(sim, number), axis, &state))
+            device.position[axis - 1u] = state.position;
+    }
+    return plant_read(node, &device, sim_now(sim), sim->config.seed);
 }
 
 /* {"3": …, "5-2": …} */
@@ -31,7 +42,7 @@ static bool read_units(struct sim *sim, const struct config_node *node, struct p
         return false;
     for (size_t i = 0; i < config_count(node); i++) {
         unsigned at = sim_unit_named(sim, config_key(node, i)) - 1u;
-        plants->of[at] = plant_read(config_at(node, i), &sim->unit[at], sim->config.seed);
+        plants->of[at] = read_plant(sim, config_at(node, i), at + 1u);
         if (!plants->of[at])
             return false;
     }
@@ -51,11 +62,11 @@ static bool read_plants(struct sim *sim, const struct config_node *root, struct 
         return false;
     if (sim_units(sim) != 1)
         return config_error(root, "expected units: there are %u on the line", sim_units(sim));
-    plants->of[0] = plant_read(root, &sim->unit[0], sim->config.seed);
+    plants->of[0] = read_plant(sim, root, 1);
     return plants->of[0] != NULL;
 }
 
-bool plant_configure(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors)
+bool sim_configure_plants(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors)
 {
     struct plants plants = {{NULL}};
     char *copy = NULL;
@@ -78,6 +89,6 @@ bool plant_configure(struct sim *sim, const char *name, const char *text, size_t
         sim->unit[at].plant = plants.of[at];
     }
     for (unsigned number = 1; number <= sim_units(sim); number++)
-        sim_look_at_inputs(sim, number);
+        sim_update_inputs(sim, number);
     return true;
 }
