@@ -104,7 +104,7 @@ struct snapshot *snapshot_take(struct sim *sim)
     copy_segment(&snapshot->segment, &sim->segment);
     snapshot->switches = sim->config.nodes;
     snapshot->faults = sim->faults;
-    bool well = wire_monitor_begin(&snapshot->monitor, sim->monitor.framing);
+    bool well = wire_monitor_begin(&snapshot->monitor, sim->monitor.framing, NULL, (struct wire_monitor_calls){0});
     if (well)
         wire_monitor_copy(&snapshot->monitor, &sim->monitor, 0);
     if (sim->plant_text)

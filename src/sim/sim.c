@@ -244,7 +244,23 @@ static void on_byte(void *context, const struct segment_byte *byte)
     struct sim *sim = context;
     struct watch_event event = {.tick = byte->tick, .value = byte->byte, .kind = WATCH_BYTE, .byte = *byte};
     watch_add(&sim->watch, WATCH_DELIVERED, event);
-    wire_monitor_hear(sim, byte);
+    wire_monitor_add_byte(&sim->monitor, byte);
+}
+
+static bool is_message_wanted(void *context)
+{
+    const struct sim *sim = context;
+    return (sim->watch.kinds & WATCH_BIT(WATCH_MESSAGE)) != 0;
+}
+
+static void on_message(void *context, uint64_t tick, struct wire_message *message)
+{
+    struct sim *sim = context;
+    struct watch_event event = {.tick = tick, .kind = WATCH_MESSAGE, .message = message};
+    if (message)
+        watch_add(&sim->watch, WATCH_DELIVERED, event);
+    else
+        sim->watch.short_of_memory = true;
 }
 
 static void on_out(void *context, const uint8_t *bytes, size_t length)
@@ -375,6 +391,14 @@ void sim_settle(struct sim *sim)
     sim_advance(sim, sim_now(sim));
 }
 
+struct wire_names sim_wire_names(const struct sim *sim)
+{
+    struct wire_names names = {.framing = sim->monitor.framing};
+    for (unsigned at = 0; at < sim->segment.units; at++)
+        names.unit[at] = sim->unit[at].name;
+    return names;
+}
+
 /* ---- Units ---------------------------------------------------------------------------------------------------------- */
 
 unsigned sim_units(const struct sim *sim)
@@ -468,7 +492,8 @@ bool sim_begin(struct sim *sim, const struct sim_config *config)
     sim->config = *config;
     faults_begin(&sim->faults, config->seed);
     segment_begin(&sim->segment, &segment);
-    if (!wire_monitor_begin(&sim->monitor, config->unit.framing ? config->unit.framing : &rkm04_hdlc))
+    struct wire_monitor_calls calls = {.is_wanted = is_message_wanted, .message = on_message, .context = sim};
+    if (!wire_monitor_begin(&sim->monitor, config->unit.framing, &sim->segment, calls))
         return false;
     for (unsigned at = 0; at < config->nodes.count; at++)
         if (!add_unit(sim, at))

@@ -132,6 +132,9 @@ unsigned sim_units(const struct sim *sim);
 /* Find a unit by its name ("3", "3-2"). Returns its number, 0: there is none. */
 unsigned sim_unit_named(const struct sim *sim, const char *name);
 
+/* The names of all units, for messages in words (wire_words.h). They stay the sim's. */
+struct wire_names sim_wire_names(const struct sim *sim);
+
 struct rkm04_unit *sim_core(struct sim *sim, unsigned number);
 bool sim_powered(const struct sim *sim, unsigned number);
 

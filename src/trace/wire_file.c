@@ -122,7 +122,7 @@ int wire_file_failed(const struct wire_file *file)
 
 static void write_rest(struct wire_file *file, bool answer)
 {
-    struct wire_message *message = wire_monitor_rest(file->sim, answer);
+    struct wire_message *message = wire_monitor_rest(&file->sim->monitor, answer);
     if (message)
         write_message(file, message);
     free(message);

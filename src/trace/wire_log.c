@@ -31,11 +31,12 @@ static void log_message(struct wire_text *out, const struct sim *sim, const stru
 {
     put_times(out, message->start, message->end);
     size_t column = out->length;
-    wire_words_direction(out, sim, message);
+    const struct wire_names names = sim_wire_names(sim);
+    wire_words_direction(out, &names, message);
     do
         wire_text_put(out, ' ');
     while (out->length < column + DIRECTION_WIDTH + 2u);
-    wire_words_story(out, sim, message);
+    wire_words_story(out, &names, message);
     wire_text_string(out, " | ");
     wire_text_hex(out, message->raw, message->raw_length);
     if (message->raw_total > message->raw_length) {

@@ -195,9 +195,10 @@ static void pcapng_message(struct wire_text *out, const struct sim *sim, const s
         packet.event = EVENT_FRAMING_ERROR;
     if (message->fate == WIRE_BREAK)
         packet.event = EVENT_BREAK;
-    wire_words_direction(&comment, sim, message);
+    const struct wire_names names = sim_wire_names(sim);
+    wire_words_direction(&comment, &names, message);
     wire_text_string(&comment, ": ");
-    wire_words_story(&comment, sim, message);
+    wire_words_story(&comment, &names, message);
     put_packet(out, &packet, &comment);
 }
 

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/sim.h"
 #include "wire_words.h"
 
 #define MASTER_BIT 1u
@@ -32,11 +31,11 @@ static const char *const fates[] = {
 
 /* ---- Why nobody obeys ----------------------------------------------------------------------------------------------- */
 
-static void ignored_for_address(struct wire_text *out, const struct sim *sim, uint8_t dnode)
+static void ignored_for_address(struct wire_text *out, const struct segment *segment, uint8_t dnode)
 {
     bool there = false;
-    for (unsigned number = 1; number <= sim->segment.units; number++) {
-        const struct segment_unit *unit = &sim->segment.unit[number - 1u];
+    for (unsigned number = 1; number <= segment->units; number++) {
+        const struct segment_unit *unit = &segment->unit[number - 1u];
         if (dnode != 0 && unit->unit.config.node != dnode)
             continue;
         if (unit->powered)
@@ -52,7 +51,7 @@ static void ignored_for_address(struct wire_text *out, const struct sim *sim, ui
 }
 
 /* Why a whole request is obeyed by nobody. Nothing if somebody may obey it. */
-static void words_ignored(struct wire_text *out, const struct sim *sim, const struct wire_ear_monitor *ear)
+static void words_ignored(struct wire_text *out, const struct segment *segment, const struct wire_ear_monitor *ear)
 {
     const struct rkm04_receiver *frame = &ear->receiver;
     if (frame->snode >= 1 && frame->snode <= RKM04_NODE_MAX)
@@ -60,12 +59,12 @@ static void words_ignored(struct wire_text *out, const struct sim *sim, const st
     else if (frame->dnode == 0 && ear->message[0] != 2 && ear->message[0] != 3)
         wire_text_string(out, "a question to all is not answered (P10)");
     else
-        ignored_for_address(out, sim, frame->dnode);
+        ignored_for_address(out, segment, frame->dnode);
     if (out->length == 0 && ear->overruns > 0)
         wire_text_string(out, "bytes lost, a unit had a request waiting (P10)");
 }
 
-/* ---- Telling -------------------------------------------------------------------------------------------------------- */
+/* ---- Messages ------------------------------------------------------------------------------------------------------- */
 
 static const uint8_t *append(struct wire_message *message, size_t *used, const void *bytes, size_t length)
 {
@@ -77,7 +76,8 @@ static const uint8_t *append(struct wire_message *message, size_t *used, const v
 }
 
 /* A message out of what stands in the ear. Returns NULL if memory is short. */
-static struct wire_message *make(const struct sim *sim, const struct wire_ear_monitor *ear, enum wire_fate fate)
+static struct wire_message *make_message(const struct segment *segment, const struct wire_ear_monitor *ear,
+                                         enum wire_fate fate)
 {
     size_t length = fate == WIRE_WHOLE ? ear->receiver.length : 0, used = 0;
     char reason[REASON_MAX];
@@ -107,7 +107,7 @@ static struct wire_message *make(const struct sim *sim, const struct wire_ear_mo
     if (ear->answer)
         wire_words_refusal(&text, message->message, length);
     else
-        words_ignored(&text, sim, ear);
+        words_ignored(&text, segment, ear);
     wire_text_end(&text);
     if (text.length == 0)
         return message;
@@ -119,7 +119,7 @@ static struct wire_message *make(const struct sim *sim, const struct wire_ear_mo
     return message;
 }
 
-static void forget(struct wire_ear_monitor *ear)
+static void empty_ear(struct wire_ear_monitor *ear)
 {
     ear->raw_length = ear->raw_total = 0;
     ear->senders = ear->collided = 0;
@@ -127,30 +127,17 @@ static void forget(struct wire_ear_monitor *ear)
     ear->overruns = 0;
 }
 
-static void tell(struct sim *sim, uint64_t tick, struct wire_message *message)
-{
-    if (!message) {
-        sim->watch.short_of_memory = true;
-        return;
-    }
-    sim_tell(sim, WATCH_DELIVERED, &(struct watch_event){.tick = tick, .kind = WATCH_MESSAGE, .message = message});
-}
-
-static bool wanted(const struct sim *sim)
-{
-    return (sim->watch.kinds & WATCH_BIT(WATCH_MESSAGE)) != 0;
-}
-
 /* What stands in the ear has come to an end. */
-static void report(struct sim *sim, struct wire_ear_monitor *ear, uint64_t tick, enum wire_fate fate)
+static void report(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, uint64_t tick, enum wire_fate fate)
 {
-    if (ear->raw_total > 0 && wanted(sim))
-        tell(sim, tick, make(sim, ear, fate));
-    forget(ear);
+    const struct wire_monitor_calls *calls = &monitor->calls;
+    if (ear->raw_total > 0 && calls->is_wanted && calls->is_wanted(calls->context))
+        calls->message(calls->context, tick, make_message(monitor->segment, ear, fate));
+    empty_ear(ear);
 }
 
 /* A byte that nobody has got. */
-static void report_lost(struct sim *sim, const struct segment_byte *byte, bool answer)
+static void report_lost(const struct wire_monitor *monitor, const struct segment_byte *byte, bool answer)
 {
     uint8_t raw = byte->byte;
     struct wire_ear_monitor ear = {
@@ -163,12 +150,12 @@ static void report_lost(struct sim *sim, const struct segment_byte *byte, bool a
         .collided = (byte->senders & (byte->senders - 1u)) != 0 ? byte->senders : 0,
         .answer = answer,
     };
-    report(sim, &ear, byte->tick, raw == 0 && ear.collided == 0 ? WIRE_BREAK : WIRE_FRAMING_ERROR);
+    report(monitor, &ear, byte->tick, raw == 0 && ear.collided == 0 ? WIRE_BREAK : WIRE_FRAMING_ERROR);
 }
 
 /* ---- Framings ------------------------------------------------------------------------------------------------------- */
 
-static void keep(struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void keep_byte(struct wire_ear_monitor *ear, const struct segment_byte *byte)
 {
     if (ear->raw_total++ == 0)
         ear->start = byte->start;
@@ -197,29 +184,29 @@ static enum verdict receive(const struct rkm04_framing *framing, struct wire_ear
 
 /* A flag ends what goes before it, frames or what is none. What is astray is told of after a silence, too, so that a client that
  * never sends a flag is not passed over. */
-static void hear_hdlc(struct sim *sim, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void receive_hdlc(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, const struct segment_byte *byte)
 {
     bool flag = byte->byte == HDLC_FLAG;
     if (ear->astray != WIRE_WHOLE &&
         (flag || byte->tick - ear->last >= SILENCE || (ear->astray == WIRE_OUTSIDE && ear->raw_total == ASTRAY_MAX))) {
-        report(sim, ear, byte->tick, ear->astray);
+        report(monitor, ear, byte->tick, ear->astray);
         ear->astray = flag ? WIRE_WHOLE : WIRE_OUTSIDE;
     }
     if (flag && ear->raw_length == 1 && ear->raw[0] == HDLC_FLAG)
-        forget(ear); /* an empty frame is nothing; this flag may begin one */
-    keep(ear, byte);
+        empty_ear(ear); /* an empty frame is nothing; this flag may begin one */
+    keep_byte(ear, byte);
     switch (receive(&rkm04_hdlc, ear, byte)) {
     case UNDECIDED:
         break;
     case GOOD:
-        report(sim, ear, byte->tick, WIRE_WHOLE);
+        report(monitor, ear, byte->tick, WIRE_WHOLE);
         break;
     case BAD_CHECK:
-        report(sim, ear, byte->tick, WIRE_WRONG_CHECK);
+        report(monitor, ear, byte->tick, WIRE_WRONG_CHECK);
         break;
     case MALFORMED: {
         bool aborted = ear->raw_length >= 2 && ear->raw[ear->raw_length - 2u] == HDLC_ESCAPE;
-        report(sim, ear, byte->tick, aborted ? WIRE_ABORTED : WIRE_TOO_SHORT);
+        report(monitor, ear, byte->tick, aborted ? WIRE_ABORTED : WIRE_TOO_SHORT);
         break;
     }
     case TOO_LONG:
@@ -229,36 +216,36 @@ static void hear_hdlc(struct sim *sim, struct wire_ear_monitor *ear, const struc
 }
 
 /* Bytes that cannot be an address are gathered until one comes that can. */
-static void hear_plain(struct sim *sim, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void receive_plain(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, const struct segment_byte *byte)
 {
     if (ear->raw_total > 0 && byte->tick - ear->last >= SILENCE) {
-        report(sim, ear, byte->tick, ear->astray != WIRE_WHOLE ? ear->astray : WIRE_SILENT);
+        report(monitor, ear, byte->tick, ear->astray != WIRE_WHOLE ? ear->astray : WIRE_SILENT);
         ear->receiver = (struct rkm04_receiver){.phase = 0};
         ear->astray = WIRE_WHOLE;
     }
     bool first = ear->raw_total == 0 || ear->astray == WIRE_NO_ADDRESS;
     enum verdict verdict = receive(&rkm04_plain, ear, byte);
     if (ear->astray == WIRE_NO_ADDRESS && (verdict != MALFORMED || ear->raw_total == ASTRAY_MAX)) {
-        report(sim, ear, byte->tick, WIRE_NO_ADDRESS);
+        report(monitor, ear, byte->tick, WIRE_NO_ADDRESS);
         ear->astray = WIRE_WHOLE;
     }
-    keep(ear, byte);
+    keep_byte(ear, byte);
     if (verdict == GOOD) {
-        report(sim, ear, byte->tick, WIRE_WHOLE);
+        report(monitor, ear, byte->tick, WIRE_WHOLE);
     } else if (verdict == MALFORMED && first) {
         ear->astray = WIRE_NO_ADDRESS;
     } else if (verdict == MALFORMED) {
-        report(sim, ear, byte->tick, WIRE_NO_LENGTH);
+        report(monitor, ear, byte->tick, WIRE_NO_LENGTH);
     } else if (verdict == TOO_LONG) {
         ear->astray = WIRE_TOO_LONG;
     } else if (ear->astray == WIRE_TOO_LONG && ear->receiver.left == 0) {
-        report(sim, ear, byte->tick, WIRE_TOO_LONG);
+        report(monitor, ear, byte->tick, WIRE_TOO_LONG);
         ear->astray = WIRE_WHOLE;
     }
 }
 
 /* A framing of which nothing is known but its receiver. */
-static void hear_other(struct sim *sim, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void receive_other(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, const struct segment_byte *byte)
 {
     static const enum wire_fate fate_of[] = {
         [GOOD] = WIRE_WHOLE,
@@ -266,28 +253,28 @@ static void hear_other(struct sim *sim, struct wire_ear_monitor *ear, const stru
         [MALFORMED] = WIRE_MALFORMED,
         [TOO_LONG] = WIRE_TOO_LONG,
     };
-    keep(ear, byte);
-    enum verdict verdict = receive(sim->monitor.framing, ear, byte);
+    keep_byte(ear, byte);
+    enum verdict verdict = receive(monitor->framing, ear, byte);
     if (verdict != UNDECIDED)
-        report(sim, ear, byte->tick, fate_of[verdict]);
+        report(monitor, ear, byte->tick, fate_of[verdict]);
 }
 
-/* Is there anything in the ear worth telling? */
+/* Is there anything in the ear that makes a message? */
 static bool holds_something(const struct wire_ear_monitor *ear)
 {
     return ear->raw_total > 1 || (ear->raw_total == 1 && ear->raw[0] != HDLC_FLAG);
 }
 
-static void hear(struct sim *sim, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void receive_byte(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, const struct segment_byte *byte)
 {
     if (byte->lost)
         ear->lost += ear->raw_total > 0;
-    else if (sim->monitor.framing == &rkm04_hdlc)
-        hear_hdlc(sim, ear, byte);
-    else if (sim->monitor.framing == &rkm04_plain)
-        hear_plain(sim, ear, byte);
+    else if (monitor->framing == &rkm04_hdlc)
+        receive_hdlc(monitor, ear, byte);
+    else if (monitor->framing == &rkm04_plain)
+        receive_plain(monitor, ear, byte);
     else
-        hear_other(sim, ear, byte);
+        receive_other(monitor, ear, byte);
 }
 
 /* ---- Public --------------------------------------------------------------------------------------------------------- */
@@ -302,9 +289,10 @@ static bool begin_ear(struct wire_ear_monitor *ear, bool answer, size_t room, en
     return ear->message && ear->raw;
 }
 
-bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing *framing)
+bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing *framing, const struct segment *segment,
+                        struct wire_monitor_calls calls)
 {
-    *monitor = (struct wire_monitor){.framing = framing ? framing : &rkm04_hdlc};
+    *monitor = (struct wire_monitor){.framing = framing ? framing : &rkm04_hdlc, .segment = segment, .calls = calls};
     enum wire_fate astray = monitor->framing == &rkm04_hdlc ? WIRE_OUTSIDE : WIRE_WHOLE;
     bool requests = begin_ear(&monitor->requests, false, RKM04_MESSAGE_MAX, astray);
     return begin_ear(&monitor->answers, true, WIRE_ANSWER_MAX, astray) && requests;
@@ -344,25 +332,24 @@ void wire_monitor_copy(struct wire_monitor *to, const struct wire_monitor *from,
     to->overruns = from->overruns;
 }
 
-void wire_monitor_hear(struct sim *sim, const struct segment_byte *byte)
+void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_byte *byte)
 {
-    struct wire_monitor *monitor = &sim->monitor;
     bool from_unit = (byte->senders & ~MASTER_BIT) != 0, from_master = !from_unit || (byte->senders & MASTER_BIT) != 0;
-    uint64_t overruns = segment_counters(&sim->segment).overruns;
+    uint64_t overruns = segment_counters(monitor->segment).overruns;
     monitor->requests.overruns += overruns - monitor->overruns;
     monitor->overruns = overruns;
     if (byte->lost)
-        report_lost(sim, byte, !from_master);
+        report_lost(monitor, byte, !from_master);
     if (from_master)
-        hear(sim, &monitor->requests, byte);
+        receive_byte(monitor, &monitor->requests, byte);
     if (from_unit)
-        hear(sim, &monitor->answers, byte);
+        receive_byte(monitor, &monitor->answers, byte);
 }
 
-struct wire_message *wire_monitor_rest(const struct sim *sim, bool answer)
+struct wire_message *wire_monitor_rest(const struct wire_monitor *monitor, bool answer)
 {
-    const struct wire_ear_monitor *ear = answer ? &sim->monitor.answers : &sim->monitor.requests;
+    const struct wire_ear_monitor *ear = answer ? &monitor->answers : &monitor->requests;
     if (!holds_something(ear))
         return NULL;
-    return make(sim, ear, ear->astray != WIRE_WHOLE ? ear->astray : WIRE_UNFINISHED);
+    return make_message(monitor->segment, ear, ear->astray != WIRE_WHOLE ? ear->astray : WIRE_UNFINISHED);
 }

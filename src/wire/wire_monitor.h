@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* wire_monitor.h: listens to the two wires and takes the messages out of the bytes, whole ones and what was dropped, with the
- * reason. */
+/* wire_monitor.h: finds the messages in the bytes on the two wires, whole ones and what was dropped, with the reason. */
 #ifndef RKM04_SIM_WIRE_MONITOR_H
 #define RKM04_SIM_WIRE_MONITOR_H
 
@@ -11,47 +10,9 @@
 #include <rkm04/link.h>
 
 #include "segment.h"
+#include "wire_message.h"
 
-#define WIRE_ANSWER_MAX 9216u                             /* bytes of the longest message of a unit, however small requests are */
 #define WIRE_RAW_MAX (2u * (WIRE_ANSWER_MAX + 4u) + 2u) /* bytes on the wire that are kept of one frame: the longest there is */
-
-struct sim;
-
-/* What became of bytes on the wire. */
-enum wire_fate {
-    WIRE_WHOLE,
-    WIRE_WRONG_CHECK,   /* hdlc: wrong FCS */
-    WIRE_ABORTED,       /* hdlc: 7D 7E */
-    WIRE_TOO_SHORT,     /* hdlc: less than 5 bytes */
-    WIRE_TOO_LONG,
-    WIRE_OUTSIDE,       /* hdlc: before any flag */
-    WIRE_NO_ADDRESS,    /* plain: no DNode, above 16 */
-    WIRE_NO_LENGTH,     /* plain: length 0 or above 9216 */
-    WIRE_SILENT,        /* plain: 100 ms of silence inside the frame */
-    WIRE_MALFORMED,     /* another framing's */
-    WIRE_UNFINISHED,    /* the record ends in the middle of a frame */
-    WIRE_FRAMING_ERROR, /* one byte, wrong stop bit: nobody has got it. The frame around it is told of by itself */
-    WIRE_BREAK          /* the same with all bits 0 */
-};
-
-/* A frame as heard. `raw` are its bytes on the wire. */
-struct wire_message {
-    uint64_t start;       /* tick at which its first byte began */
-    uint64_t end;         /* tick at which its last byte had passed; watch_event.tick, or before it if that was noticed later */
-    uint32_t senders;     /* bit 0: the master; bit n: unit n */
-    uint32_t collided;    /* those who have sent at the same time as another one */
-    unsigned lost;        /* bytes inside that nobody has got (framing errors); they are not in `raw` */
-    enum wire_fate fate;
-    bool answer;          /* from a unit */
-    uint8_t dnode, snode; /* 0 where the framing has none, or it was dropped before */
-    const char *dropped;  /* NULL: whole; or why it is none: "wrong FCS", "aborted", "too long", … */
-    const char *refused;  /* of an answer: what the unit objects to, in words (flag 1, 2, 3, message 255 …); NULL: nothing */
-    const char *ignored;  /* of a whole request: why no unit obeys it; NULL: one may */
-    size_t raw_total;     /* bytes on the wire; more than raw_length if some were not kept */
-    size_t raw_length, length;
-    const uint8_t *raw, *message; /* message: empty if it was dropped */
-    uint8_t bytes[];      /* inside: what the pointers point into */
-};
 
 /* One for each direction, so that an answer in the middle of a request does not confuse either. A byte that belongs to a
  * collision of both counts in both. */
@@ -69,25 +30,38 @@ struct wire_ear_monitor {
     bool answer;
 };
 
+/* Who gets the messages. */
+struct wire_monitor_calls {
+    /* Does anybody want messages now? NULL: nobody. */
+    bool (*is_wanted)(void *context);
+    /* A message was completed or dropped at `tick`; it is the callee's, from malloc(). NULL: memory was short for it. */
+    void (*message)(void *context, uint64_t tick, struct wire_message *message);
+    void *context;
+};
+
 struct wire_monitor {
     const struct rkm04_framing *framing;
+    const struct segment *segment; /* whose bytes these are */
+    struct wire_monitor_calls calls;
     uint64_t overruns; /* of the segment, up to now */
     struct wire_ear_monitor requests, answers;
 };
 
-/* Returns false if memory is short; wire_monitor_end() is due in either case. */
-bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing *framing);
+/* Find messages in the bytes of `segment`, which may be NULL for a copy that gets none. Returns false if memory is short;
+ * wire_monitor_end() is due in either case. */
+bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing *framing, const struct segment *segment,
+                        struct wire_monitor_calls calls);
 void wire_monitor_end(struct wire_monitor *monitor);
 
 /* Make `to` like `from`, what is half heard included, all times later by `later` ticks (mod 2^64). Both have been begun, with the
- * same framing. For snapshots. */
+ * same framing; segment and calls stay. For snapshots. */
 void wire_monitor_copy(struct wire_monitor *to, const struct wire_monitor *from, uint64_t later);
 
-/* A byte has passed: tell the watchers of `sim` what it completed (WATCH_MESSAGE), if anybody wants to know. */
-void wire_monitor_hear(struct sim *sim, const struct segment_byte *byte);
+/* A byte has passed: report the message that it completes, if any. */
+void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_byte *byte);
 
 /* What has been heard of a request, or of an answer, that is not complete. Returns NULL if there is nothing (or memory is short),
  * otherwise a message to be freed. */
-struct wire_message *wire_monitor_rest(const struct sim *sim, bool answer);
+struct wire_message *wire_monitor_rest(const struct wire_monitor *monitor, bool answer);
 
 #endif

@@ -3,13 +3,11 @@
 
 #include <string.h>
 
-#include "sim/sim.h"
-
 #define HEAD 2 /* bytes before what is particular to a message with a motor */
 #define UNKNOWN 255
 #define ERROR_TEXT "ERROR COMMAND! "
 
-static const char *const names[] = {
+static const char *const message_names[] = {
     "",
     "Version",
     "Set Command",
@@ -49,7 +47,7 @@ static void put_name(struct wire_text *out, const uint8_t *message, size_t lengt
 {
     wire_text_number(out, message[0], 0);
     wire_text_put(out, ' ');
-    wire_text_string(out, names[message[0]]);
+    wire_text_string(out, message_names[message[0]]);
     if (message[0] == VERSION)
         return;
     wire_text_string(out, length < HEAD ? " without motor" : " m");
@@ -212,7 +210,7 @@ void wire_words_refusal(struct wire_text *out, const uint8_t *message, size_t le
 
 /* ---- Around a message ----------------------------------------------------------------------------------------------- */
 
-static void put_senders(struct wire_text *out, const struct sim *sim, uint32_t senders)
+static void put_senders(struct wire_text *out, const struct wire_names *names, uint32_t senders)
 {
     bool first = true;
     for (unsigned station = 0; station <= SEGMENT_UNITS; station++) {
@@ -221,19 +219,19 @@ static void put_senders(struct wire_text *out, const struct sim *sim, uint32_t s
         if (!first)
             wire_text_put(out, '+');
         first = false;
-        wire_text_string(out, station == 0 ? "master" : sim->unit[station - 1u].name);
+        wire_text_string(out, station == 0 ? "master" : names->unit[station - 1u]);
     }
     if (first)
         wire_text_put(out, '?');
 }
 
-void wire_words_direction(struct wire_text *out, const struct sim *sim, const struct wire_message *message)
+void wire_words_direction(struct wire_text *out, const struct wire_names *names, const struct wire_message *message)
 {
-    put_senders(out, sim, message->senders);
+    put_senders(out, names, message->senders);
     if (message->dropped)
         return;
     if (message->answer) {
-        bool named = sim->monitor.framing->answer_names_sender && message->dnode != 0;
+        bool named = names->framing->answer_names_sender && message->dnode != 0;
         wire_text_string(out, " > ");
         if (named)
             wire_text_number(out, message->dnode, 0);
@@ -261,7 +259,7 @@ static void put_reason(struct wire_text *out, const char *what, const char *why)
     wire_text_string(out, why);
 }
 
-void wire_words_story(struct wire_text *out, const struct sim *sim, const struct wire_message *message)
+void wire_words_story(struct wire_text *out, const struct wire_names *names, const struct wire_message *message)
 {
     if (message->dropped) {
         wire_text_string(out, message->fate == WIRE_UNFINISHED ? "" : "dropped: "); /* that may have gone on well */
@@ -278,6 +276,6 @@ void wire_words_story(struct wire_text *out, const struct sim *sim, const struct
     }
     if (message->collided != 0) {
         wire_text_string(out, "; collision: ");
-        put_senders(out, sim, message->collided);
+        put_senders(out, names, message->collided);
     }
 }

@@ -3,10 +3,19 @@
 #ifndef RKM04_SIM_WIRE_WORDS_H
 #define RKM04_SIM_WIRE_WORDS_H
 
-#include "wire_monitor.h"
+#include <rkm04/link.h>
+
+#include "segment.h"
 #include "text/text.h"
+#include "wire_message.h"
 
 #define WIRE_WORDS_MAX (4u * WIRE_ANSWER_MAX + 512u) /* characters of the longest description, with names and reasons */
+
+/* What the stations are called. */
+struct wire_names {
+    const char *unit[SEGMENT_UNITS];
+    const struct rkm04_framing *framing; /* do answers name their sender? */
+};
 
 /* A whole message: `2 Set Command m1 "\C100 F5000 R"`, `4 Get Position m0 -> 12 0 0 5`. */
 void wire_words_message(struct wire_text *out, const uint8_t *message, size_t length, bool answer);
@@ -15,9 +24,9 @@ void wire_words_message(struct wire_text *out, const uint8_t *message, size_t le
 void wire_words_refusal(struct wire_text *out, const uint8_t *message, size_t length);
 
 /* Who sends, and to whom: "master > 3", "3 > master", "master > all". Units by their names. */
-void wire_words_direction(struct wire_text *out, const struct sim *sim, const struct wire_message *message);
+void wire_words_direction(struct wire_text *out, const struct wire_names *names, const struct wire_message *message);
 
 /* The message in words, then why it was dropped, refused or ignored, and what has happened to it on the wires. */
-void wire_words_story(struct wire_text *out, const struct sim *sim, const struct wire_message *message);
+void wire_words_story(struct wire_text *out, const struct wire_names *names, const struct wire_message *message);
 
 #endif

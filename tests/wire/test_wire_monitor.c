@@ -220,11 +220,11 @@ START_TEST(what_is_incomplete_at_the_end_is_told)
 {
     wire_rig_begin("3", HDLC);
     wire_rig_ask(3, "\1", 1);
-    ck_assert_ptr_null(wire_monitor_rest(sim, false));
-    ck_assert_ptr_null(wire_monitor_rest(sim, true));
+    ck_assert_ptr_null(wire_monitor_rest(&sim->monitor, false));
+    ck_assert_ptr_null(wire_monitor_rest(&sim->monitor, true));
     wire_rig_bytes("7E 03 00");
     wire_rig_settle();
-    struct wire_message *rest = wire_monitor_rest(sim, false);
+    struct wire_message *rest = wire_monitor_rest(&sim->monitor, false);
     ck_assert_ptr_nonnull(rest);
     ck_assert_str_eq(rest->dropped, "unfinished");
     ck_assert_uint_eq(rest->raw_total, 3);
@@ -379,7 +379,7 @@ START_TEST(a_copy_goes_on_with_what_was_half_heard)
 {
     struct wire_monitor copy;
     wire_rig_begin("3", HDLC);
-    ck_assert(wire_monitor_begin(&copy, HDLC));
+    ck_assert(wire_monitor_begin(&copy, HDLC, NULL, (struct wire_monitor_calls){0}));
     wire_rig_bytes("7E 00 00 03 32");
     wire_rig_settle();
     wire_monitor_copy(&copy, &sim->monitor, 0);

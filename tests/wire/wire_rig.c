@@ -16,9 +16,10 @@ static void see(void *context, const struct watch_event *event)
     struct wire_rig *rig = context;
     ck_assert_uint_lt(rig->lines, WIRE_RIG_LINES);
     struct wire_text text = {.text = rig->line[rig->lines], .room = WIRE_RIG_COLUMNS};
-    wire_words_direction(&text, &rig->sim, event->message);
+    const struct wire_names names = sim_wire_names(&rig->sim);
+    wire_words_direction(&text, &names, event->message);
     wire_text_string(&text, ": ");
-    wire_words_story(&text, &rig->sim, event->message);
+    wire_words_story(&text, &names, event->message);
     wire_text_end(&text);
     rig->message[rig->lines++] = *event->message;
 }
