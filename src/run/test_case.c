@@ -12,7 +12,6 @@
 
 #include "text/text.h"
 #include "file/file.h"
-#include "test_readings.h"
 
 #define TEXT_MAX ((size_t)4 << 20) /* bytes of a file */
 #define FIRST_ROOM 4096
@@ -99,12 +98,21 @@ const char *test_case_name(const struct test_case *test)
     return name != NULL && name[0] != '\0' ? name : test->file;
 }
 
+static void free_readings(struct test_readings *under)
+{
+    for (size_t i = 0; under != NULL && i < under->variants; i++)
+        scenario_result_free(&under->variant[i].result);
+    if (under != NULL)
+        free(under->variant);
+    free(under);
+}
+
 void test_case_free(struct test_case *test)
 {
     scenario_free(test->scenario);
     scenario_result_free(&test->result);
     free(test->record);
-    test_readings_free(test->under);
+    free_readings(test->under);
     *test = (struct test_case){0};
 }
 

@@ -15,7 +15,25 @@ enum test_outcome {
     TEST_BROKEN /* memory was short: it says nothing about the scenario */
 };
 
-struct test_readings; /* test_readings.h */
+/* One other value of a reading. */
+struct test_choice {
+    unsigned at, value; /* at READINGS: none */
+};
+
+/* A run that ended otherwise than the first one. */
+struct test_variant {
+    struct test_choice choice[2]; /* the second one: of a pair whose values, each alone, change nothing */
+    enum test_outcome outcome;
+    struct scenario_result result;
+};
+
+/* What came of it under other readings (test_readings.h fills it in). */
+struct test_readings {
+    size_t planned, runs, passed; /* the first run is counted */
+    bool broken;                  /* memory was short */
+    size_t variants;
+    struct test_variant *variant;
+};
 
 struct test_case {
     const char *file;         /* as given, "<stdin>" for "-" */

@@ -98,15 +98,6 @@ void test_readings_run(struct test_case *test, const struct rkm04_readings *base
     scenario_set_readings(test->scenario, base);
 }
 
-void test_readings_free(struct test_readings *under)
-{
-    for (size_t i = 0; under != NULL && i < under->variants; i++)
-        scenario_result_free(&under->variant[i].result);
-    if (under != NULL)
-        free(under->variant);
-    free(under);
-}
-
 /* ---- Words ---------------------------------------------------------------------------------------------------------- */
 
 bool test_readings_depends(const struct test_case *test)
