@@ -1,55 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 #include "bus.h"
 
-#include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "bus_coverage.h"
 #include "line/line.h"
 #include "record/record.h"
 
 #define INJECTED_TOLD 100u /* acts of faults on demand in the log */
 
 /* ---- The log -------------------------------------------------------------------------------------------------------- */
-
-static void say(const struct bus *bus, uint64_t tick, const char *format, va_list list)
-{
-    char text[512];
-    vsnprintf(text, sizeof text, format, list);
-    if (bus->options->lines > 1)
-        log_at(tick, "line %u: %s", bus->number, text);
-    else
-        log_at(tick, "%s", text);
-}
-
-void bus_log(const struct bus *bus, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    say(bus, bus_present(bus), format, list);
-    va_end(list);
-}
-
-void bus_log_detail(const struct bus *bus, const char *format, ...)
-{
-    va_list list;
-    if (!bus->options->verbose)
-        return;
-    va_start(list, format);
-    say(bus, bus_present(bus), format, list);
-    va_end(list);
-}
-
-void bus_say(const struct bus *bus, uint64_t tick, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    say(bus, tick, format, list);
-    va_end(list);
-}
 
 static void tell_fault(struct bus *bus, const struct watch_event *event)
 {
@@ -58,8 +20,8 @@ static void tell_fault(struct bus *bus, const struct watch_event *event)
     if (fault == RKM04_FAULT_NONE)
         return;
     rkm04_motor_state(sim_core(&bus->sim, event->unit), event->motor, &state);
-    bus_say(bus, event->tick, "unit %s, motor %u: fault %s at command %u", bus->sim.unit[event->unit - 1u].name, event->motor,
-            rkm04_fault_name(fault), (unsigned)state.index);
+    bus_log_at(&bus->log, event->tick, "unit %s, motor %u: fault %s at command %u",
+               bus->sim.unit[event->unit - 1u].name, event->motor, rkm04_fault_name(fault), (unsigned)state.index);
     if (bus->coverage)
         coverage_fault(bus->coverage, fault);
 }
@@ -68,9 +30,9 @@ static void tell_fault(struct bus *bus, const struct watch_event *event)
 static void tell_injected(struct bus *bus, const struct watch_event *event)
 {
     if (++bus->injected <= INJECTED_TOLD)
-        bus_say(bus, event->tick, "fault %d: %s", (int)event->value, event->text);
+        bus_log_at(&bus->log, event->tick, "fault %d: %s", (int)event->value, event->text);
     if (bus->injected == INJECTED_TOLD)
-        bus_say(bus, event->tick, "faults act often: from now on they are no longer told here; fault.list counts them");
+        bus_log_at(&bus->log, event->tick, "faults act often: from now on they are no longer told here; fault.list counts them");
 }
 
 static void on_news(void *context, const struct watch_event *event)
@@ -82,9 +44,9 @@ static void on_news(void *context, const struct watch_event *event)
     else if (event->kind == WATCH_MESSAGE)
         bus_coverage_message(bus->coverage, event->message);
     else if (event->kind == WATCH_POWER)
-        bus_say(bus, event->tick, "unit %s: power %s", unit, event->value ? "on" : "off");
+        bus_log_at(&bus->log, event->tick, "unit %s: power %s", unit, event->value ? "on" : "off");
     else if (event->kind == WATCH_PLANT)
-        bus_say(bus, event->tick, "unit %s: plant: %s", unit, event->text);
+        bus_log_at(&bus->log, event->tick, "unit %s: plant: %s", unit, event->text);
     else
         tell_injected(bus, event);
 }
@@ -97,6 +59,7 @@ static void watch_for_log(struct bus *bus)
         .see = on_news,
         .context = bus,
     };
+    bus->time.own_kinds = bus->news.kinds;
     sim_watch(&bus->sim, &bus->news);
 }
 
@@ -129,7 +92,7 @@ static bool open_flash(struct bus *bus)
         struct bus_unit *unit = &bus->unit[at];
         char path[PATH_MAX], name[NODE_NAME_SIZE];
         node_list_name(&options->nodes, at, name);
-        if (!name_expand(options->flash, name, bus->number, path)) {
+        if (!name_expand(options->flash, name, bus->log.number, path)) {
             log_error("--flash: the path is too long");
             return false;
         }
@@ -143,17 +106,10 @@ static bool open_flash(struct bus *bus)
 
 /* ---- Bytes ---------------------------------------------------------------------------------------------------------- */
 
-size_t bus_room(const struct bus *bus)
+static void send_gathered(struct bus *bus)
 {
-    return sim_room(&bus->sim);
-}
-
-void bus_take(struct bus *bus, const uint8_t *bytes, size_t length, uint64_t tick)
-{
-    bus->heard = uv_hrtime();
-    if (bus->taken < tick)
-        bus->taken = tick;
-    sim_take(&bus->sim, bytes, length, bus->taken);
+    bus_ports_send(&bus->ports, bus->out, bus->gathered);
+    bus->gathered = 0;
 }
 
 /* On a real wire bytes take their time outside, so the units' line takes none; the turnaround is kept here. */
@@ -162,12 +118,152 @@ static void gather(void *context, const uint8_t *bytes, size_t length)
     struct bus *bus = context;
     if (bus->gathered == 0)
         bus->answered = sim_now(&bus->sim) + (bus->ports.line.is_wire ? bus->options->turnaround : 0);
-    if (length > sizeof bus->out - bus->gathered) {
-        bus_ports_send(bus, bus->out, bus->gathered);
-        bus->gathered = 0;
-    }
+    if (length > sizeof bus->out - bus->gathered)
+        send_gathered(bus);
     memcpy(bus->out + bus->gathered, bytes, length);
     bus->gathered += length;
+}
+
+/* ---- Calls of the ports --------------------------------------------------------------------------------------------- */
+
+static void on_expect(void *context)
+{
+    struct bus *bus = context;
+    bus_time_expect(&bus->time);
+}
+
+static size_t on_room(void *context)
+{
+    struct bus *bus = context;
+    return sim_room(&bus->sim);
+}
+
+static void on_take(void *context, const uint8_t *bytes, size_t length, uint64_t tick)
+{
+    struct bus *bus = context;
+    bus_time_note_bytes(&bus->time);
+    if (bus->taken < tick)
+        bus->taken = tick;
+    sim_take(&bus->sim, bytes, length, bus->taken);
+}
+
+static void on_break(void *context, bool on)
+{
+    struct bus *bus = context;
+    sim_break(bus_sim(bus), on);
+    bus_changed(bus);
+}
+
+static void on_purge(void *context)
+{
+    struct bus *bus = context;
+    sim_purge(bus_sim(bus));
+    bus_changed(bus);
+}
+
+static void on_taken(void *context)
+{
+    struct bus *bus = context;
+    bus_time_follow(&bus->time);
+}
+
+static uint64_t on_reached(void *context)
+{
+    struct bus *bus = context;
+    return sim_now(&bus->sim);
+}
+
+static void on_lost(void *context)
+{
+    struct bus *bus = context;
+    bus->calls->failed(bus->context);
+}
+
+static void on_presence(void *context)
+{
+    struct bus *bus = context;
+    bus->calls->presence(bus->context);
+}
+
+static const struct bus_ports_calls ports_calls = {
+    .expect = on_expect,
+    .room = on_room,
+    .take = on_take,
+    .line_break = on_break,
+    .purge = on_purge,
+    .changed = on_taken,
+    .reached = on_reached,
+    .failed = on_lost,
+    .presence = on_presence,
+};
+
+/* ---- Calls of the time ---------------------------------------------------------------------------------------------- */
+
+static uint64_t on_due(const void *context)
+{
+    const struct bus *bus = context;
+    return bus->gathered > 0 ? bus->answered : RKM04_NEVER;
+}
+
+static void on_advanced(void *context)
+{
+    struct bus *bus = context;
+    if (bus->gathered > 0 && bus->answered <= sim_now(&bus->sim))
+        send_gathered(bus);
+}
+
+static void before_sleep(void *context)
+{
+    struct bus *bus = context;
+    if (segment_idle(&bus->sim.segment))
+        bus_ports_silence(&bus->ports);
+    bus_ports_listen(&bus->ports);
+    bus_files_flush(&bus->files);
+}
+
+static const struct bus_time_calls time_calls = {.due = on_due, .advanced = on_advanced, .before_sleep = before_sleep};
+
+/* ---- For those who drive it from outside ---------------------------------------------------------------------------- */
+
+struct sim *bus_sim(struct bus *bus)
+{
+    bus_time_follow(&bus->time);
+    return &bus->sim;
+}
+
+void bus_changed(struct bus *bus)
+{
+    bus_time_changed(&bus->time);
+}
+
+void bus_wait(struct bus *bus, struct bus_waiter *waiter)
+{
+    bus_time_wait(&bus->time, waiter);
+}
+
+void bus_cancel_wait(struct bus *bus, struct bus_waiter *waiter)
+{
+    bus_time_cancel_wait(&bus->time, waiter);
+}
+
+bool bus_advance(struct bus *bus, struct bus_waiter *waiter)
+{
+    return bus_time_advance(&bus->time, waiter);
+}
+
+bool bus_is_stepped(const struct bus *bus)
+{
+    return bus_time_is_stepped(&bus->time);
+}
+
+bool bus_set_clock(struct bus *bus, const char *text, struct refusal *refusal)
+{
+    return bus_time_set_clock(&bus->time, text, refusal);
+}
+
+uint64_t bus_present(const struct bus *bus)
+{
+    return bus_time_present(&bus->time);
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
@@ -198,7 +294,8 @@ static bool keep_journal(struct bus *bus)
 
 static void unplug(void *context, bool plugged)
 {
-    bus_ports_plug(context, plugged);
+    struct bus *bus = context;
+    bus_ports_plug(&bus->ports, plugged);
 }
 
 static bool begin_sim(struct bus *bus)
@@ -207,7 +304,7 @@ static bool begin_sim(struct bus *bus)
     struct sim_config config = {
         .unit = options->config,
         .nodes = options->nodes,
-        .timed = options->baud != 0 && !bus->ports.line.is_wire && !bus_stepped(bus),
+        .timed = bus->time.timed && !bus_is_stepped(bus),
         .turnaround = options->turnaround,
         .seed = options->seed,
         .out = gather,
@@ -222,39 +319,49 @@ static bool begin_sim(struct bus *bus)
     return false;
 }
 
+static uint64_t present(const void *context)
+{
+    return bus_present(context);
+}
+
 bool bus_begin(struct bus *bus, unsigned number, const struct bus_options *options, uv_loop_t *loop, struct line_watch *watch,
                struct coverage *coverage, const struct bus_calls *calls, void *context)
 {
-    bus->number = number;
+    bus->log = (struct bus_log){number, options->lines > 1, options->verbose, present, bus};
     bus->options = options;
     bus->coverage = coverage;
     bus->calls = calls;
     bus->context = context;
-    bus->timer_fd = bus->ports.lower_fd = bus->ports.link.lock = -1;
-    line_none(&bus->ports.line);
-    bus->clock = options->clock;
-    snprintf(bus->clock_text, sizeof bus->clock_text, "%s", options->clock_text);
-    if (!bus_ports_open(bus, loop, watch) || !open_flash(bus) || !begin_sim(bus))
+    bus->time.timer_fd = -1;
+    bus_ports_prepare(&bus->ports, options, &bus->log, &ports_calls, bus);
+    if (!bus_ports_open(&bus->ports, loop, watch) || !open_flash(bus))
+        return false;
+    bool timed = options->baud != 0 && !bus->ports.line.is_wire;
+    bus_time_prepare(&bus->time, options, timed, &bus->sim, &bus->log, &time_calls, bus);
+    if (!begin_sim(bus))
         return false;
     watch_for_log(bus);
-    return configure_plant(bus) && keep_journal(bus) && bus_time_begin(bus, loop);
+    return configure_plant(bus) && keep_journal(bus) && bus_time_begin(&bus->time, loop);
 }
 
 bool bus_start(struct bus *bus)
 {
-    if (!bus_ports_publish(bus))
+    if (!bus_ports_publish(&bus->ports))
         return false;
-    virtual_clock_start(&bus->clock, uv_hrtime(), 0);
-    bus->running = true;
-    bus_catch_up(bus);
+    bus_time_start(&bus->time);
     return true;
+}
+
+bool bus_begin_files(struct bus *bus)
+{
+    return bus_files_begin(&bus->files, bus->options, bus->log.number, &bus->sim);
 }
 
 bool bus_end(struct bus *bus)
 {
     bool well = true;
-    bus_ports_close(bus);
-    if (!bus_files_end(bus))
+    bus_ports_close(&bus->ports);
+    if (!bus_files_end(&bus->files))
         well = false;
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
         if (bus->unit[at].open && !flash_file_close(&bus->unit[at].flash))
@@ -265,14 +372,9 @@ bool bus_end(struct bus *bus)
 void bus_free(struct bus *bus)
 {
     sim_end(&bus->sim);
-    if (bus->timer_fd >= 0)
-        close(bus->timer_fd);
+    bus_time_free(&bus->time);
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
         free(bus->unit[at].flash_path);
-    free(bus->ports.tcp);
-    free(bus->ports.rfc2217);
-    line_close(&bus->ports.line);
-    if (bus->ports.lower_fd >= 0)
-        close(bus->ports.lower_fd);
+    bus_ports_free(&bus->ports);
     free(bus);
 }

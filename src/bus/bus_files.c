@@ -5,14 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bus.h"
-#include "line/line.h"
 #include "file/file.h"
+#include "line/line.h"
 
 /* The name for this line; NULL: too long (reported). */
-static const char *path_of(const struct bus *bus, const char *pattern, char path[PATH_MAX])
+static const char *path_of(const struct bus_files *files, const char *pattern, char path[PATH_MAX])
 {
-    if (name_expand(pattern, NULL, bus->number, path))
+    if (name_expand(pattern, NULL, files->number, path))
         return path;
     log_error("%s: the path is too long", pattern);
     return NULL;
@@ -33,52 +32,51 @@ static bool complain(char *error)
     return false;
 }
 
-static bool begin_record(struct bus *bus)
+static bool begin_record(struct bus_files *files)
 {
-    struct bus_files *files = &bus->files;
     char path[PATH_MAX], *why;
-    if (!bus->options->record)
+    if (!files->options->record)
         return true;
-    if (!path_of(bus, bus->options->record, path))
+    if (!path_of(files, files->options->record, path))
         return false;
-    files->record_stream = output_file_open(path, OUTPUT_RECORDING, bus->options->output_flags, &why);
+    files->record_stream = output_file_open(path, OUTPUT_RECORDING, files->options->output_flags, &why);
     if (!files->record_stream) {
         log_error("cannot write %s: %s", path, why ? why : strerror(ENOMEM));
         free(why);
         return false;
     }
-    files->record = record_begin(&bus->sim, files->record_stream);
+    files->record = record_begin(files->sim, files->record_stream);
     return files->record || complain(NULL);
 }
 
-bool bus_files_begin(struct bus *bus)
+bool bus_files_begin(struct bus_files *files, const struct bus_options *options, unsigned number, struct sim *sim)
 {
-    const struct bus_options *options = bus->options;
-    struct bus_files *files = &bus->files;
+    files->options = options;
+    files->number = number;
+    files->sim = sim;
     char path[PATH_MAX], *error = NULL;
-    if (!begin_record(bus))
+    if (!begin_record(files))
         return false;
     for (unsigned i = 0; i < BUS_FILES_MAX && options->trace[i]; i++) {
-        if (!path_of(bus, options->trace[i], path))
+        if (!path_of(files, options->trace[i], path))
             return false;
-        files->trace[i] = trace_file_begin(&bus->sim, path, options->output_flags, &error);
+        files->trace[i] = trace_file_begin(files->sim, path, options->output_flags, &error);
         if (!files->trace[i])
             return complain(error);
     }
     for (unsigned i = 0; i < BUS_FILES_MAX && options->wire[i]; i++) {
-        if (!path_of(bus, options->wire[i], path))
+        if (!path_of(files, options->wire[i], path))
             return false;
-        files->wire[i] = wire_file_begin(&bus->sim, path, options->output_flags, &error);
+        files->wire[i] = wire_file_begin(files->sim, path, options->output_flags, &error);
         if (!files->wire[i])
             return complain(error);
     }
     return true;
 }
 
-void bus_files_look(struct bus *bus)
+void bus_files_flush(struct bus_files *files)
 {
-    const struct bus_options *options = bus->options;
-    struct bus_files *files = &bus->files;
+    const struct bus_options *options = files->options;
     for (unsigned i = 0; i < BUS_FILES_MAX; i++) {
         if (files->trace[i] && trace_file_failed(files->trace[i]) != 0) {
             check(options->trace[i], trace_file_end(files->trace[i]));
@@ -100,10 +98,9 @@ void bus_files_look(struct bus *bus)
     }
 }
 
-bool bus_files_end(struct bus *bus)
+bool bus_files_end(struct bus_files *files)
 {
-    const struct bus_options *options = bus->options;
-    struct bus_files *files = &bus->files;
+    const struct bus_options *options = files->options;
     bool well = !files->failed;
     for (unsigned i = 0; i < BUS_FILES_MAX; i++) {
         if (files->trace[i])

@@ -1,61 +1,55 @@
 /* SPDX-License-Identifier: MIT */
+#include "bus_ports.h"
+
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/timerfd.h>
+#include <unistd.h>
 
-#include "bus.h"
-#include "line/line.h"
+#include "wire/wire.h"
 
-#define NS_PER_SECOND 1000000000u
-#define NS_PER_BYTE 520834u       /* 10 bits at 19200 baud */
 #define READ_STINT 2000000u       /* ns: longest time a turn of the loop for reading one bus */
-#define NS_PER_LOOK 200000u       /* between two looks whether a device has sent all */
 #define REFUSED_TOLD 100u         /* network clients that were sent away, in the log */
 #define AGAIN_MS 1000u            /* between two tries to have a new pty */
 
-unsigned bus_ports_clients(const struct bus *bus)
+unsigned bus_ports_clients(const struct bus_ports *ports)
 {
-    const struct bus_ports *ports = &bus->ports;
-    return (bus->options->pty ? ports->line.clients : 0) + (ports->tcp && ports->tcp->attached) +
+    return (ports->options->pty ? ports->line.clients : 0) + (ports->tcp && ports->tcp->attached) +
            (ports->rfc2217 && ports->rfc2217->attached);
 }
 
-uint64_t bus_ports_dropped(const struct bus *bus)
+uint64_t bus_ports_dropped(const struct bus_ports *ports)
 {
-    const struct bus_ports *ports = &bus->ports;
     return ports->line.dropped + (ports->tcp ? ports->tcp->dropped : 0) + (ports->rfc2217 ? ports->rfc2217->dropped : 0);
 }
 
 /* ---- What the client has set ---------------------------------------------------------------------------------------- */
 
-static bool strict(const struct bus *bus)
+static bool strict(const struct bus_ports *ports)
 {
-    return bus->options->strict_line && !line_settings_equal(bus->ports.known, line_settings_unit);
+    return ports->options->strict_line && !line_settings_equal(ports->known, line_settings_unit);
 }
 
 /* The settings of the client who is there. Raw TCP has none. */
-static struct line_settings present_settings(const struct bus *bus)
+static struct line_settings present_settings(const struct bus_ports *ports)
 {
-    const struct bus_ports *ports = &bus->ports;
     struct line_settings settings = line_settings_unit;
     if (ports->rfc2217 && ports->rfc2217->attached)
         return ports->net;
-    if (bus->options->pty && ports->line.clients > 0)
+    if (ports->options->pty && ports->line.clients > 0)
         line_settings_read(ports->line.fd, &settings);
     return settings;
 }
 
 /* Look what the client has set, and tell what is new. */
-static void look(struct bus *bus)
+static void look(struct bus_ports *ports)
 {
-    struct bus_ports *ports = &bus->ports;
     char news[LINE_NEWS_MAX];
-    if (!line_settings_news(&ports->known, present_settings(bus), news))
+    if (!line_settings_news(&ports->known, present_settings(ports), news))
         return;
-    bus_log(bus, "%s", news);
+    bus_log(ports->log, "%s", news);
     line_ear_begin(&ports->to_units, ports->known, line_settings_unit, false);
     line_ear_begin(&ports->to_client, line_settings_unit, ports->known, true);
 }
@@ -63,70 +57,38 @@ static void look(struct bus *bus)
 /* ---- To the units --------------------------------------------------------------------------------------------------- */
 
 /* Bytes of the client that can be taken. Each may be heard as several, and one more when it falls silent. */
-static size_t room(const struct bus *bus)
+static size_t room(const struct bus_ports *ports)
 {
-    size_t most = bus_room(bus);
-    return !bus->options->strict_line ? most : most > 0 ? (most - 1) / LINE_EAR_MAX : 0;
+    size_t most = ports->calls->room(ports->context);
+    return !ports->options->strict_line ? most : most > 0 ? (most - 1) / LINE_EAR_MAX : 0;
 }
 
-static void take_heard(struct bus *bus, const struct line_heard *heard, size_t number)
+static void take_heard(struct bus_ports *ports, const struct line_heard *heard, size_t number)
 {
     for (size_t i = 0; i < number; i++)
-        bus_take(bus, &heard[i].byte, 1, heard[i].tick);
+        ports->calls->take(ports->context, &heard[i].byte, 1, heard[i].tick);
 }
 
 /* The client has sent something; `length` <= room(). */
-static void take(struct bus *bus, const uint8_t *bytes, size_t length)
+static void take(struct bus_ports *ports, const uint8_t *bytes, size_t length)
 {
     struct line_heard heard[LINE_EAR_MAX];
-    uint64_t tick = bus_present(bus);
-    if (!strict(bus)) {
-        bus_take(bus, bytes, length, tick);
+    uint64_t tick = ports->log->present(ports->log->context);
+    if (!strict(ports)) {
+        ports->calls->take(ports->context, bytes, length, tick);
         return;
     }
     for (size_t i = 0; i < length; i++)
-        take_heard(bus, heard, line_ear_byte(&bus->ports.to_units, bytes[i], tick, heard));
-    take_heard(bus, heard, line_ear_silence(&bus->ports.to_units, heard));
+        take_heard(ports, heard, line_ear_byte(&ports->to_units, bytes[i], tick, heard));
+    take_heard(ports, heard, line_ear_silence(&ports->to_units, heard));
 }
 
 /* ---- To the clients ------------------------------------------------------------------------------------------------- */
 
-static void set_lower(struct bus *bus, uint64_t when)
+static void send_now(struct bus_ports *ports, const uint8_t *bytes, size_t length)
 {
-    struct itimerspec spec = {
-        .it_value = {.tv_sec = (time_t)(when / NS_PER_SECOND), .tv_nsec = (long)(when % NS_PER_SECOND)},
-    };
-    timerfd_settime(bus->ports.lower_fd, TFD_TIMER_ABSTIME, &spec, NULL);
-}
-
-static void on_lower(uv_poll_t *handle, int status, int events)
-{
-    struct bus *bus = handle->data;
-    uint64_t expired;
-    (void)status;
-    (void)events;
-    if (read(bus->ports.lower_fd, &expired, sizeof expired) < 0 && errno == EAGAIN)
-        return;
-    if (bus->ports.line.raised && !line_serial_lower(&bus->ports.line))
-        set_lower(bus, uv_hrtime() + NS_PER_LOOK);
-}
-
-/* RTS has gone on: see that it goes off when the bytes are out. */
-static void expect_lower(struct bus *bus, size_t length)
-{
-    struct bus_ports *ports = &bus->ports;
-    uint64_t now = uv_hrtime();
-    if (ports->sent_until < now)
-        ports->sent_until = now;
-    ports->sent_until += length * NS_PER_BYTE;
-    set_lower(bus, ports->sent_until);
-}
-
-static void send_now(struct bus *bus, const uint8_t *bytes, size_t length)
-{
-    struct bus_ports *ports = &bus->ports;
     struct line *line = &ports->line;
-    bool nobody = bus_ports_clients(bus) == 0;
+    bool nobody = bus_ports_clients(ports) == 0;
     if (ports->tcp && (ports->tcp->attached || (nobody && line->fd < 0)))
         net_port_send(ports->tcp, bytes, length);
     if (ports->rfc2217 && (ports->rfc2217->attached || (nobody && line->fd < 0 && !ports->tcp)))
@@ -135,83 +97,84 @@ static void send_now(struct bus *bus, const uint8_t *bytes, size_t length)
         return;
     size_t dropped = line_write(line, bytes, length);
     if (line->raised)
-        expect_lower(bus, length);
+        bus_rts_lower_after(&ports->rts, length);
     if (dropped > 0 && line->clients > 0 && ports->told == line->dropped - dropped) {
-        bus_log(bus, "the client does not read: bytes are being dropped");
+        bus_log(ports->log, "the client does not read: bytes are being dropped");
         ports->told = line->dropped;
     }
 }
 
-static void send_heard(struct bus *bus, const struct line_heard *heard, size_t number)
+static void send_heard(struct bus_ports *ports, const struct line_heard *heard, size_t number)
 {
     for (size_t i = 0; i < number; i++)
-        send_now(bus, &heard[i].byte, 1);
+        send_now(ports, &heard[i].byte, 1);
 }
 
-void bus_ports_send(struct bus *bus, const uint8_t *bytes, size_t length)
+void bus_ports_send(struct bus_ports *ports, const uint8_t *bytes, size_t length)
 {
     struct line_heard heard[LINE_EAR_MAX];
-    if (bus->options->strict_line)
-        look(bus);
-    if (!strict(bus)) {
-        send_now(bus, bytes, length);
+    if (ports->options->strict_line)
+        look(ports);
+    if (!strict(ports)) {
+        send_now(ports, bytes, length);
         return;
     }
     for (size_t i = 0; i < length; i++)
-        send_heard(bus, heard, line_ear_byte(&bus->ports.to_client, bytes[i], sim_now(&bus->sim), heard));
+        send_heard(ports, heard, line_ear_byte(&ports->to_client, bytes[i], ports->calls->reached(ports->context), heard));
 }
 
-void bus_ports_silence(struct bus *bus)
+void bus_ports_silence(struct bus_ports *ports)
 {
     struct line_heard heard[LINE_EAR_MAX];
-    if (strict(bus))
-        send_heard(bus, heard, line_ear_silence(&bus->ports.to_client, heard));
+    if (strict(ports))
+        send_heard(ports, heard, line_ear_silence(&ports->to_client, heard));
 }
 
 /* ---- The pty or device ---------------------------------------------------------------------------------------------- */
 
 static void on_again(uv_timer_t *timer);
-static void follow_adapter(struct bus *bus);
+static void follow_adapter(struct bus_ports *ports);
 
 static void on_news(void *context, enum line_news news)
 {
-    struct bus *bus = context;
-    struct bus_ports *ports = &bus->ports;
+    struct bus_ports *ports = context;
     uint64_t dropped = ports->line.dropped - ports->told;
     switch (news) {
     case LINE_DETACHED:
-        bus_log_detail(bus, "the client has closed the line");
+        bus_log_detail(ports->log, "the client has closed the line");
         break;
     case LINE_ATTACHED:
         if (dropped > 0)
-            bus_log(bus, "a client has opened the line; %" PRIu64 " bytes for nobody were dropped before", dropped);
+            bus_log(ports->log, "a client has opened the line; %" PRIu64 " bytes for nobody were dropped before", dropped);
         else
-            bus_log_detail(bus, "a client has opened the line");
+            bus_log_detail(ports->log, "a client has opened the line");
         ports->told = ports->line.dropped;
         ports->known = line_settings_unit;
         break;
     case LINE_SHARED:
-        bus_log(bus, "one more client has opened the line: they will take each other's answers (%u now)", ports->line.clients);
+        bus_log(ports->log, "one more client has opened the line: they will take each other's answers (%u now)",
+                ports->line.clients);
         break;
     case LINE_FAILED:
         if (!ports->lost)
-            bus_log(bus, "a client has locked the pty %s for good and gone: another pty takes its place", ports->line.path);
+            bus_log(ports->log, "a client has locked the pty %s for good and gone: another pty takes its place",
+                    ports->line.path);
         ports->lost = true;
         uv_timer_start(&ports->again, on_again, 0, 0);
         return;
     }
-    bus->calls->presence(bus->context);
+    ports->calls->presence(ports->context);
 }
 
 /* Read what there is room for, or as much as does not take long: bytes of a strange speed may come to nothing, so that there is
  * always room. Returns false if the line is gone. */
-static bool read_line(struct bus *bus)
+static bool read_line(struct bus_ports *ports)
 {
     uint8_t bytes[256];
     size_t most;
-    struct line *line = &bus->ports.line;
+    struct line *line = &ports->line;
     uint64_t start = uv_hrtime();
-    while ((most = room(bus)) > 0 && uv_hrtime() - start < READ_STINT) {
+    while ((most = room(ports)) > 0 && uv_hrtime() - start < READ_STINT) {
         ssize_t length = line_read(line, bytes, most < sizeof bytes ? most : sizeof bytes);
         if (length < 0)
             return false;
@@ -221,40 +184,39 @@ static bool read_line(struct bus *bus)
             line_watch_follow(line->watch); /* who has sent them is there before an answer is */
         if (line->watch && line->clients == 0)
             line_pty_count_again(line);
-        look(bus);
-        take(bus, bytes, (size_t)length);
+        look(ports);
+        take(ports, bytes, (size_t)length);
     }
     return true;
 }
 
 static void on_readable(uv_poll_t *handle, int status, int events)
 {
-    struct bus *bus = handle->data;
-    struct line *line = &bus->ports.line;
+    struct bus_ports *ports = handle->data;
+    struct line *line = &ports->line;
     (void)status; /* a hang-up shows when reading */
     (void)events;
     if (line->watch)
         line_watch_follow(line->watch);
-    bus_expect(bus);
-    if (!bus->ports.reading)
+    ports->calls->expect(ports->context);
+    if (!ports->reading)
         return; /* there is no room any more, or the adapter has been unplugged */
-    if (!read_line(bus)) {
-        bus_log(bus, "%s is gone: %s; start again when it is back", bus->options->port ? bus->options->port : line->path,
-                errno ? strerror(errno) : "hung up");
-        bus->calls->failed(bus->context);
+    if (!read_line(ports)) {
+        bus_log(ports->log, "%s is gone: %s; start again when it is back",
+                ports->options->port ? ports->options->port : line->path, errno ? strerror(errno) : "hung up");
+        ports->calls->failed(ports->context);
         return;
     }
-    bus_catch_up(bus);
-    if (bus->options->port)
-        bus->calls->presence(bus->context);
+    ports->calls->changed(ports->context);
+    if (ports->options->port)
+        ports->calls->presence(ports->context);
 }
 
-void bus_ports_listen(struct bus *bus)
+void bus_ports_listen(struct bus_ports *ports)
 {
-    struct bus_ports *ports = &bus->ports;
-    size_t most = bus_room(bus);
-    follow_adapter(bus);
-    if (ports->reading && room(bus) == 0) {
+    size_t most = ports->calls->room(ports->context);
+    follow_adapter(ports);
+    if (ports->reading && room(ports) == 0) {
         uv_poll_stop(&ports->readable);
         ports->reading = false;
     } else if (!ports->reading && ports->line.fd >= 0 && most >= SEGMENT_ROOM / 2) {
@@ -271,27 +233,26 @@ void bus_ports_listen(struct bus *bus)
 /* The units catch up first, which may fill the line with bytes of others. */
 static size_t net_room(void *context)
 {
-    bus_expect(context);
-    return room(context);
+    struct bus_ports *ports = context;
+    ports->calls->expect(ports->context);
+    return room(ports);
 }
 
 static void net_bytes(void *context, const uint8_t *bytes, size_t length)
 {
-    struct bus *bus = context;
-    look(bus);
-    take(bus, bytes, length);
-    if (!bus->busy)
-        bus_catch_up(bus);
+    struct bus_ports *ports = context;
+    look(ports);
+    take(ports, bytes, length);
+    ports->calls->changed(ports->context);
 }
 
 /* Who has the line, for one who comes over TCP. */
 static const char *net_owner(void *context)
 {
-    struct bus *bus = context;
-    const struct bus_ports *ports = &bus->ports;
+    struct bus_ports *ports = context;
     if (ports->line.watch)
         line_watch_follow(ports->line.watch); /* somebody may have closed the pty just now */
-    if (bus->options->pty && ports->line.clients > 0)
+    if (ports->options->pty && ports->line.clients > 0)
         return "a client of the pty";
     const char *owner = ports->tcp ? net_port_client(ports->tcp) : NULL;
     return !owner && ports->rfc2217 ? net_port_client(ports->rfc2217) : owner;
@@ -312,40 +273,40 @@ static uint64_t take_unheard(struct bus_ports *ports)
 }
 
 /* Whoever knocks without an end must not fill the log. */
-static void tell_refused(struct bus *bus, const char *peer)
+static void tell_refused(struct bus_ports *ports, const char *peer)
 {
-    if (++bus->ports.refused <= REFUSED_TOLD)
-        bus_log(bus, "the client %s was sent away: another one has the line", peer);
-    if (bus->ports.refused == REFUSED_TOLD)
-        bus_log(bus, "many were sent away: no more of it is told until the line has another client");
+    if (++ports->refused <= REFUSED_TOLD)
+        bus_log(ports->log, "the client %s was sent away: another one has the line", peer);
+    if (ports->refused == REFUSED_TOLD)
+        bus_log(ports->log, "many were sent away: no more of it is told until the line has another client");
 }
 
 static void net_told(void *context, enum net_news news, const char *peer)
 {
-    struct bus *bus = context;
-    uint64_t unheard = take_unheard(&bus->ports);
+    struct bus_ports *ports = context;
+    uint64_t unheard = take_unheard(ports);
     switch (news) {
     case NET_DETACHED:
-        bus_log_detail(bus, "the client %s has closed the line", peer);
+        bus_log_detail(ports->log, "the client %s has closed the line", peer);
         if (unheard > 0)
-            bus_log(bus, "it gives way to another client: %" PRIu64 " bytes that it had sent were dropped", unheard);
+            bus_log(ports->log, "it gives way to another client: %" PRIu64 " bytes that it had sent were dropped", unheard);
         break;
     case NET_ATTACHED:
-        bus->ports.refused = 0;
-        bus_log_detail(bus, "the client %s has opened the line", peer);
-        bus->ports.known = bus->ports.net = line_settings_unit;
+        ports->refused = 0;
+        bus_log_detail(ports->log, "the client %s has opened the line", peer);
+        ports->known = ports->net = line_settings_unit;
         break;
     case NET_REFUSED:
-        tell_refused(bus, peer);
+        tell_refused(ports, peer);
         break;
     }
-    bus->calls->presence(bus->context);
+    ports->calls->presence(ports->context);
 }
 
 static void net_settings(void *context, uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits)
 {
-    struct bus *bus = context;
-    bus->ports.net = (struct line_settings){
+    struct bus_ports *ports = context;
+    ports->net = (struct line_settings){
         .baud = baud,
         .data_bits = (uint8_t)data_bits,
         .parity = parity,
@@ -355,18 +316,14 @@ static void net_settings(void *context, uint32_t baud, unsigned data_bits, char 
 
 static void net_break(void *context, bool on)
 {
-    struct bus *bus = context;
-    struct sim *sim = bus_sim(bus);
-    sim_break(sim, on);
-    bus_changed(bus);
+    struct bus_ports *ports = context;
+    ports->calls->line_break(ports->context, on);
 }
 
 static void net_purge(void *context)
 {
-    struct bus *bus = context;
-    struct sim *sim = bus_sim(bus);
-    sim_purge(sim);
-    bus_changed(bus);
+    struct bus_ports *ports = context;
+    ports->calls->purge(ports->context);
 }
 
 static const struct net_port_calls net_calls = {
@@ -380,15 +337,16 @@ static const struct net_port_calls net_calls = {
 };
 
 /* Returns NULL if it did not work (reported). */
-static struct net_port *open_net(struct bus *bus, uv_loop_t *loop, const char *address, enum net_kind kind)
+static struct net_port *open_net(struct bus_ports *ports, uv_loop_t *loop, const char *address, enum net_kind kind)
 {
     char own[NET_NAME_SIZE];
     struct net_port *port = calloc(1, sizeof *port);
     if (!port)
         log_error("out of memory");
-    else if (!name_address(address, bus->number, own, sizeof own))
-        log_error("%s: there is no port for line %u: expected one up to 65535 less the number of lines", address, bus->number);
-    else if (net_port_open(port, loop, own, kind, &net_calls, bus))
+    else if (!name_address(address, ports->log->number, own, sizeof own))
+        log_error("%s: there is no port for line %u: expected one up to 65535 less the number of lines", address,
+                  ports->log->number);
+    else if (net_port_open(port, loop, own, kind, &net_calls, ports))
         return port;
     free(port);
     return NULL;
@@ -396,85 +354,99 @@ static struct net_port *open_net(struct bus *bus, uv_loop_t *loop, const char *a
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
-static bool poll_fd(struct bus *bus, uv_loop_t *loop, uv_poll_t *poll, int fd, uv_poll_cb callback)
+static bool poll_line(struct bus_ports *ports, uv_loop_t *loop)
 {
-    poll->data = bus;
-    int error = uv_poll_init(loop, poll, fd);
+    ports->readable.data = ports;
+    int error = uv_poll_init(loop, &ports->readable, ports->line.fd);
     if (error == 0)
-        error = uv_poll_start(poll, UV_READABLE, callback);
+        error = uv_poll_start(&ports->readable, UV_READABLE, on_readable);
     if (error != 0)
         log_error("cannot watch the line: %s", uv_strerror(error));
     return error == 0;
 }
 
-static bool open_line(struct bus *bus, uv_loop_t *loop, struct line_watch *watch)
+static bool open_line(struct bus_ports *ports, uv_loop_t *loop, struct line_watch *watch)
 {
-    const struct bus_options *options = bus->options;
-    struct bus_ports *ports = &bus->ports;
+    const struct bus_options *options = ports->options;
     char path[PATH_MAX];
     if (options->port) {
         if (!line_serial_open(&ports->line, options->port, options->rts))
             return false;
-        if (options->rts == LINE_RTS_TOGGLES) {
-            ports->lower_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-            if (!poll_fd(bus, loop, &ports->lower, ports->lower_fd, on_lower))
-                return false;
-        }
+        if (options->rts == LINE_RTS_TOGGLES && !bus_rts_begin(&ports->rts, &ports->line, loop))
+            return false;
     } else if (options->pty) {
-        if (options->link && !name_expand(options->link, NULL, bus->number, path)) {
+        if (options->link && !name_expand(options->link, NULL, ports->log->number, path)) {
             log_error("--link: the path is too long");
             return false;
         }
         uv_timer_init(loop, &ports->again);
-        ports->again.data = bus;
-        if (!link_path_claim(&ports->link, options->link ? path : NULL, bus->number) ||
-            !line_pty_open(&ports->line, watch, on_news, bus))
+        ports->again.data = ports;
+        if (!link_path_claim(&ports->link, options->link ? path : NULL, ports->log->number) ||
+            !line_pty_open(&ports->line, watch, on_news, ports))
             return false;
     } else {
         return true;
     }
-    ports->reading = poll_fd(bus, loop, &ports->readable, ports->line.fd, on_readable);
+    ports->reading = poll_line(ports, loop);
     return ports->reading;
 }
 
-bool bus_ports_open(struct bus *bus, uv_loop_t *loop, struct line_watch *watch)
+void bus_ports_prepare(struct bus_ports *ports, const struct bus_options *options, const struct bus_log *log,
+                       const struct bus_ports_calls *calls, void *context)
 {
-    const struct bus_options *options = bus->options;
-    struct bus_ports *ports = &bus->ports;
+    ports->options = options;
+    ports->log = log;
+    ports->calls = calls;
+    ports->context = context;
+    ports->rts.timer_fd = ports->link.lock = -1;
+    line_none(&ports->line);
+}
+
+bool bus_ports_open(struct bus_ports *ports, uv_loop_t *loop, struct line_watch *watch)
+{
+    const struct bus_options *options = ports->options;
     ports->known = ports->net = line_settings_unit;
     ports->watch = watch;
-    if (!open_line(bus, loop, watch))
+    if (!open_line(ports, loop, watch))
         return false;
-    if (options->tcp && !(ports->tcp = open_net(bus, loop, options->tcp, NET_RAW)))
+    if (options->tcp && !(ports->tcp = open_net(ports, loop, options->tcp, NET_RAW)))
         return false;
-    if (options->rfc2217 && !(ports->rfc2217 = open_net(bus, loop, options->rfc2217, NET_RFC2217)))
+    if (options->rfc2217 && !(ports->rfc2217 = open_net(ports, loop, options->rfc2217, NET_RFC2217)))
         return false;
     return true;
 }
 
-bool bus_ports_publish(struct bus *bus)
+bool bus_ports_publish(struct bus_ports *ports)
 {
-    return !bus->options->pty || link_path_make(&bus->ports.link, bus->ports.line.path);
+    return !ports->options->pty || link_path_make(&ports->link, ports->line.path);
 }
 
-void bus_ports_close(struct bus *bus)
+void bus_ports_close(struct bus_ports *ports)
 {
-    bus->ports.ended = true;
-    link_path_release(&bus->ports.link);
-    if (bus->ports.tcp)
-        net_port_close(bus->ports.tcp);
-    if (bus->ports.rfc2217)
-        net_port_close(bus->ports.rfc2217);
+    ports->ended = true;
+    link_path_release(&ports->link);
+    if (ports->tcp)
+        net_port_close(ports->tcp);
+    if (ports->rfc2217)
+        net_port_close(ports->rfc2217);
+}
+
+void bus_ports_free(struct bus_ports *ports)
+{
+    free(ports->tcp);
+    free(ports->rfc2217);
+    line_close(&ports->line);
+    bus_rts_free(&ports->rts);
 }
 
 /* ---- The adapter ---------------------------------------------------------------------------------------------------- */
 
 static void on_pty_closed(uv_handle_t *handle)
 {
-    struct bus *bus = handle->data;
-    bus->ports.closing = false;
-    if (!bus->ports.resting)
-        follow_adapter(bus);
+    struct bus_ports *ports = handle->data;
+    ports->closing = false;
+    if (!ports->resting)
+        follow_adapter(ports);
 }
 
 static void plug_network(struct bus_ports *ports, bool plugged)
@@ -486,9 +458,8 @@ static void plug_network(struct bus_ports *ports, bool plugged)
 }
 
 /* The pty goes away with its link. */
-static void drop_pty(struct bus *bus)
+static void drop_pty(struct bus_ports *ports)
 {
-    struct bus_ports *ports = &bus->ports;
     uint64_t dropped = ports->line.dropped;
     struct stat found;
     if (stat(ports->line.path, &found) == 0) {
@@ -504,19 +475,18 @@ static void drop_pty(struct bus *bus)
     ports->line.dropped = dropped;
 }
 
-static void pull_out(struct bus *bus)
+static void pull_out(struct bus_ports *ports)
 {
-    struct bus_ports *ports = &bus->ports;
     ports->out = true;
-    if (bus->options->pty) {
+    if (ports->options->pty) {
         if (!ports->lost)
-            bus_log(bus, "the adapter is unplugged: %s and its link are gone", ports->line.path);
-        drop_pty(bus);
+            bus_log(ports->log, "the adapter is unplugged: %s and its link are gone", ports->line.path);
+        drop_pty(ports);
     } else {
-        bus_log(bus, "the adapter is unplugged%s", bus->options->port ? ": the device stays, and is silent" : "");
+        bus_log(ports->log, "the adapter is unplugged%s", ports->options->port ? ": the device stays, and is silent" : "");
     }
     plug_network(ports, false);
-    bus->calls->presence(bus->context);
+    ports->calls->presence(ports->context);
 }
 
 /* The new pty is for whom the old one was for. */
@@ -532,32 +502,30 @@ static void keep_access(const struct bus_ports *ports)
         log_error("cannot give %s the mode %03o of the pty before: %s", path, (unsigned)ports->mode, strerror(errno));
 }
 
-static bool make_pty(struct bus *bus)
+static bool make_pty(struct bus_ports *ports)
 {
-    struct bus_ports *ports = &bus->ports;
     uint64_t dropped = ports->line.dropped;
-    bool made = line_pty_open(&ports->line, ports->watch, on_news, bus);
+    bool made = line_pty_open(&ports->line, ports->watch, on_news, ports);
     ports->line.dropped = dropped;
     if (!made)
         return false;
-    ports->reading = poll_fd(bus, ports->again.loop, &ports->readable, ports->line.fd, on_readable);
+    ports->reading = poll_line(ports, ports->again.loop);
     if (!ports->reading) {
         line_close(&ports->line);
         return false;
     }
     keep_access(ports);
-    if (bus_ports_publish(bus))
+    if (bus_ports_publish(ports))
         return true;
-    drop_pty(bus);
+    drop_pty(ports);
     return false;
 }
 
-static void put_in(struct bus *bus)
+static void put_in(struct bus_ports *ports)
 {
-    struct bus_ports *ports = &bus->ports;
-    if (bus->options->pty && !make_pty(bus)) {
+    if (ports->options->pty && !make_pty(ports)) {
         if (!ports->rest_told)
-            bus_log(bus, "the adapter cannot be plugged in again: trying every second");
+            bus_log(ports->log, "the adapter cannot be plugged in again: trying every second");
         ports->resting = ports->rest_told = true;
         uv_timer_start(&ports->again, on_again, AGAIN_MS, 0);
         return;
@@ -565,36 +533,35 @@ static void put_in(struct bus *bus)
     ports->out = ports->rest_told = false;
     ports->known = ports->net = line_settings_unit;
     plug_network(ports, true);
-    if (bus->options->pty)
-        bus_log(bus, "the adapter is plugged in again: %s, link %s", ports->line.path, ports->link.path);
+    if (ports->options->pty)
+        bus_log(ports->log, "the adapter is plugged in again: %s, link %s", ports->line.path, ports->link.path);
     else
-        bus_log(bus, "the adapter is plugged in again");
+        bus_log(ports->log, "the adapter is plugged in again");
 }
 
 /* What the fault of the adapter has come to since the last look. It may have come and gone: then it is another pty. */
-static void follow_adapter(struct bus *bus)
+static void follow_adapter(struct bus_ports *ports)
 {
-    struct bus_ports *ports = &bus->ports;
     if (ports->ended)
         return;
     if (ports->pulled || ports->lost) {
         if (!ports->out)
-            pull_out(bus);
+            pull_out(ports);
         ports->pulled = ports->lost = false;
     }
     if (ports->out && !ports->unplugged && !ports->closing && !ports->resting)
-        put_in(bus);
+        put_in(ports);
 }
 
 static void on_again(uv_timer_t *timer)
 {
-    struct bus *bus = timer->data;
-    bus->ports.resting = false;
-    follow_adapter(bus);
+    struct bus_ports *ports = timer->data;
+    ports->resting = false;
+    follow_adapter(ports);
 }
 
-void bus_ports_plug(struct bus *bus, bool plugged)
+void bus_ports_plug(struct bus_ports *ports, bool plugged)
 {
-    bus->ports.pulled = bus->ports.pulled || !plugged;
-    bus->ports.unplugged = !plugged;
+    ports->pulled = ports->pulled || !plugged;
+    ports->unplugged = !plugged;
 }

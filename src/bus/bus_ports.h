@@ -1,16 +1,36 @@
 /* SPDX-License-Identifier: MIT */
 /* bus_ports.h: the ways in for clients of a line: a pty of its own or a serial device, TCP, RFC 2217; and what they have set
  * their ports to. All who are there stand at the same two wires: each gets what the units say. */
-#ifndef RKM04_HOST_BUS_PORTS_H
-#define RKM04_HOST_BUS_PORTS_H
+#ifndef RKM04_BUS_PORTS_H
+#define RKM04_BUS_PORTS_H
 
 #include <uv.h>
 
+#include "bus_log.h"
+#include "bus_options.h"
+#include "bus_rts.h"
 #include "line/line.h"
 
-struct bus;
+/* What the ports report, and ask, upwards. */
+struct bus_ports_calls {
+    void (*expect)(void *context);     /* bytes are about to be read, or room() to be asked: bring the units up to the present */
+    size_t (*room)(void *context);     /* returns how many bytes can be taken now */
+    /* A client sends, at `tick` (the present or later) or when what was sent before is out. `length` <= room(). */
+    void (*take)(void *context, const uint8_t *bytes, size_t length, uint64_t tick);
+    void (*line_break)(void *context, bool on);
+    void (*purge)(void *context);      /* drop what has not set out yet */
+    void (*changed)(void *context);    /* bytes were taken: look at once what follows */
+    uint64_t (*reached)(void *context); /* returns the tick that the units have reached */
+    void (*failed)(void *context);     /* the line is lost (reported) */
+    void (*presence)(void *context);   /* a client has come or gone, or bytes came */
+};
 
 struct bus_ports {
+    const struct bus_options *options;
+    const struct bus_log *log;
+    const struct bus_ports_calls *calls;
+    void *context;
+
     struct line line;           /* the pty or device */
     struct line_watch *watch;
     struct link_path link;      /* to the pty */
@@ -24,9 +44,7 @@ struct bus_ports {
     struct line_settings net;   /* of the RFC 2217 client */
     struct line_ear to_units, to_client; /* --strict-line and known is not as the unit has it */
 
-    int lower_fd;               /* timer: when RTS may be off again */
-    uv_poll_t lower;
-    uint64_t sent_until;        /* ns at which the device will have sent all */
+    struct bus_rts rts;         /* of a device, with --rts toggle */
 
     bool pulled, unplugged;     /* the adapter was pulled out since the last look; it is out now, if it is up to the fault */
     bool out;                   /* what follows of that has been done */
@@ -39,32 +57,38 @@ struct bus_ports {
     bool ended;                 /* bus_ports_close() */
 };
 
+/* Tell the ports what they are to be and whom they report to. bus_ports_free() is due from then on. */
+void bus_ports_prepare(struct bus_ports *ports, const struct bus_options *options, const struct bus_log *log,
+                       const struct bus_ports_calls *calls, void *context);
+
 /* Open what the options ask for. Failures are reported. Returns false if it did not work. */
-bool bus_ports_open(struct bus *bus, uv_loop_t *loop, struct line_watch *watch);
+bool bus_ports_open(struct bus_ports *ports, uv_loop_t *loop, struct line_watch *watch);
 
 /* Make the link to the pty. Failures are reported. Returns false if it did not work. */
-bool bus_ports_publish(struct bus *bus);
+bool bus_ports_publish(struct bus_ports *ports);
 
-void bus_ports_close(struct bus *bus);
+/* Close everything; the handles are gone when the loop has run out. Then bus_ports_free(). */
+void bus_ports_close(struct bus_ports *ports);
+void bus_ports_free(struct bus_ports *ports);
 
 /* The adapter is pulled out: the pty goes away with its link, network clients are hung up; or put in again: a new pty with the
  * group and mode of the old one under the same link. If there is no pty to be had (no free descriptor, no pty left), it is tried
  * again every second. A serial device stays. Done in the next bus_ports_listen(). */
-void bus_ports_plug(struct bus *bus, bool plugged);
+void bus_ports_plug(struct bus_ports *ports, bool plugged);
 
 /* How many clients are there; a device counts as none. */
-unsigned bus_ports_clients(const struct bus *bus);
+unsigned bus_ports_clients(const struct bus_ports *ports);
 
 /* Send to everybody who is there. */
-void bus_ports_send(struct bus *bus, const uint8_t *bytes, size_t length);
+void bus_ports_send(struct bus_ports *ports, const uint8_t *bytes, size_t length);
 
 /* The units are silent: what a strict line has heard in part is heard to its end. */
-void bus_ports_silence(struct bus *bus);
+void bus_ports_silence(struct bus_ports *ports);
 
 /* Listen while there is room for what comes. */
-void bus_ports_listen(struct bus *bus);
+void bus_ports_listen(struct bus_ports *ports);
 
 /* Bytes for nobody, and bytes that a client did not read. */
-uint64_t bus_ports_dropped(const struct bus *bus);
+uint64_t bus_ports_dropped(const struct bus_ports *ports);
 
 #endif

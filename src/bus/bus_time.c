@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* bus_time.c: how a line follows its clock: catches up, sleeps, waits, steps. */
+#include "bus_time.h"
+
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/timerfd.h>
+#include <unistd.h>
 
-#include "bus.h"
 #include "line/line.h"
 
 #define NS_PER_MS 1000000u
@@ -22,61 +23,61 @@
 #define CUTS_TOLD 100u           /* units that were cut off from answering one another, in the log */
 #define FRAME_SILENCE (100u * NS_PER_MS) /* --clock max: how long the rest of a frame is waited for (L2) */
 
-bool bus_stepped(const struct bus *bus)
+bool bus_time_is_stepped(const struct bus_time *time)
 {
-    return bus->clock.stands;
+    return time->clock.stands;
 }
 
 /* Where the clock stands at `now` (ns). */
-static uint64_t clock_tick(const struct bus *bus, uint64_t now)
+static uint64_t clock_tick(const struct bus_time *time, uint64_t now)
 {
-    uint64_t tick = virtual_clock_tick(&bus->clock, now);
+    uint64_t tick = virtual_clock_tick(&time->clock, now);
     return tick < SIM_TIME_MAX ? tick : SIM_TIME_MAX;
 }
 
-uint64_t bus_present(const struct bus *bus)
+uint64_t bus_time_present(const struct bus_time *time)
 {
-    if (!bus->running)
+    if (!time->running)
         return 0;
-    return bus_stepped(bus) || bus->behind > 0 ? sim_now(&bus->sim) : clock_tick(bus, uv_hrtime());
+    return bus_time_is_stepped(time) || time->behind > 0 ? sim_now(time->sim) : clock_tick(time, uv_hrtime());
 }
 
 /* ---- Who waits ------------------------------------------------------------------------------------------------------ */
 
-static void take_off(struct bus *bus, struct bus_waiter *waiter)
+static void take_off(struct bus_time *time, struct bus_waiter *waiter)
 {
-    for (struct bus_waiter **at = &bus->waiters; *at; at = &(*at)->next) {
+    for (struct bus_waiter **at = &time->waiters; *at; at = &(*at)->next) {
         if (*at == waiter) {
             *at = waiter->next;
             break;
         }
     }
-    if (bus->advancing == waiter) {
-        bus->advancing = NULL;
-        bus->goal = sim_now(&bus->sim);
+    if (time->advancing == waiter) {
+        time->advancing = NULL;
+        time->goal = sim_now(time->sim);
     }
 }
 
 /* Tell those who have waited long enough. A waiter who is told may wait again, or take others off. */
-static void serve_waiters(struct bus *bus)
+static void serve_waiters(struct bus_time *time)
 {
-    for (struct bus_waiter *waiter = bus->waiters; waiter;) {
+    for (struct bus_waiter *waiter = time->waiters; waiter;) {
         bool holds = waiter->condition && condition_holds(waiter->condition);
-        if (!holds && sim_now(&bus->sim) < waiter->limit) {
+        if (!holds && sim_now(time->sim) < waiter->limit) {
             waiter = waiter->next;
             continue;
         }
-        take_off(bus, waiter);
+        take_off(time, waiter);
         waiter->done(waiter, holds);
-        waiter = bus->waiters;
+        waiter = time->waiters;
     }
 }
 
 /* The tick up to which nobody who waits has to look. */
-static uint64_t waiters_next(const struct bus *bus)
+static uint64_t waiters_next(const struct bus_time *time)
 {
-    uint64_t next = RKM04_NEVER, now = sim_now(&bus->sim);
-    for (const struct bus_waiter *waiter = bus->waiters; waiter; waiter = waiter->next) {
+    uint64_t next = RKM04_NEVER, now = sim_now(time->sim);
+    for (const struct bus_waiter *waiter = time->waiters; waiter; waiter = waiter->next) {
         uint64_t when = waiter->condition ? condition_next(waiter->condition) : RKM04_NEVER;
         if (waiter->limit < when)
             when = waiter->limit;
@@ -88,50 +89,49 @@ static uint64_t waiters_next(const struct bus *bus)
     return next;
 }
 
-void bus_wait(struct bus *bus, struct bus_waiter *waiter)
+void bus_time_wait(struct bus_time *time, struct bus_waiter *waiter)
 {
-    waiter->next = bus->waiters;
-    bus->waiters = waiter;
-    if (!bus->busy)
-        bus_catch_up(bus);
+    waiter->next = time->waiters;
+    time->waiters = waiter;
+    bus_time_follow(time);
 }
 
-void bus_wait_cancel(struct bus *bus, struct bus_waiter *waiter)
+void bus_time_cancel_wait(struct bus_time *time, struct bus_waiter *waiter)
 {
-    take_off(bus, waiter);
+    take_off(time, waiter);
 }
 
-bool bus_advance(struct bus *bus, struct bus_waiter *waiter)
+bool bus_time_advance(struct bus_time *time, struct bus_waiter *waiter)
 {
-    if (!bus_stepped(bus) || bus->advancing)
+    if (!bus_time_is_stepped(time) || time->advancing)
         return false;
-    bus->advancing = waiter;
-    bus->goal = waiter->limit;
-    bus_wait(bus, waiter);
+    time->advancing = waiter;
+    time->goal = waiter->limit;
+    bus_time_wait(time, waiter);
     return true;
 }
 
 /* ---- Where time goes ------------------------------------------------------------------------------------------------ */
 
 /* The earliest tick at which a byte is to be moved. */
-static uint64_t due(const struct bus *bus)
+static uint64_t next_byte(const struct bus_time *time)
 {
-    uint64_t tick = sim_due(&bus->sim);
-    return bus->gathered > 0 && bus->answered < tick ? bus->answered : tick;
+    uint64_t tick = sim_due(time->sim), answer = time->calls->due(time->context);
+    return answer < tick ? answer : tick;
 }
 
 /* --clock max: the tick to leap to at `now` (ns): that of the next byte under way; else, unless the rest of a frame is on its
  * way, past the next thing that happens. RKM04_NEVER: no reason to leap. */
-static uint64_t leap_to(const struct bus *bus, uint64_t now)
+static uint64_t leap_to(const struct bus_time *time, uint64_t now)
 {
-    if (!bus->clock.runs_ahead || sim_time_is_over(&bus->sim))
+    if (!time->clock.runs_ahead || sim_time_is_over(time->sim))
         return RKM04_NEVER;
-    uint64_t byte = due(bus);
+    uint64_t byte = next_byte(time);
     if (byte != RKM04_NEVER)
         return byte < SIM_TIME_MAX ? byte : SIM_TIME_MAX;
-    if (segment_in_frame(&bus->sim.segment) && now - bus->heard < FRAME_SILENCE)
+    if (segment_in_frame(&time->sim->segment) && now - time->heard < FRAME_SILENCE)
         return RKM04_NEVER;
-    uint64_t event = sim_next_event(&bus->sim), least = sim_now(&bus->sim) + LEAP;
+    uint64_t event = sim_next_event(time->sim), least = sim_now(time->sim) + LEAP;
     if (event == RKM04_NEVER)
         return RKM04_NEVER;
     uint64_t leap = event < least ? least : event + 1;
@@ -139,68 +139,68 @@ static uint64_t leap_to(const struct bus *bus, uint64_t now)
 }
 
 /* Up to which tick the units are to be at `now` (ns). */
-static uint64_t goal(struct bus *bus, uint64_t now)
+static uint64_t goal(struct bus_time *time, uint64_t now)
 {
-    if (bus_stepped(bus))
-        return bus->goal;
-    uint64_t tick = clock_tick(bus, now), leap = leap_to(bus, now);
+    if (bus_time_is_stepped(time))
+        return time->goal;
+    uint64_t tick = clock_tick(time, now), leap = leap_to(time, now);
     if (leap == RKM04_NEVER || leap <= tick)
         return tick;
-    virtual_clock_leap(&bus->clock, now, leap);
+    virtual_clock_leap(&time->clock, now, leap);
     return leap;
 }
 
 /* Units of one address may take each other's answers for requests: plain framing, a fault that makes one of them late. */
-static void report_cuts(struct bus *bus)
+static void report_cuts(struct bus_time *time)
 {
-    struct segment_counters counters = segment_counters(&bus->sim.segment);
-    if (counters.cuts > bus->cuts && bus->cuts < CUTS_TOLD)
-        bus_log(bus, "units have answered one another more than %u times without a request, for %" PRIu64 ".%06" PRIu64
+    struct segment_counters counters = segment_counters(&time->sim->segment);
+    if (counters.cuts > time->cuts && time->cuts < CUTS_TOLD)
+        bus_log(time->log, "units have answered one another more than %u times without a request, for %" PRIu64 ".%06" PRIu64
                      " s in all: cut off; have two units the same address?", SEGMENT_UNASKED_MAX,
                 counters.cut_ticks / RKM04_TICKS_PER_SECOND, counters.cut_ticks % RKM04_TICKS_PER_SECOND);
-    bus->cuts = counters.cuts;
+    time->cuts = counters.cuts;
 }
 
 /* One step towards `tick`: a span in which nothing happens, or STEP, and no further than somebody waits for. Anything may be
  * reached in one call of the sim, but then nobody would look at the line and at signals for a long while. */
-static void step(struct bus *bus, uint64_t tick)
+static void step(struct bus_time *time, uint64_t tick)
 {
-    uint64_t end = sim_now(&bus->sim) + STEP, wanted = waiters_next(bus);
+    uint64_t end = sim_now(time->sim) + STEP, wanted = waiters_next(time);
     if (end < tick) {
-        uint64_t event = sim_next_event(&bus->sim);
+        uint64_t event = sim_next_event(time->sim);
         if (end <= event)
             end = event == RKM04_NEVER ? RKM04_NEVER : event + 1;
     }
     if (wanted < end)
         end = wanted;
-    sim_advance(&bus->sim, tick < end ? tick : end);
-    report_cuts(bus);
-    serve_waiters(bus);
+    sim_advance(time->sim, tick < end ? tick : end);
+    report_cuts(time);
+    serve_waiters(time);
 }
 
-static bool is_watched(const struct bus *bus)
+static bool is_watched(const struct bus_time *time)
 {
-    return bus->waiters || (bus->sim.watch.kinds & ~bus->news.kinds) != 0;
+    return time->waiters || (time->sim->watch.kinds & ~time->own_kinds) != 0;
 }
 
 /* When (ns) there will be something to do; 0: not before bytes come. */
-static uint64_t next_wake(const struct bus *bus, uint64_t now)
+static uint64_t next_wake(const struct bus_time *time, uint64_t now)
 {
-    uint64_t byte = due(bus), event = sim_next_event(&bus->sim), wanted = waiters_next(bus), when = 0;
-    if (bus_stepped(bus) || sim_time_is_over(&bus->sim))
+    uint64_t byte = next_byte(time), event = sim_next_event(time->sim), wanted = waiters_next(time), when = 0;
+    if (bus_time_is_stepped(time) || sim_time_is_over(time->sim))
         return 0;
-    if (leap_to(bus, now) != RKM04_NEVER)
+    if (leap_to(time, now) != RKM04_NEVER)
         return now;
     if (wanted < byte)
         byte = wanted;
-    if (faults_next(&bus->sim) < byte)
-        byte = faults_next(&bus->sim); /* an adapter that is unplugged shows at once */
+    if (faults_next(time->sim) < byte)
+        byte = faults_next(time->sim); /* an adapter that is unplugged shows at once */
     if (byte != RKM04_NEVER) {
-        when = virtual_clock_when(&bus->clock, byte);
+        when = virtual_clock_when(&time->clock, byte);
         when = when > 0 ? when : now;
     }
     if (event != RKM04_NEVER) {
-        uint64_t look = virtual_clock_when(&bus->clock, event + 1), rest = is_watched(bus) ? REST_WATCHED : REST;
+        uint64_t look = virtual_clock_when(&time->clock, event + 1), rest = is_watched(time) ? REST_WATCHED : REST;
         if (look < now + rest)
             look = now + rest;
         if (when == 0 || look < when)
@@ -209,146 +209,171 @@ static uint64_t next_wake(const struct bus *bus, uint64_t now)
     return when;
 }
 
-static void set_timer(struct bus *bus, uint64_t when)
+static void set_timer(struct bus_time *time, uint64_t when)
 {
     struct itimerspec spec = {
         .it_value = {.tv_sec = (time_t)(when / NS_PER_SECOND), .tv_nsec = (long)(when % NS_PER_SECOND)},
     };
-    timerfd_settime(bus->timer_fd, TFD_TIMER_ABSTIME, &spec, NULL);
-    bus->wake = when;
+    timerfd_settime(time->timer_fd, TFD_TIMER_ABSTIME, &spec, NULL);
+    time->wake = when;
 }
 
 /* The process has slept for much longer than it wanted to: it was stopped, or the machine was. */
-static void look_if_late(struct bus *bus, uint64_t now)
+static void look_if_late(struct bus_time *time, uint64_t now)
 {
-    if (bus->wake == 0 || now < bus->wake + LATE)
+    if (time->wake == 0 || now < time->wake + LATE)
         return;
-    uint64_t late = now - bus->wake;
-    if (bus->options->late_skips)
-        virtual_clock_skip(&bus->clock, late);
-    bus_log(bus, "late by %" PRIu64 ".%03" PRIu64 " s: was the process stopped? %s", late / NS_PER_SECOND,
+    uint64_t late = now - time->wake;
+    if (time->options->late_skips)
+        virtual_clock_skip(&time->clock, late);
+    bus_log(time->log, "late by %" PRIu64 ".%03" PRIu64 " s: was the process stopped? %s", late / NS_PER_SECOND,
             late % NS_PER_SECOND / NS_PER_MS,
-            bus->options->late_skips ? "the units' time has not gone on meanwhile (--late skip)"
+            time->options->late_skips ? "the units' time has not gone on meanwhile (--late skip)"
                                      : "the units catch up (--late catch-up)");
 }
 
 /* Whoever has chosen the clock should know that it is too fast. */
-static void note_behind(struct bus *bus, uint64_t now, bool behind)
+static void note_behind(struct bus_time *time, uint64_t now, bool behind)
 {
-    if (!behind || bus->behind == 0)
-        bus->behind = behind ? now : 0;
-    if (behind && !bus->behind_told && !bus_stepped(bus) && now - bus->behind > LONG_BEHIND) {
-        bus_log(bus, "behind clock %s for a second: the units go as fast as this machine can", bus->clock_text);
-        bus->behind_told = true;
+    if (!behind || time->behind == 0)
+        time->behind = behind ? now : 0;
+    if (behind && !time->behind_told && !bus_time_is_stepped(time) && now - time->behind > LONG_BEHIND) {
+        bus_log(time->log, "behind clock %s for a second: the units go as fast as this machine can", time->clock_text);
+        time->behind_told = true;
     }
 }
 
-static void note_end_of_time(struct bus *bus)
+static void note_end_of_time(struct bus_time *time)
 {
-    if (bus->over_told || !sim_time_is_over(&bus->sim))
+    if (time->over_told || !sim_time_is_over(time->sim))
         return;
-    bus_log(bus, "virtual time has come to its end, %" PRIu64 " s: the units' time does not go on, and they answer no more. "
-            "Start again", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND);
-    bus->over_told = true;
+    bus_log(time->log, "virtual time has come to its end, %" PRIu64 " s: the units' time does not go on, and they "
+            "answer no more. Start again", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND);
+    time->over_told = true;
 }
 
-void bus_catch_up(struct bus *bus)
+void bus_time_catch_up(struct bus_time *time)
 {
     uint64_t start = uv_hrtime(), now = start, tick;
-    if (!bus_stepped(bus))
-        look_if_late(bus, now);
-    bus->busy = true;
+    if (!bus_time_is_stepped(time))
+        look_if_late(time, now);
+    time->busy = true;
     do {
-        tick = goal(bus, now);
-        step(bus, tick);
-        if (bus->answered <= sim_now(&bus->sim) && bus->gathered > 0) {
-            bus_ports_send(bus, bus->out, bus->gathered);
-            bus->gathered = 0;
-        }
+        tick = goal(time, now);
+        step(time, tick);
+        time->calls->advanced(time->context);
         now = uv_hrtime();
-    } while (now - start < STINT && (sim_now(&bus->sim) < tick || leap_to(bus, now) != RKM04_NEVER));
-    note_behind(bus, now, sim_now(&bus->sim) < tick);
-    note_end_of_time(bus);
-    if (segment_idle(&bus->sim.segment))
-        bus_ports_silence(bus);
-    bus_ports_listen(bus);
-    bus_files_look(bus);
-    bus->busy = false;
-    if (bus_stepped(bus))
-        tick = bus->goal; /* whoever it was advanced for may be content */
-    uint64_t wake = sim_now(&bus->sim) < tick ? now : next_wake(bus, now);
-    if (bus->options->late_skips && !bus_stepped(bus) && (wake == 0 || wake > now + HEARTBEAT))
+    } while (now - start < STINT && (sim_now(time->sim) < tick || leap_to(time, now) != RKM04_NEVER));
+    note_behind(time, now, sim_now(time->sim) < tick);
+    note_end_of_time(time);
+    time->calls->before_sleep(time->context);
+    time->busy = false;
+    if (bus_time_is_stepped(time))
+        tick = time->goal; /* whoever it was advanced for may be content */
+    uint64_t wake = sim_now(time->sim) < tick ? now : next_wake(time, now);
+    if (time->options->late_skips && !bus_time_is_stepped(time) && (wake == 0 || wake > now + HEARTBEAT))
         wake = now + HEARTBEAT;
-    set_timer(bus, wake);
+    set_timer(time, wake);
 }
 
 static void on_timer(uv_poll_t *handle, int status, int events)
 {
     (void)status;
     (void)events;
-    bus_catch_up(handle->data);
+    bus_time_catch_up(handle->data);
 }
 
-bool bus_time_begin(struct bus *bus, uv_loop_t *loop)
+void bus_time_prepare(struct bus_time *time, const struct bus_options *options, bool timed, struct sim *sim,
+                      const struct bus_log *log, const struct bus_time_calls *calls, void *context)
 {
-    bus->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    int error = bus->timer_fd < 0 ? -errno : uv_poll_init(loop, &bus->timer, bus->timer_fd);
-    bus->timer.data = bus;
+    time->options = options;
+    time->timed = timed;
+    time->sim = sim;
+    time->log = log;
+    time->calls = calls;
+    time->context = context;
+    time->clock = options->clock;
+    snprintf(time->clock_text, sizeof time->clock_text, "%s", options->clock_text);
+}
+
+bool bus_time_begin(struct bus_time *time, uv_loop_t *loop)
+{
+    time->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    int error = time->timer_fd < 0 ? -errno : uv_poll_init(loop, &time->timer, time->timer_fd);
+    time->timer.data = time;
     if (error == 0)
-        error = uv_poll_start(&bus->timer, UV_READABLE, on_timer);
+        error = uv_poll_start(&time->timer, UV_READABLE, on_timer);
     if (error != 0)
         log_error("cannot make a timer: %s", uv_strerror(error));
     return error == 0;
 }
 
+void bus_time_start(struct bus_time *time)
+{
+    virtual_clock_start(&time->clock, uv_hrtime(), 0);
+    time->running = true;
+    bus_time_catch_up(time);
+}
+
+void bus_time_free(struct bus_time *time)
+{
+    if (time->timer_fd >= 0)
+        close(time->timer_fd);
+}
+
 /* ---- From outside --------------------------------------------------------------------------------------------------- */
 
-struct sim *bus_sim(struct bus *bus)
+/* Unless it is being done already. */
+void bus_time_follow(struct bus_time *time)
 {
-    if (!bus->busy)
-        bus_catch_up(bus);
-    return &bus->sim;
+    if (!time->busy)
+        bus_time_catch_up(time);
+}
+
+void bus_time_note_bytes(struct bus_time *time)
+{
+    time->heard = uv_hrtime();
 }
 
 /* --clock max leaps when there is nothing to read. */
-void bus_expect(struct bus *bus)
+void bus_time_expect(struct bus_time *time)
 {
-    if (!bus->busy && !bus->clock.runs_ahead)
-        bus_catch_up(bus);
+    if (!time->busy && !time->clock.runs_ahead)
+        bus_time_catch_up(time);
 }
 
 /* What a command does may take time along: a snapshot that is restored may be of a later tick. */
-void bus_changed(struct bus *bus)
+void bus_time_changed(struct bus_time *time)
 {
-    uint64_t reached = sim_now(&bus->sim), now = uv_hrtime();
-    if (bus_stepped(bus) && bus->goal < reached)
-        bus->goal = reached;
-    if (!bus_stepped(bus) && virtual_clock_tick(&bus->clock, now) < reached)
-        virtual_clock_leap(&bus->clock, now, reached);
-    if (!bus->busy)
-        bus_catch_up(bus);
+    uint64_t reached = sim_now(time->sim), now = uv_hrtime();
+    if (bus_time_is_stepped(time) && time->goal < reached)
+        time->goal = reached;
+    if (!bus_time_is_stepped(time) && virtual_clock_tick(&time->clock, now) < reached)
+        virtual_clock_leap(&time->clock, now, reached);
+    if (!time->busy)
+        bus_time_catch_up(time);
 }
 
-bool bus_set_clock(struct bus *bus, const char *text, struct refusal *refusal)
+bool bus_time_set_clock(struct bus_time *time, const char *text, struct refusal *refusal)
 {
     struct virtual_clock clock;
-    if (strlen(text) >= sizeof bus->clock_text || !virtual_clock_read(&clock, text)) {
+    if (strlen(text) >= sizeof time->clock_text || !virtual_clock_read(&clock, text)) {
         refuse(refusal, REFUSED_PARAMS, "clock: `%.40s' is wrong: expected " VIRTUAL_CLOCK_EXPECTED, text);
         return false;
     }
-    if (bus->advancing) {
+    if (time->advancing) {
         refuse(refusal, REFUSED_STATE, "the clock is being advanced: change it when that has ended");
         return false;
     }
-    bus_sim(bus);
-    bus->behind = 0;
-    bus->behind_told = false;
-    sim_set_timed(&bus->sim, bus->options->baud != 0 && !bus->ports.line.is_wire && !clock.stands);
-    bus->goal = sim_now(&bus->sim);
-    bus->clock = clock;
-    virtual_clock_start(&bus->clock, uv_hrtime(), bus->goal);
-    snprintf(bus->clock_text, sizeof bus->clock_text, "%s", text);
-    bus_log(bus, "clock %s", text);
-    bus_changed(bus);
+    bus_time_follow(time);
+    time->behind = 0;
+    time->behind_told = false;
+    sim_set_timed(time->sim, time->timed && !clock.stands);
+    time->goal = sim_now(time->sim);
+    time->clock = clock;
+    virtual_clock_start(&time->clock, uv_hrtime(), time->goal);
+    snprintf(time->clock_text, sizeof time->clock_text, "%s", text);
+    bus_log(time->log, "clock %s", text);
+    bus_time_changed(time);
     return true;
 }

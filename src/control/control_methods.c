@@ -83,7 +83,7 @@ static json_t *set_clock(struct control_context *context, struct refusal *refusa
         if (!text || !set_clocks(context, text, refusal))
             return NULL;
     }
-    return json_pack("{s:I, s:s}", "t_us", (json_int_t)sim_now(bus_sim(context->bus)), "clock", context->bus->clock_text);
+    return json_pack("{s:I, s:s}", "t_us", (json_int_t)sim_now(bus_sim(context->bus)), "clock", context->bus->time.clock_text);
 }
 
 static json_t *shut_down(struct control_context *context, struct refusal *refusal)
@@ -131,7 +131,7 @@ static json_t *command(struct control_context *context, struct refusal *refusal)
     if (!json_object_get(result, "t_us"))
         json_object_set_new(result, "t_us", json_integer((json_int_t)tick));
     if (strcmp(request->method, "state") == 0)
-        json_object_set_new(result, "clock", json_string(context->bus->clock_text));
+        json_object_set_new(result, "clock", json_string(context->bus->time.clock_text));
     return result;
 }
 

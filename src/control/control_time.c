@@ -75,7 +75,7 @@ void control_time_forget(struct peer *peer)
     while (peer->calls) {
         struct control_call *call = peer->calls;
         if (!call->pausing)
-            bus_wait_cancel(call->bus, &call->waiter);
+            bus_cancel_wait(call->bus, &call->waiter);
         take_off(call);
         free_call(call);
     }
@@ -206,16 +206,16 @@ bool control_time_is_moved(const struct control *control, const struct bus *bus)
     for (const struct peer *peer = control->peers; peer; peer = peer->next)
         if (peer->advance && peer->advance->bus == bus)
             return true;
-    return bus->advancing != NULL;
+    return bus->time.advancing != NULL;
 }
 
 json_t *control_advance(struct control_context *context, struct refusal *refusal)
 {
     struct condition *condition = NULL;
     uint64_t ticks;
-    if (!bus_stepped(context->bus))
+    if (!bus_is_stepped(context->bus))
         return refuse(refusal, REFUSED_STATE, "the clock goes by itself (%s): set it to stepped with clock, or wait",
-                      context->bus->clock_text);
+                      context->bus->time.clock_text);
     context->again = control_time_is_moved(context->peer->control, context->bus);
     if (context->again || !read_advance(context, &condition, &ticks, refusal))
         return NULL;

@@ -83,7 +83,7 @@ static void on_presence(void *context)
     if (!serve->options.exit_when_idle)
         return;
     for (unsigned i = 0; i < serve->options.lines; i++) {
-        if (serve->bus[i] && bus_ports_clients(serve->bus[i]) > 0) {
+        if (serve->bus[i] && bus_ports_clients(&serve->bus[i]->ports) > 0) {
             uv_timer_stop(&serve->idle);
             return;
         }
@@ -180,7 +180,7 @@ static bool start_files(struct serve *serve)
 {
     const struct bus_options *options = &serve->options;
     for (unsigned i = 0; i < options->lines; i++)
-        if (!bus_files_begin(serve->bus[i]))
+        if (!bus_begin_files(serve->bus[i]))
             return false;
     return !options->coverage || coverage_open(&serve->coverage_files, options->coverage, options->output_flags);
 }

@@ -32,13 +32,13 @@ static void tell_ports(const struct bus *bus)
     char units[NODES_TEXT_SIZE];
     units_text(&bus->options->nodes, units);
     if (bus->options->port)
-        bus_log(bus, "%s on %s", units, bus->options->port);
+        bus_log(&bus->log, "%s on %s", units, bus->options->port);
     else if (bus->options->pty)
-        bus_log(bus, "%s on %s, link %s", units, ports->line.path, ports->link.path);
+        bus_log(&bus->log, "%s on %s, link %s", units, ports->line.path, ports->link.path);
     if (ports->tcp)
-        bus_log(bus, "%s on tcp:%s", units, ports->tcp->address);
+        bus_log(&bus->log, "%s on tcp:%s", units, ports->tcp->address);
     if (ports->rfc2217)
-        bus_log(bus, "%s on rfc2217://%s", units, ports->rfc2217->address);
+        bus_log(&bus->log, "%s on rfc2217://%s", units, ports->rfc2217->address);
 }
 
 static void tell_flash(struct bus *bus)
@@ -46,15 +46,15 @@ static void tell_flash(struct bus *bus)
     for (unsigned at = 0; at < sim_units(&bus->sim); at++) {
         const char *name = bus->sim.unit[at].name;
         if (bus->unit[at].flash_path)
-            bus_log(bus, "unit %s: flash image %s", name, bus->unit[at].flash_path);
+            bus_log(&bus->log, "unit %s: flash image %s", name, bus->unit[at].flash_path);
         for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
             struct rkm04_motor_state state;
             rkm04_motor_state(sim_core(&bus->sim, at + 1u), motor, &state);
             if (state.slot == RKM04_SLOT_LOADED)
-                bus_log(bus, "unit %s, motor %u: starts the program of %u commands from flash", name, motor,
+                bus_log(&bus->log, "unit %s, motor %u: starts the program of %u commands from flash", name, motor,
                         state.commands);
             else if (state.slot == RKM04_SLOT_UNTRUSTED)
-                bus_log(bus, "unit %s, motor %u: its flash slot holds no whole program and counts as empty", name, motor);
+                bus_log(&bus->log, "unit %s, motor %u: its flash slot holds no whole program and counts as empty", name, motor);
         }
     }
 }
@@ -158,7 +158,8 @@ void serve_report_end(struct bus *bus)
         sum.answers += counters.answers;
         sum.dropped += counters.dropped;
     }
-    bus_log(bus, "requests %" PRIu32 ", answers %" PRIu32 ", frames dropped %" PRIu32 ", bytes dropped %" PRIu64
+    bus_log(&bus->log, "requests %" PRIu32 ", answers %" PRIu32 ", frames dropped %" PRIu32 ", bytes dropped %" PRIu64
                  ", collisions %" PRIu64 ", framing errors %" PRIu64 ", overruns %" PRIu64,
-            sum.requests, sum.answers, sum.dropped, bus_ports_dropped(bus), line.collisions, line.framing_errors, line.overruns);
+            sum.requests, sum.answers, sum.dropped, bus_ports_dropped(&bus->ports), line.collisions, line.framing_errors,
+            line.overruns);
 }

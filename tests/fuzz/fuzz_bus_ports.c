@@ -198,7 +198,7 @@ static void act(struct fuzz *fuzz, uint8_t what, uint8_t value)
             way == 0 ? ioctl(*fd, value & 1 ? TIOCEXCL : TIOCNXCL) : shutdown(*fd, SHUT_WR);
         break;
     case 8:
-        bus_ports_plug(bus, value & 1);
+        bus_ports_plug(&bus->ports, value & 1);
         bus_changed(bus);
         break;
     case 9: case 10:
@@ -243,13 +243,13 @@ static void check_all_ways(void)
 {
     for (unsigned way = 0; way < WAYS; way++)
         leave(way);
-    bus_ports_plug(bus, true);
+    bus_ports_plug(&bus->ports, true);
     bus_changed(bus);
     for (unsigned i = 0; i < 80; i++) { /* what was sent before takes its time, and the silence behind it */
         turn(5);
         machine_pass(UINT64_C(200000000));
     }
-    FUZZ_CHECK(bus_ports_clients(bus) == 0, "%u clients are still there", bus_ports_clients(bus));
+    FUZZ_CHECK(bus_ports_clients(&bus->ports) == 0, "%u clients are still there", bus_ports_clients(&bus->ports));
     for (unsigned way = 0; way < WAYS; way++)
         check_answer(way);
 }

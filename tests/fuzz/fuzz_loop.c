@@ -174,7 +174,7 @@ static bool turn(void)
     uv_run(&loop, UV_RUN_NOWAIT);
     bool taken = clients_take(), stepped = true;
     for (unsigned i = 0; i < options.lines; i++)
-        stepped = stepped && bus_stepped(bus[i]);
+        stepped = stepped && bus_is_stepped(bus[i]);
     return taken || (rung && stepped) || control->working || control->restore.peer || there != control_clients(control);
 }
 
@@ -183,7 +183,7 @@ static void check_waiters(void)
 {
     for (unsigned i = 0; i < options.lines; i++) {
         uint64_t now = sim_now(&bus[i]->sim);
-        for (const struct bus_waiter *waiter = bus[i]->waiters; waiter; waiter = waiter->next)
+        for (const struct bus_waiter *waiter = bus[i]->time.waiters; waiter; waiter = waiter->next)
             FUZZ_CHECK(now < waiter->limit && !(waiter->condition && condition_holds(waiter->condition)), "somebody still waits");
     }
 }
@@ -283,9 +283,9 @@ static void master_sends(struct bus *line, const uint8_t *hex, size_t length)
     size_t n = 0;
     for (; n < sizeof bytes && 2 * n + 1 < length; n++)
         bytes[n] = (uint8_t)(digit_of(hex[2 * n]) << 4 | (digit_of(hex[2 * n + 1]) & 15u));
-    if (n > 0 && n <= bus_room(line)) {
-        bus_take(line, bytes, n, 0);
-        bus_catch_up(line);
+    if (n > 0 && n <= sim_room(&line->sim)) {
+        line->ports.calls->take(line, bytes, n, 0);
+        bus_time_catch_up(&line->time);
     }
 }
 
