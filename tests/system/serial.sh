@@ -17,7 +17,7 @@ device() {
     exec 3<>"$folder/other"
     : >"$folder/asked"
     SHIM_LOG=$folder/asked LD_PRELOAD=$folder/shim.so ASAN_OPTIONS=verify_asan_link_order=0 \
-        start bus "$RKM04" serve --port "$folder/one" "$@"
+        start bus "$RKM04" serve --allow-folder "$folder" --port "$folder/one" "$@"
     soon "the unit is ready" ready bus
 }
 
