@@ -24,11 +24,11 @@ static void end_now(struct control *control)
 static void on_turn(uv_prepare_t *handle)
 {
     struct control *control = handle->data;
-    for (struct peer *peer = control->peers, *next; peer; peer = next) {
-        next = peer->next;
-        peer_pump(peer);
+    for (struct control_client *client = control->clients, *next; client; client = next) {
+        next = client->next;
+        peer_pump(&client->peer);
     }
-    if (control->ender && peer_queue(control->ender) == 0)
+    if (control->ender && peer_queue(&control->ender->peer) == 0)
         end_now(control);
 }
 
@@ -39,12 +39,12 @@ static void on_ending(uv_timer_t *handle)
         end_now(control);
 }
 
-void control_end(struct peer *peer)
+void control_end(struct control_client *client)
 {
-    struct control *control = peer->control;
+    struct control *control = client->control;
     if (control->ender)
         return;
-    control->ender = peer;
+    control->ender = client;
     uv_timer_start(&control->ending, on_ending, ENDING_MS, 0);
 }
 
@@ -52,12 +52,12 @@ void control_end(struct peer *peer)
 static void on_work(uv_idle_t *handle)
 {
     struct control *control = handle->data;
-    unsigned count = control->clients > 0 ? control->clients : 1;
+    unsigned count = control->client_count > 0 ? control->client_count : 1;
     bool more = false;
-    for (struct peer *peer = control->peers, *next; peer; peer = next) {
-        next = peer->next;
-        peer->blocked = false;
-        if (peer_serve(peer, BUDGET / count))
+    for (struct control_client *client = control->clients, *next; client; client = next) {
+        next = client->next;
+        client->peer.blocked = false;
+        if (peer_serve(&client->peer, BUDGET / count))
             more = true;
     }
     if (more || !control->working)
@@ -78,18 +78,18 @@ static void on_look(uv_timer_t *handle)
 {
     struct control *control = handle->data;
     bool more = false;
-    for (struct peer *peer = control->peers, *next; peer; peer = next) {
-        next = peer->next;
-        if (peer->leaving && peer_gone(peer))
-            peer_close(peer);
+    for (struct control_client *client = control->clients, *next; client; client = next) {
+        next = client->next;
+        if (client->peer.leaving && peer_gone(&client->peer))
+            peer_close(&client->peer);
         else
-            more = more || peer->leaving;
+            more = more || client->peer.leaving;
     }
     if (!more)
         uv_timer_stop(&control->look);
 }
 
-void control_look(struct control *control)
+static void look_for_gone(struct control *control)
 {
     if (control->open && !uv_is_active((uv_handle_t *)&control->look))
         uv_timer_start(&control->look, on_look, LOOK_MS, LOOK_MS);
@@ -97,18 +97,18 @@ void control_look(struct control *control)
 
 /* ---- Clients -------------------------------------------------------------------------------------------------------- */
 
-void control_forget(struct peer *peer)
+static void forget(struct control_client *client)
 {
-    struct control *control = peer->control;
-    control_time_forget(peer);
-    control_subscribe_forget(peer);
-    control_restore_forget(peer);
-    if (control->ender == peer && control->open)
+    struct control *control = client->control;
+    control_time_forget(client);
+    control_subscribe_forget(client);
+    control_restore_forget(client);
+    if (control->ender == client && control->open)
         end_now(control);
-    for (struct peer **at = &control->peers; *at; at = &(*at)->next) {
-        if (*at == peer) {
-            *at = peer->next;
-            control->clients--;
+    for (struct control_client **at = &control->clients; *at; at = &(*at)->next) {
+        if (*at == client) {
+            *at = client->next;
+            control->client_count--;
             if (control->open)
                 control->calls.presence(control->calls.context);
             break;
@@ -117,30 +117,110 @@ void control_forget(struct peer *peer)
 }
 
 /* One too many is told so, and let go. */
-static void turn_away(struct peer *peer)
+static void turn_away(struct control_client *client)
 {
     struct refusal refusal;
     refuse(&refusal, REFUSED_STATE, "too many clients: expected at most %u at a time", CONTROL_CLIENTS);
-    control_refuse(peer, json_null(), &refusal);
-    peer_pump(peer);
-    peer_close(peer);
+    control_refuse(client, json_null(), &refusal);
+    peer_pump(&client->peer);
+    peer_close(&client->peer);
+}
+
+/* The peer is the first member of its client. */
+static struct control_client *client_of(const struct peer *peer)
+{
+    return (struct control_client *)peer;
+}
+
+static bool on_line(struct peer *peer, const char *line, size_t length)
+{
+    return control_obey(client_of(peer), line, length);
+}
+
+static void on_bad_line(struct peer *peer, int code, const char *text)
+{
+    control_refuse_line(client_of(peer), code, text);
+}
+
+static bool is_held(const struct peer *peer)
+{
+    return client_of(peer)->advance || client_of(peer)->restores;
+}
+
+static bool is_expecting(const struct peer *peer)
+{
+    const struct control_client *client = client_of(peer);
+    return client->calls || client->restores || client->subscriptions;
+}
+
+static bool is_queued(const struct peer *peer)
+{
+    return client_of(peer)->control->working;
+}
+
+static void on_more(struct peer *peer)
+{
+    control_work(client_of(peer)->control);
+}
+
+static void on_leaving(struct peer *peer)
+{
+    look_for_gone(client_of(peer)->control);
+}
+
+static void on_pumped(struct peer *peer)
+{
+    control_time_go_on(client_of(peer));
+}
+
+static void on_gone(struct peer *peer)
+{
+    forget(client_of(peer));
+}
+
+static void on_closed(struct peer *peer)
+{
+    free(client_of(peer));
+}
+
+static const struct peer_calls peer_calls = {
+    .obey = on_line,
+    .refuse = on_bad_line,
+    .is_held = is_held,
+    .is_expecting = is_expecting,
+    .is_queued = is_queued,
+    .more = on_more,
+    .leaving = on_leaving,
+    .pumped = on_pumped,
+    .gone = on_gone,
+    .closed = on_closed,
+};
+
+/* Returns NULL if memory is short, or nobody is there. */
+static struct control_client *accept_client(struct control *control, uv_stream_t *listener)
+{
+    struct control_client *client = calloc(1, sizeof *client);
+    if (!client)
+        return NULL;
+    client->control = control;
+    return peer_accept(&client->peer, control->loop, listener, &peer_calls) ? client : NULL;
 }
 
 static void on_connection(uv_stream_t *listener, int status)
 {
     struct control *control = listener->data;
-    struct peer *peer = status == 0 ? peer_accept(control, listener) : NULL;
-    if (!peer)
+    struct control_client *client = status == 0 ? accept_client(control, listener) : NULL;
+    if (!client)
         return;
-    if (control->clients == CONTROL_CLIENTS) {
-        turn_away(peer);
+    if (control->client_count == CONTROL_CLIENTS) {
+        turn_away(client);
         return;
     }
-    peer->next = control->peers;
-    control->peers = peer;
-    control->clients++;
+    client->next = control->clients;
+    control->clients = client;
+    control->client_count++;
     control->calls.presence(control->calls.context);
-    peer_start(peer);
+    peer_start(&client->peer);
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
@@ -207,7 +287,7 @@ const char *control_path(const struct control *control)
 
 unsigned control_clients(const struct control *control)
 {
-    return control ? control->clients : 0;
+    return control ? control->client_count : 0;
 }
 
 void control_close(struct control *control)
@@ -216,8 +296,8 @@ void control_close(struct control *control)
         return;
     control->open = false;
     control_socket_release(&control->socket);
-    while (control->peers)
-        peer_close(control->peers);
+    while (control->clients)
+        peer_close(&control->clients->peer);
     control_trace_end(control);
     uv_close((uv_handle_t *)&control->listener, NULL);
     uv_close((uv_handle_t *)&control->turn, NULL);

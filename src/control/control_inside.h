@@ -14,6 +14,8 @@
 #define CONTROL_SUBSCRIPTIONS 16u /* of a client at a time */
 #define CONTROL_TRACES 16u       /* at a time */
 
+struct control_call;
+struct subscription;
 struct trace_file;
 struct wire_file;
 
@@ -28,11 +30,24 @@ struct control_trace {
 
 /* A `restore` of a file that goes on between the turns of the loop. */
 struct control_restore {
-    struct peer *peer; /* NULL: there is none */
+    struct control_client *client; /* NULL: there is none */
     struct bus *bus;
     json_t *id;
     struct restore *restore;
     uint64_t deadline, slice_end; /* ns */
+};
+
+/* A client with what it waits for. */
+struct control_client {
+    struct peer peer; /* first: client_of() */
+    struct control *control;
+    struct control_client *next;
+    struct control_call *calls;   /* that it waits for (control_time.c, as the next two) */
+    unsigned waits;               /* of these, without `advance` */
+    struct control_call *advance; /* NULL: none is running */
+    bool restores;                /* a `restore` of it goes on (control_restore.c) */
+    struct subscription *subscriptions; /* control_subscribe.c, as the next one */
+    unsigned subscribed;          /* number of the last subscription */
 };
 
 struct control {
@@ -51,48 +66,37 @@ struct control {
     uv_timer_t ending;  /* shutdown: the longest time for the answer to be read */
     bool open, working;
 
-    struct peer *peers;
-    unsigned clients;
-    struct peer *ender; /* who asked for shutdown; NULL: nobody */
+    struct control_client *clients;
+    unsigned client_count;
+    struct control_client *ender; /* who asked for shutdown; NULL: nobody */
     struct control_trace traces[CONTROL_TRACES];
     unsigned last_trace;
 };
 
-/* What became of a request. */
-enum control_done {
-    CONTROL_DONE, /* it has been answered, or will be (wait) */
-    CONTROL_LATER /* it cannot be obeyed yet: to be offered again when control_work() has been called */
-};
-
-/* Obey a line of a client, or refuse it. */
-enum control_done control_obey(struct peer *peer, const char *line, size_t length);
+/* Obey a line of a client, or refuse it. Returns false if it cannot be obeyed yet: to be offered again when control_work() has
+ * been called. */
+bool control_obey(struct control_client *client, const char *line, size_t length);
 
 /* The emulator is to end when this client has read its answer. */
-void control_end(struct peer *peer);
+void control_end(struct control_client *client);
 
 /* A line was too long, or has no newline. */
-void control_refuse_line(struct peer *peer, int code, const char *text);
+void control_refuse_line(struct control_client *client, int code, const char *text);
 
 /* There may be lines to be obeyed. */
 void control_work(struct control *control);
 
-/* A client has ended its sending: look now and then whether it has gone. */
-void control_look(struct control *control);
-
-/* A client goes: all that it waits for. */
-void control_forget(struct peer *peer);
-
 /* Answer a request; `id` NULL: it wants none. Take the reference to `result`. */
-void control_answer(struct peer *peer, const json_t *id, json_t *result);
-void control_refuse(struct peer *peer, const json_t *id, const struct refusal *refusal);
+void control_answer(struct control_client *client, const json_t *id, json_t *result);
+void control_refuse(struct control_client *client, const json_t *id, const struct refusal *refusal);
 
 /* Methods of the host. They return the result, a new reference; NULL: refused, or, where `later` or `again` is set, not yet. */
 struct control_context {
-    struct peer *peer;
+    struct control_client *client;
     struct bus *bus;
     const struct rpc_request *request;
     bool later; /* it has been answered by control_answer(), or is when it comes true */
-    bool again; /* it cannot be done yet: CONTROL_LATER */
+    bool again; /* it cannot be done yet: control_obey() returns false */
 };
 typedef json_t *control_method(struct control_context *context, struct refusal *refusal);
 
@@ -105,12 +109,12 @@ control_method control_restore;                           /* control_restore.c: 
 bool control_time_is_moved(const struct control *control, const struct bus *bus);
 
 /* The client has read: an `advance` that waited for that goes on. */
-void control_time_go_on(struct peer *peer);
+void control_time_go_on(struct control_client *client);
 
 /* A client goes. */
-void control_time_forget(struct peer *peer);
-void control_subscribe_forget(struct peer *peer);
-void control_restore_forget(struct peer *peer);
+void control_time_forget(struct control_client *client);
+void control_subscribe_forget(struct control_client *client);
+void control_restore_forget(struct control_client *client);
 
 /* The socket is closed: end all files. */
 void control_trace_end(struct control *control);

@@ -10,34 +10,34 @@
 
 /* ---- Answers -------------------------------------------------------------------------------------------------------- */
 
-static void say(struct peer *peer, char *text)
+static void say(struct control_client *client, char *text)
 {
     if (text)
-        peer_say(peer, text, strlen(text));
+        peer_say(&client->peer, text, strlen(text));
     else
-        peer->failed = true; /* it waits for an answer that cannot be given */
+        client->peer.failed = true; /* it waits for an answer that cannot be given */
     free(text);
 }
 
-void control_answer(struct peer *peer, const json_t *id, json_t *result)
+void control_answer(struct control_client *client, const json_t *id, json_t *result)
 {
     if (id)
-        say(peer, rpc_result(id, result));
+        say(client, rpc_result(id, result));
     else
         json_decref(result);
 }
 
-void control_refuse(struct peer *peer, const json_t *id, const struct refusal *refusal)
+void control_refuse(struct control_client *client, const json_t *id, const struct refusal *refusal)
 {
     if (id)
-        say(peer, rpc_error(id, refusal));
+        say(client, rpc_error(id, refusal));
 }
 
-void control_refuse_line(struct peer *peer, int code, const char *text)
+void control_refuse_line(struct control_client *client, int code, const char *text)
 {
     struct refusal refusal;
     refuse(&refusal, code, "%s", text);
-    control_refuse(peer, json_null(), &refusal);
+    control_refuse(client, json_null(), &refusal);
 }
 
 /* ---- Methods -------------------------------------------------------------------------------------------------------- */
@@ -51,14 +51,14 @@ static json_t *units(struct control_context *context, struct refusal *refusal)
     json_t *list = json_array();
     for (unsigned number = 1; number <= sim_units(sim); number++)
         json_array_append_new(list, json_string(sim->unit[number - 1].name));
-    return json_pack("{s:I, s:i, s:o, s:o}", "t_us", (json_int_t)sim_now(sim), "lines", (int)context->peer->control->lines,
+    return json_pack("{s:I, s:i, s:o, s:o}", "t_us", (json_int_t)sim_now(sim), "lines", (int)context->client->control->lines,
                      "units", list, "readings", readings_json(&sim->config.unit.readings));
 }
 
 /* Of one line, or of all: then of none if one of them is being advanced. */
 static bool set_clocks(const struct control_context *context, const char *text, struct refusal *refusal)
 {
-    const struct control *control = context->peer->control;
+    const struct control *control = context->client->control;
     unsigned first = context->request->line, end = context->request->line_given ? first + 1 : control->lines;
     for (unsigned line = first; line < end; line++) {
         if (control_time_is_moved(control, control->buses[line])) {
@@ -91,7 +91,7 @@ static json_t *shut_down(struct control_context *context, struct refusal *refusa
     static const char *const none[] = {NULL};
     if (!params_known(context->request->params, none, refusal))
         return NULL;
-    control_end(context->peer);
+    control_end(context->client);
     return json_pack("{s:I}", "t_us", (json_int_t)sim_now(bus_sim(context->bus)));
 }
 
@@ -146,12 +146,12 @@ static void explain_denied(const struct control *control, struct refusal *refusa
              "; below other folders than those of its files the emulator reaches what --allow-folder names at its start");
 }
 
-enum control_done control_obey(struct peer *peer, const char *line, size_t length)
+bool control_obey(struct control_client *client, const char *line, size_t length)
 {
-    struct control *control = peer->control;
+    struct control *control = client->control;
     struct rpc_request request;
     struct refusal refusal = {.code = REFUSED_MEMORY, .text = "memory is short"};
-    struct control_context context = {.peer = peer, .request = &request};
+    struct control_context context = {.client = client, .request = &request};
     json_t *result = NULL;
     bool well = rpc_read(&request, line, length, control->lines, &refusal);
     if (well) {
@@ -162,11 +162,11 @@ enum control_done control_obey(struct peer *peer, const char *line, size_t lengt
         result = method ? method(&context, &refusal) : command(&context, &refusal);
     }
     if (result) {
-        control_answer(peer, request.id, result);
+        control_answer(client, request.id, result);
     } else if (!context.later && !context.again) {
         explain_denied(control, &refusal);
-        control_refuse(peer, request.id, &refusal);
+        control_refuse(client, request.id, &refusal);
     }
     rpc_end(&request);
-    return context.again ? CONTROL_LATER : CONTROL_DONE;
+    return !context.again;
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "control_inside.h"
+#include "control_rpc.h"
 
 #define BYTES_AT_FIRST 4096u
 #define BYTES_KEPT 65536u /* a larger buffer is given back when it is empty */
@@ -146,8 +146,7 @@ static void write_out(struct peer *peer)
 /* Is it to be let go: has it ended its sending, and got all that it may wait for? */
 static bool is_done(const struct peer *peer)
 {
-    return peer->leaving && held(&peer->in) == 0 && peer_queue(peer) == 0 && !peer->calls && !peer->restores &&
-           !peer->subscriptions;
+    return peer->leaving && held(&peer->in) == 0 && peer_queue(peer) == 0 && !peer->calls->is_expecting(peer);
 }
 
 void peer_pump(struct peer *peer)
@@ -165,8 +164,8 @@ void peer_pump(struct peer *peer)
         return;
     }
     if (before > PEER_QUEUE_MAX && peer_queue(peer) <= PEER_QUEUE_MAX)
-        control_work(peer->control);
-    control_time_go_on(peer);
+        peer->calls->more(peer);
+    peer->calls->pumped(peer);
 }
 
 /* ---- From the client ------------------------------------------------------------------------------------------------ */
@@ -193,8 +192,8 @@ static void leave(struct peer *peer)
         peer_close(peer);
         return;
     }
-    control_look(peer->control);
-    control_work(peer->control);
+    peer->calls->leaving(peer);
+    peer->calls->more(peer);
 }
 
 static void set_reading(struct peer *peer);
@@ -209,8 +208,8 @@ static void on_read(uv_stream_t *stream, ssize_t length, const uv_buf_t *buffer)
         peer_close(peer);
     } else if (length > 0) {
         peer->in.length += (size_t)length;
-        if (peer->control->working || peer_serve(peer, 0))
-            control_work(peer->control);
+        if (peer->calls->is_queued(peer) || peer_serve(peer, 0))
+            peer->calls->more(peer);
         set_reading(peer);
     }
 }
@@ -244,10 +243,10 @@ static void look_at_part(struct peer *peer)
         consume(peer, held(&peer->in));
     } else if (held(&peer->in) > PEER_LINE_MAX) {
         peer->skipping = true;
-        control_refuse_line(peer, RPC_NO_REQUEST, TOO_LONG);
+        peer->calls->refuse(peer, RPC_NO_REQUEST, TOO_LONG);
         consume(peer, held(&peer->in));
     } else if (peer->leaving && held(&peer->in) > 0) {
-        control_refuse_line(peer, RPC_NO_JSON, "the last line has no newline: it was not obeyed");
+        peer->calls->refuse(peer, RPC_NO_JSON, "the last line has no newline: it was not obeyed");
         consume(peer, held(&peer->in));
     }
 }
@@ -276,9 +275,9 @@ static bool serve_line(struct peer *peer)
     if (peer->skipping) {
         peer->skipping = false;
     } else if (length > PEER_LINE_MAX) {
-        control_refuse_line(peer, RPC_NO_REQUEST, TOO_LONG);
+        peer->calls->refuse(peer, RPC_NO_REQUEST, TOO_LONG);
     } else if (!is_blank(begin, length)) {
-        if (control_obey(peer, begin, length) == CONTROL_LATER) {
+        if (!peer->calls->obey(peer, begin, length)) {
             peer->blocked = true;
             return false;
         }
@@ -291,7 +290,7 @@ static bool serve_line(struct peer *peer)
 bool peer_serve(struct peer *peer, uint64_t budget)
 {
     uint64_t begin = uv_hrtime();
-    while (!peer->closing && !peer->failed && !peer->advance && !peer->restores && !peer->blocked &&
+    while (!peer->closing && !peer->failed && !peer->calls->is_held(peer) && !peer->blocked &&
            peer_queue(peer) <= PEER_QUEUE_MAX) {
         if (!serve_line(peer)) {
             set_reading(peer);
@@ -305,18 +304,15 @@ bool peer_serve(struct peer *peer, uint64_t budget)
 
 /* ---- Coming and going ----------------------------------------------------------------------------------------------- */
 
-struct peer *peer_accept(struct control *control, uv_stream_t *listener)
+bool peer_accept(struct peer *peer, uv_loop_t *loop, uv_stream_t *listener, const struct peer_calls *calls)
 {
-    struct peer *peer = calloc(1, sizeof *peer);
-    if (!peer)
-        return NULL;
-    peer->control = control;
+    peer->calls = calls;
     peer->pipe.data = peer->write.data = peer;
-    uv_pipe_init(control->loop, &peer->pipe, 0);
+    uv_pipe_init(loop, &peer->pipe, 0);
     if (uv_accept(listener, (uv_stream_t *)&peer->pipe) == 0)
-        return peer;
+        return true;
     peer_close(peer);
-    return NULL;
+    return false;
 }
 
 void peer_start(struct peer *peer)
@@ -339,7 +335,7 @@ static void on_closed(uv_handle_t *handle)
     free(peer->in.byte);
     free(peer->out.byte);
     free(peer->wire.byte);
-    free(peer);
+    peer->calls->closed(peer);
 }
 
 void peer_close(struct peer *peer)
@@ -347,6 +343,6 @@ void peer_close(struct peer *peer)
     if (peer->closing)
         return;
     peer->closing = true;
-    control_forget(peer);
+    peer->calls->gone(peer);
     uv_close((uv_handle_t *)&peer->pipe, on_closed);
 }

@@ -2,7 +2,7 @@
 /* control_peer.h: a client of the control socket: its lines, what waits to be read by it, and the limits of both. Knows nothing
  * of what the lines say.
  *
- *     socket --on_read--> in --peer_serve()--> control_obey()
+ *     socket --on_read--> in --peer_serve()--> obey()
  *     peer_say(), peer_tell() --> out --peer_pump()--> wire --> socket
  *
  * Bytes leave in peer_pump(), which control.c calls once a turn of the event loop for everybody: many events make one write. */
@@ -20,9 +20,23 @@
 #define PEER_QUEUE_MAX (PEER_EVENTS_MAX + (1u << 20)) /* beyond which requests wait */
 #define PEER_QUEUE_SMALL (1u << 20)      /* below which an `advance` goes on */
 
-struct control;
-struct control_call;
-struct subscription;
+struct peer;
+
+/* What a client reports, and asks, upwards. */
+struct peer_calls {
+    /* Obey a line or refuse it. Returns false if it cannot be obeyed yet: peer->blocked is set then. */
+    bool (*obey)(struct peer *peer, const char *line, size_t length);
+    /* The line is refused: it is too long, or has no newline. */
+    void (*refuse)(struct peer *peer, int code, const char *text);
+    bool (*is_held)(const struct peer *peer);    /* returns whether its next line waits for a request of its own */
+    bool (*is_expecting)(const struct peer *peer); /* returns whether answers or events may still come for it */
+    bool (*is_queued)(const struct peer *peer);  /* returns whether peer_serve() will be called in any case */
+    void (*more)(struct peer *peer);             /* there may be lines to be obeyed: peer_serve() is due */
+    void (*leaving)(struct peer *peer);          /* it has ended its sending */
+    void (*pumped)(struct peer *peer);           /* bytes have been sent: it may have room again */
+    void (*gone)(struct peer *peer);             /* it is being closed */
+    void (*closed)(struct peer *peer);           /* the loop has closed its handle: its memory can go */
+};
 
 /* Bytes in a row: those from `at` to `length` count. */
 struct bytes {
@@ -31,8 +45,7 @@ struct bytes {
 };
 
 struct peer {
-    struct control *control;
-    struct peer *next;
+    const struct peer_calls *calls;
     uv_pipe_t pipe;
     uv_write_t write;
     bool leaving;    /* it sends no more; it may still read */
@@ -45,17 +58,10 @@ struct peer {
     size_t looked;   /* bytes of `in` in which there is no newline, counted from `at` */
     uint64_t lost;   /* events dropped and not yet told of */
     uint64_t lost_tick; /* of the first one */
-
-    struct control_call *calls; /* that it waits for (control_time.c) */
-    unsigned waits;             /* of these, without `advance` */
-    struct control_call *advance; /* NULL: none is running */
-    bool restores;              /* a `restore` of it goes on (control_restore.c) */
-    struct subscription *subscriptions;
-    unsigned subscribed;        /* number of the last subscription */
 };
 
-/* Accept a client. Returns NULL if memory is short, or nobody is there. */
-struct peer *peer_accept(struct control *control, uv_stream_t *listener);
+/* Accept a client; *peer is zero. Returns false if nobody is there: then it is closed. */
+bool peer_accept(struct peer *peer, uv_loop_t *loop, uv_stream_t *listener, const struct peer_calls *calls);
 
 /* Begin to hear it. */
 void peer_start(struct peer *peer);
@@ -79,7 +85,7 @@ void peer_pump(struct peer *peer);
 /* Has it hung up altogether (not just ended its own sending)? */
 bool peer_gone(const struct peer *peer);
 
-/* Hang up. The peer frees itself when the loop has closed its handle. */
+/* Hang up. closed() is called when the loop has closed its handle. */
 void peer_close(struct peer *peer);
 
 #endif

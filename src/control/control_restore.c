@@ -18,7 +18,7 @@ static struct control_restore take_off(struct control *control)
 {
     struct control_restore over = control->restore;
     uv_idle_stop(&control->restoring);
-    over.peer->restores = false;
+    over.client->restores = false;
     control->restore = (struct control_restore){0};
     control_work(control); /* those who want one, too, and what stands behind this one */
     return over;
@@ -32,9 +32,9 @@ static void finish(struct control *control)
     json_t *result = restore_end(over.restore, &refusal);
     if (result) {
         bus_changed(over.bus);
-        control_answer(over.peer, over.id, result);
+        control_answer(over.client, over.id, result);
     } else {
-        control_refuse(over.peer, over.id, &refusal);
+        control_refuse(over.client, over.id, &refusal);
     }
     json_decref(over.id);
 }
@@ -53,31 +53,31 @@ static void on_turn(uv_idle_t *handle)
 
 json_t *control_restore(struct control_context *context, struct refusal *refusal)
 {
-    struct peer *peer = context->peer;
-    struct control *control = peer->control;
-    context->again = control->restore.peer != NULL;
+    struct control_client *client = context->client;
+    struct control *control = client->control;
+    context->again = control->restore.client != NULL;
     if (context->again)
         return NULL;
     struct restore *restore = restore_begin(bus_sim(context->bus), context->request->params, refusal);
     if (!restore)
         return NULL;
     control->restore = (struct control_restore){
-        .peer = peer,
+        .client = client,
         .bus = context->bus,
         .id = json_incref((json_t *)context->request->id),
         .restore = restore,
         .deadline = uv_hrtime() + restore_timeout(restore) * NS_PER_US,
     };
-    peer->restores = context->later = true;
+    client->restores = context->later = true;
     uv_idle_start(&control->restoring, on_turn);
     return NULL;
 }
 
-void control_restore_forget(struct peer *peer)
+void control_restore_forget(struct control_client *client)
 {
-    if (!peer->restores)
+    if (!client->restores)
         return;
-    struct control_restore over = take_off(peer->control);
+    struct control_restore over = take_off(client->control);
     restore_cancel(over.restore);
     json_decref(over.id);
 }

@@ -13,7 +13,7 @@
 #define ALL_UNITS 0x1FFFEu
 
 struct subscription {
-    struct peer *peer;
+    struct control_client *client;
     struct bus *bus;
     unsigned number;
     struct watcher watcher;
@@ -30,13 +30,13 @@ static void see(void *context, const struct watch_event *event)
         (event->unit && !(subscription->units >> event->unit & 1u)))
         return;
     size_t room = subscription->head_length + event_json_room(event) + sizeof TAIL;
-    char *at = peer_tell(subscription->peer, room, event->tick);
+    char *at = peer_tell(&subscription->client->peer, room, event->tick);
     if (!at)
         return;
     memcpy(at, subscription->head, subscription->head_length);
     at = event_json(at + subscription->head_length, &subscription->bus->sim, event);
     memcpy(at, TAIL, sizeof TAIL - 1);
-    peer_told(subscription->peer, at + sizeof TAIL - 1);
+    peer_told(&subscription->client->peer, at + sizeof TAIL - 1);
 }
 
 /* ---- What is chosen ------------------------------------------------------------------------------------------------- */
@@ -112,17 +112,17 @@ static bool read_some(struct sim *sim, const json_t *given,
 json_t *control_subscribe(struct control_context *context, struct refusal *refusal)
 {
     static const char *const names[] = {"kinds", "motor", "unit", NULL};
-    struct peer *peer = context->peer;
+    struct control_client *client = context->client;
     const json_t *params = context->request->params;
     struct sim *sim = bus_sim(context->bus);
-    struct subscription new = {.peer = peer, .bus = context->bus, .motors = ALL_MOTORS, .units = ALL_UNITS};
+    struct subscription new = {.client = client, .bus = context->bus, .motors = ALL_MOTORS, .units = ALL_UNITS};
     unsigned count = 0;
     new.watcher.kinds = WATCH_ALL;
     if (!params_known(params, names, refusal) || !read_kinds(json_object_get(params, "kinds"), &new.watcher.kinds, refusal) ||
         !read_some(sim, json_object_get(params, "motor"), add_motor, &new.motors, refusal) ||
         !read_some(sim, json_object_get(params, "unit"), add_unit, &new.units, refusal))
         return NULL;
-    for (const struct subscription *other = peer->subscriptions; other; other = other->next)
+    for (const struct subscription *other = client->subscriptions; other; other = other->next)
         count++;
     if (count == CONTROL_SUBSCRIPTIONS)
         return refuse(refusal, REFUSED_STATE, "too many subscriptions: expected at most %u of a client at a time",
@@ -130,17 +130,17 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     struct subscription *subscription = malloc(sizeof *subscription);
     if (!subscription)
         return NULL;
-    new.number = ++peer->subscribed;
+    new.number = ++client->subscribed;
     new.head_length = (size_t)snprintf(new.head, sizeof new.head, HEAD, new.number);
-    new.next = peer->subscriptions;
+    new.next = client->subscriptions;
     *subscription = new;
     subscription->watcher.see = see;
     subscription->watcher.context = subscription;
-    peer->subscriptions = subscription;
+    client->subscriptions = subscription;
     sim_watch(sim, &subscription->watcher);
     /* Answered before the line looks again: no event comes before the number of its subscription is known. */
     context->later = true;
-    control_answer(peer, context->request->id, json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription",
+    control_answer(client, context->request->id, json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription",
                                                          (int)subscription->number));
     bus_changed(context->bus); /* it looks more often while somebody watches */
     return NULL;
@@ -162,7 +162,7 @@ json_t *control_unsubscribe(struct control_context *context, struct refusal *ref
     if (!params_known(params, names, refusal) || !param_integer(params, "subscription", 1, INT32_MAX, &number, refusal))
         return NULL;
     bus_sim(context->bus); /* what has happened so far is told */
-    for (struct subscription **at = &context->peer->subscriptions; *at; at = &(*at)->next) {
+    for (struct subscription **at = &context->client->subscriptions; *at; at = &(*at)->next) {
         if ((*at)->number == number) {
             struct sim *sim = &(*at)->bus->sim;
             end(at);
@@ -172,8 +172,8 @@ json_t *control_unsubscribe(struct control_context *context, struct refusal *ref
     return refuse(refusal, REFUSED_PARAMS, "subscription: this connection has no subscription %lld", (long long)number);
 }
 
-void control_subscribe_forget(struct peer *peer)
+void control_subscribe_forget(struct control_client *client)
 {
-    while (peer->subscriptions)
-        end(&peer->subscriptions);
+    while (client->subscriptions)
+        end(&client->subscriptions);
 }

@@ -13,7 +13,7 @@
 
 /* A request that is not yet answered. */
 struct control_call {
-    struct peer *peer;
+    struct control_client *client;
     struct bus *bus;
     json_t *id;            /* NULL: it is not to be answered */
     struct bus_waiter waiter;
@@ -27,18 +27,18 @@ struct control_call {
 
 static void take_off(struct control_call *call)
 {
-    struct peer *peer = call->peer;
-    for (struct control_call **at = &peer->calls; *at; at = &(*at)->next) {
+    struct control_client *client = call->client;
+    for (struct control_call **at = &client->calls; *at; at = &(*at)->next) {
         if (*at == call) {
             *at = call->next;
             break;
         }
     }
     if (call->moves)
-        peer->advance = NULL;
+        client->advance = NULL;
     else
-        peer->waits--;
-    control_work(peer->control); /* those who wanted to move the same clock, and what stands behind this call */
+        client->waits--;
+    control_work(client->control); /* those who wanted to move the same clock, and what stands behind this call */
 }
 
 static void free_call(struct control_call *call)
@@ -66,14 +66,14 @@ static json_t *outcome(const struct control_call *call, bool holds)
 static void finish(struct control_call *call, bool holds)
 {
     take_off(call);
-    control_answer(call->peer, call->id, outcome(call, holds));
+    control_answer(call->client, call->id, outcome(call, holds));
     free_call(call);
 }
 
-void control_time_forget(struct peer *peer)
+void control_time_forget(struct control_client *client)
 {
-    while (peer->calls) {
-        struct control_call *call = peer->calls;
+    while (client->calls) {
+        struct control_call *call = client->calls;
         if (!call->pausing)
             bus_cancel_wait(call->bus, &call->waiter);
         take_off(call);
@@ -96,7 +96,7 @@ static uint64_t slice_end(const struct sim *sim)
 /* Let time run: to the limit, or to the end of a slice. Returns false if the clock no longer stands. */
 static bool move_on(struct control_call *call)
 {
-    uint64_t end = call->peer->subscriptions ? slice_end(&call->bus->sim) : RKM04_NEVER;
+    uint64_t end = call->client->subscriptions ? slice_end(&call->bus->sim) : RKM04_NEVER;
     call->waiter.limit = end < call->limit ? end : call->limit;
     call->pausing = false;
     return bus_advance(call->bus, &call->waiter);
@@ -110,16 +110,16 @@ static void on_done(struct bus_waiter *waiter, bool holds)
         return;
     }
     call->pausing = true;
-    if (peer_queue(call->peer) <= PEER_QUEUE_SMALL && !move_on(call))
+    if (peer_queue(&call->client->peer) <= PEER_QUEUE_SMALL && !move_on(call))
         finish(call, false);
 }
 
-void control_time_go_on(struct peer *peer)
+void control_time_go_on(struct control_client *client)
 {
-    struct control_call *call = peer->advance;
-    if (!call || !call->pausing || peer_queue(peer) > PEER_QUEUE_SMALL)
+    struct control_call *call = client->advance;
+    if (!call || !call->pausing || peer_queue(&client->peer) > PEER_QUEUE_SMALL)
         return;
-    control_work(peer->control); /* what this leads to is sent in the next turn */
+    control_work(client->control); /* what this leads to is sent in the next turn */
     if (!move_on(call))
         finish(call, false);
 }
@@ -131,20 +131,20 @@ static struct control_call *new_call(struct control_context *context, struct con
     struct control_call *call = calloc(1, sizeof *call);
     if (!call)
         return NULL;
-    struct peer *peer = context->peer;
+    struct control_client *client = context->client;
     uint64_t now = sim_now(&context->bus->sim);
-    call->peer = peer;
+    call->client = client;
     call->bus = context->bus;
     call->id = json_incref((json_t *)context->request->id);
     call->limit = limit > SIM_TIME_MAX - now ? SIM_TIME_MAX : now + limit;
     call->moves = moves;
     call->waiter = (struct bus_waiter){.condition = condition, .limit = call->limit, .done = on_done, .context = call};
-    call->next = peer->calls;
-    peer->calls = call;
+    call->next = client->calls;
+    client->calls = call;
     if (moves)
-        peer->advance = call;
+        client->advance = call;
     else
-        peer->waits++;
+        client->waits++;
     if (condition)
         condition_arm(condition);
     return call;
@@ -168,7 +168,7 @@ json_t *control_wait(struct control_context *context, struct refusal *refusal)
     if (!params_known(params, names, refusal) ||
         (json_object_get(params, "limit") && !param_time(params, "limit", 0, &limit, refusal)))
         return NULL;
-    if (context->peer->waits == CONTROL_WAITS)
+    if (context->client->waits == CONTROL_WAITS)
         return refuse(refusal, REFUSED_STATE, "too many waits: expected at most %u of a client at a time", CONTROL_WAITS);
     struct condition *condition = read_until(context, refusal);
     struct control_call *call = condition ? new_call(context, condition, limit, false) : NULL;
@@ -203,8 +203,8 @@ static bool read_advance(struct control_context *context, struct condition **con
 
 bool control_time_is_moved(const struct control *control, const struct bus *bus)
 {
-    for (const struct peer *peer = control->peers; peer; peer = peer->next)
-        if (peer->advance && peer->advance->bus == bus)
+    for (const struct control_client *client = control->clients; client; client = client->next)
+        if (client->advance && client->advance->bus == bus)
             return true;
     return bus->time.advancing != NULL;
 }
@@ -216,7 +216,7 @@ json_t *control_advance(struct control_context *context, struct refusal *refusal
     if (!bus_is_stepped(context->bus))
         return refuse(refusal, REFUSED_STATE, "the clock goes by itself (%s): set it to stepped with clock, or wait",
                       context->bus->time.clock_text);
-    context->again = control_time_is_moved(context->peer->control, context->bus);
+    context->again = control_time_is_moved(context->client->control, context->bus);
     if (context->again || !read_advance(context, &condition, &ticks, refusal))
         return NULL;
     uint64_t left = SIM_TIME_MAX - sim_now(&context->bus->sim);

@@ -60,7 +60,7 @@ static bool begin(struct control_trace *trace, struct sim *sim, const char *path
 json_t *control_trace_start(struct control_context *context, struct refusal *refusal)
 {
     static const char *const names[] = {"file", "force", NULL};
-    struct control *control = context->peer->control;
+    struct control *control = context->client->control;
     const json_t *params = context->request->params;
     const char *path = params_known(params, names, refusal) ? param_string(params, "file", refusal) : NULL;
     bool force;
@@ -111,7 +111,7 @@ static struct control_trace *find(struct control *control, const json_t *params,
 json_t *control_trace_stop(struct control_context *context, struct refusal *refusal)
 {
     static const char *const names[] = {"trace", NULL};
-    struct control *control = context->peer->control;
+    struct control *control = context->client->control;
     const json_t *params = context->request->params;
     struct control_trace *trace = params_known(params, names, refusal) ? find(control, params, refusal) : NULL;
     if (!trace)

@@ -175,7 +175,7 @@ static bool turn(void)
     bool taken = clients_take(), stepped = true;
     for (unsigned i = 0; i < options.lines; i++)
         stepped = stepped && bus_is_stepped(bus[i]);
-    return taken || (rung && stepped) || control->working || control->restore.peer || there != control_clients(control);
+    return taken || (rung && stepped) || control->working || control->restore.client || there != control_clients(control);
 }
 
 /* Nobody waits for what has come true, or for a time that is over. */
