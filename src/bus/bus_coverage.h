@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* bus_coverage.h: what of the messages on a line counts for the coverage of the protocol. */
-#ifndef RKM04_HOST_BUS_COVERAGE_H
-#define RKM04_HOST_BUS_COVERAGE_H
+#ifndef RKM04_BUS_COVERAGE_H
+#define RKM04_BUS_COVERAGE_H
 
 #include "device/device.h"
 #include "wire/wire.h"

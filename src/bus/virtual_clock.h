@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* virtual_clock.h: the monotonic time of the machine (ns) <-> the virtual time of the unit (ticks of 1 us). Pure arithmetic. */
-#ifndef RKM04_HOST_VIRTUAL_CLOCK_H
-#define RKM04_HOST_VIRTUAL_CLOCK_H
+#ifndef RKM04_BUS_VIRTUAL_CLOCK_H
+#define RKM04_BUS_VIRTUAL_CLOCK_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_answer.h: the unit's answers (specification section 3), for people or as JSON on stdout. */
-#ifndef RKM04_HOST_CLIENT_ANSWER_H
-#define RKM04_HOST_CLIENT_ANSWER_H
+#ifndef RKM04_CLIENT_ANSWER_H
+#define RKM04_CLIENT_ANSWER_H
 
 #include <jansson.h>
 #include <stdbool.h>

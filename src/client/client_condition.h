@@ -12,8 +12,8 @@
  *
  * Several beside one another, with "and", "&&" or "," between them or just a blank, have to hold together; of what stands to
  * the left and right of "or" or "||" one is enough. "and" binds tighter. A text that begins with { is JSON already. */
-#ifndef RKM04_HOST_CLIENT_CONDITION_H
-#define RKM04_HOST_CLIENT_CONDITION_H
+#ifndef RKM04_CLIENT_CONDITION_H
+#define RKM04_CLIENT_CONDITION_H
 
 #include <jansson.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_control.h: the commands of rkmctl that go to the control socket of an emulator (docs/CONTROL.md). */
-#ifndef RKM04_HOST_CLIENT_CONTROL_H
-#define RKM04_HOST_CLIENT_CONTROL_H
+#ifndef RKM04_CLIENT_CONTROL_H
+#define RKM04_CLIENT_CONTROL_H
 
 #include "client_job.h"
 

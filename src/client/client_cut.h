@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_cut.h: a program text cut into the messages it takes (manual 4.3; specification L4, C1-C4, C9). No I/O. */
-#ifndef RKM04_HOST_CLIENT_CUT_H
-#define RKM04_HOST_CLIENT_CUT_H
+#ifndef RKM04_CLIENT_CUT_H
+#define RKM04_CLIENT_CUT_H
 
 #include <stdbool.h>
 #include <stddef.h>

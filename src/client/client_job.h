@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_job.h: one command of rkmctl to the control socket: what was typed, and what its parts share. */
-#ifndef RKM04_HOST_CLIENT_JOB_H
-#define RKM04_HOST_CLIENT_JOB_H
+#ifndef RKM04_CLIENT_JOB_H
+#define RKM04_CLIENT_JOB_H
 
 #include <jansson.h>
 #include <stdbool.h>

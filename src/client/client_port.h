@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_port.h: the way to the unit's line: a serial device, a pseudo terminal or tcp:HOST:PORT. */
-#ifndef RKM04_HOST_CLIENT_PORT_H
-#define RKM04_HOST_CLIENT_PORT_H
+#ifndef RKM04_CLIENT_PORT_H
+#define RKM04_CLIENT_PORT_H
 
 #include <stdbool.h>
 #include <stdint.h>

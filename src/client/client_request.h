@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_request.h: the commands of rkmctl that are one request to a unit on the line (manual 5.3). */
-#ifndef RKM04_HOST_CLIENT_REQUEST_H
-#define RKM04_HOST_CLIENT_REQUEST_H
+#ifndef RKM04_CLIENT_REQUEST_H
+#define RKM04_CLIENT_REQUEST_H
 
 #include <rkm04/link.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_rpc.h: the way to the control socket of an emulator: JSON-RPC 2.0, one object a line (docs/CONTROL.md). */
-#ifndef RKM04_HOST_CLIENT_RPC_H
-#define RKM04_HOST_CLIENT_RPC_H
+#ifndef RKM04_CLIENT_RPC_H
+#define RKM04_CLIENT_RPC_H
 
 #include <jansson.h>
 #include <limits.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_send.h: programs to the unit, message 2 Set Command (manual 5.3.2, 4.3). */
-#ifndef RKM04_HOST_CLIENT_SEND_H
-#define RKM04_HOST_CLIENT_SEND_H
+#ifndef RKM04_CLIENT_SEND_H
+#define RKM04_CLIENT_SEND_H
 
 #include <stdbool.h>
 #include <stddef.h>

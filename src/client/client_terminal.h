@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_terminal.h: what is known of the terminal before it is taken over. */
-#ifndef RKM04_HOST_CLIENT_TERMINAL_H
-#define RKM04_HOST_CLIENT_TERMINAL_H
+#ifndef RKM04_CLIENT_TERMINAL_H
+#define RKM04_CLIENT_TERMINAL_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_usage.h: what to say to wrong usage. */
-#ifndef RKM04_HOST_CLIENT_USAGE_H
-#define RKM04_HOST_CLIENT_USAGE_H
+#ifndef RKM04_CLIENT_USAGE_H
+#define RKM04_CLIENT_USAGE_H
 
 #include <stdbool.h>
 

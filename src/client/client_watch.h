@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* client_watch.h: `rkmctl watch`: the front panel of a unit, live in the terminal, or once as text. */
-#ifndef RKM04_HOST_CLIENT_WATCH_H
-#define RKM04_HOST_CLIENT_WATCH_H
+#ifndef RKM04_CLIENT_WATCH_H
+#define RKM04_CLIENT_WATCH_H
 
 #include "client_job.h"
 

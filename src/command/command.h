@@ -4,8 +4,8 @@
  *
  * One table, in command.c, is the only place to add one: name, function, whether it changes anything (then the journal takes it
  * down). Parameters: `unit`, a name as in "3" or 3, may be left out where there is one unit. */
-#ifndef RKM04_SIM_COMMAND_H
-#define RKM04_SIM_COMMAND_H
+#ifndef RKM04_COMMAND_H
+#define RKM04_COMMAND_H
 
 #include <jansson.h>
 #include <stdbool.h>

@@ -11,8 +11,8 @@
  *     {"all": [ … ]} {"any": [ … ]}                      of several
  *
  * Plain: condition_read(), condition_arm(), then condition_holds() after each step of time; or condition_run(). */
-#ifndef RKM04_SIM_CONDITION_H
-#define RKM04_SIM_CONDITION_H
+#ifndef RKM04_CONDITION_H
+#define RKM04_CONDITION_H
 
 #include "command/command.h"
 #include "sim/sim.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* condition_term.h: what a condition is made of. Inside: condition_read.c builds it, condition.c asks it. */
-#ifndef RKM04_SIM_CONDITION_TERM_H
-#define RKM04_SIM_CONDITION_TERM_H
+#ifndef RKM04_CONDITION_TERM_H
+#define RKM04_CONDITION_TERM_H
 
 #include "condition.h"
 

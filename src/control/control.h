@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* control.h: the control socket: JSON-RPC 2.0, one object a line, on a Unix stream socket. docs/CONTROL.md is the protocol. */
-#ifndef RKM04_HOST_CONTROL_H
-#define RKM04_HOST_CONTROL_H
+#ifndef RKM04_CONTROL_H
+#define RKM04_CONTROL_H
 
 #include <uv.h>
 

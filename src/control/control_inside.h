@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* control_inside.h: what the parts of the control socket share. */
-#ifndef RKM04_HOST_CONTROL_INSIDE_H
-#define RKM04_HOST_CONTROL_INSIDE_H
+#ifndef RKM04_CONTROL_INSIDE_H
+#define RKM04_CONTROL_INSIDE_H
 
 #include "condition/condition.h"
 #include "control.h"

@@ -6,8 +6,8 @@
  *     peer_say(), peer_tell() --> out --peer_pump()--> wire --> socket
  *
  * Bytes leave in peer_pump(), which control.c calls once a turn of the event loop for everybody: many events make one write. */
-#ifndef RKM04_HOST_CONTROL_PEER_H
-#define RKM04_HOST_CONTROL_PEER_H
+#ifndef RKM04_CONTROL_PEER_H
+#define RKM04_CONTROL_PEER_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* control_rpc.h: JSON-RPC 2.0 of the control socket, one object a line: requests read, answers written. Pure. */
-#ifndef RKM04_HOST_CONTROL_RPC_H
-#define RKM04_HOST_CONTROL_RPC_H
+#ifndef RKM04_CONTROL_RPC_H
+#define RKM04_CONTROL_RPC_H
 
 #include <jansson.h>
 #include <stdbool.h>

@@ -3,8 +3,8 @@
  *
  * Beside it lies PATH.lock, locked as long as the emulator runs; it says which socket is ours. Nothing else is ever removed, and
  * no link is followed in the last part of the path. */
-#ifndef RKM04_HOST_CONTROL_SOCKET_H
-#define RKM04_HOST_CONTROL_SOCKET_H
+#ifndef RKM04_CONTROL_SOCKET_H
+#define RKM04_CONTROL_SOCKET_H
 
 #include <limits.h>
 #include <stdbool.h>

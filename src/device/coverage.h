@@ -4,8 +4,8 @@
  *
  * The list of things is derived from the core's own tables, so a new command is in it by itself. Messages are handed over
  * without their framing, in the order in which they pass on the line. One coverage serves any number of units. */
-#ifndef RKM04_HOST_COVERAGE_H
-#define RKM04_HOST_COVERAGE_H
+#ifndef RKM04_DEVICE_COVERAGE_H
+#define RKM04_DEVICE_COVERAGE_H
 
 #include <jansson.h>
 #include <stdbool.h>

@@ -11,8 +11,8 @@
  *
  * Time. Everything around a unit counts in us. A unit may count finer: `ticks_per_us` of its ticks make one us. `now`, `advance`,
  * `next_event` and `next_report` are in us since its power-up; the ticks that a unit tells its port are its own. */
-#ifndef RKM04_ROOM_DEVICE_H
-#define RKM04_ROOM_DEVICE_H
+#ifndef RKM04_DEVICE_H
+#define RKM04_DEVICE_H
 
 #include <jansson.h>
 #include <stdbool.h>

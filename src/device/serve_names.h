@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* serve_names.h: which units stand on a line, and how they, their files and links are named. Pure. */
-#ifndef RKM04_HOST_SERVE_NAMES_H
-#define RKM04_HOST_SERVE_NAMES_H
+#ifndef RKM04_DEVICE_SERVE_NAMES_H
+#define RKM04_DEVICE_SERVE_NAMES_H
 
 #include <limits.h>
 #include <stdbool.h>

@@ -14,8 +14,8 @@
  *   inputs:       faults_hold_inputs() has the last word
  *   snapshots:    struct faults is part of them (struct segment, too); after coming back faults_shift(); config.adapter is to be
  *                 told if `unplugged` is another than before */
-#ifndef RKM04_SIM_FAULT_H
-#define RKM04_SIM_FAULT_H
+#ifndef RKM04_FAULT_H
+#define RKM04_FAULT_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,8 +2,8 @@
 /* output_file.h: one rule for all files that a process writes. It never writes to a file that it also reads or writes otherwise,
  * compared by device and inode, so by whatever name; and a file that is there is overwritten only if it is of the kind to be
  * written (output_kind.h), or by force. Devices, and pipes where they are allowed, are written to as they are. */
-#ifndef RKM04_SIM_OUTPUT_FILE_H
-#define RKM04_SIM_OUTPUT_FILE_H
+#ifndef RKM04_FILE_OUTPUT_FILE_H
+#define RKM04_FILE_OUTPUT_FILE_H
 
 #include <stdbool.h>
 #include <stdio.h>

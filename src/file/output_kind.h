@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* output_kind.h: the kinds of files that are written, and how they are recognised by their first bytes. Pure. */
-#ifndef RKM04_SIM_OUTPUT_KIND_H
-#define RKM04_SIM_OUTPUT_KIND_H
+#ifndef RKM04_FILE_OUTPUT_KIND_H
+#define RKM04_FILE_OUTPUT_KIND_H
 
 #include <stdbool.h>
 #include <stddef.h>

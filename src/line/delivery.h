@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* delivery.h: a text for a descriptor whose reader may be slow, stopped or gone. A thread of its own writes it, so that nothing
  * else waits (log.h says why no other way does). The caller ignores SIGPIPE. */
-#ifndef RKM04_HOST_DELIVERY_H
-#define RKM04_HOST_DELIVERY_H
+#ifndef RKM04_LINE_DELIVERY_H
+#define RKM04_LINE_DELIVERY_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* line.h: the emulator's end of the serial line: a pty of its own (line_pty.c) or a device that is there (line_serial.c). */
-#ifndef RKM04_HOST_LINE_H
-#define RKM04_HOST_LINE_H
+#ifndef RKM04_LINE_H
+#define RKM04_LINE_H
 
 #include <linux/serial.h>
 #include <stdbool.h>

@@ -5,8 +5,8 @@
  * A pty stores the speed and does not obey it, so bytes come through whatever the client has set. The line tells the user
  * (line_settings_news()) and, if it is to be strict, puts every byte through an ear: struct line_ear draws the bits as the
  * sender sends them and samples them as the receiver does. */
-#ifndef RKM04_HOST_LINE_SETTINGS_H
-#define RKM04_HOST_LINE_SETTINGS_H
+#ifndef RKM04_LINE_SETTINGS_H
+#define RKM04_LINE_SETTINGS_H
 
 #include <stdbool.h>
 #include <stddef.h>

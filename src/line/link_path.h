@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* link_path.h: the stable name of the emulator's pty: a symbolic link, and beside it a lock file "LINK.lock" that says whose
  * the link is. The kernel frees the lock however its holder ends, so a link under a free lock of ours is stale. */
-#ifndef RKM04_HOST_LINK_PATH_H
-#define RKM04_HOST_LINK_PATH_H
+#ifndef RKM04_LINE_LINK_PATH_H
+#define RKM04_LINE_LINK_PATH_H
 
 #include <limits.h>
 #include <stdbool.h>

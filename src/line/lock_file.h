@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* lock_file.h: a file beside something that one process holds, a link or a socket: the kernel frees its lock however the holder
  * ends, and what stands in it tells who that was and what was his. */
-#ifndef RKM04_HOST_LOCK_FILE_H
-#define RKM04_HOST_LOCK_FILE_H
+#ifndef RKM04_LINE_LOCK_FILE_H
+#define RKM04_LINE_LOCK_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>

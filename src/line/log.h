@@ -6,8 +6,8 @@
  * one byte in a terminal, not for a line, nor against other writers of a pipe. So a thread of its own writes, and may wait as
  * long as it likes. It is handed lines through a queue; when that is full, lines are dropped and counted, until all that was
  * before them has been read. A file has no reader: it is written to at once. */
-#ifndef RKM04_HOST_LOG_H
-#define RKM04_HOST_LOG_H
+#ifndef RKM04_LINE_LOG_H
+#define RKM04_LINE_LOG_H
 
 #include <stdint.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* net_port.h: a line over TCP: raw, or a serial port by RFC 2217. It listens; one client at a time has the line, a further one is
  * told so and sent away. All calls back come from the loop, or from within net_port_wake(), never from net_port_send(). */
-#ifndef RKM04_HOST_NET_PORT_H
-#define RKM04_HOST_NET_PORT_H
+#ifndef RKM04_LINE_NET_PORT_H
+#define RKM04_LINE_NET_PORT_H
 
 #include <stdbool.h>
 #include <stddef.h>

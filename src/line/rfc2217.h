@@ -4,8 +4,8 @@
  *
  * There is no port behind it: every setting that has a name is taken and acknowledged, so that a client gets what it asks for,
  * and CTS, DSR and carrier are always there, so that none waits for them. */
-#ifndef RKM04_HOST_RFC2217_H
-#define RKM04_HOST_RFC2217_H
+#ifndef RKM04_LINE_RFC2217_H
+#define RKM04_LINE_RFC2217_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* arguments.h: reading a command line, with an end for --help and --version that tells whether they could be printed. */
-#ifndef RKM04_HOST_ARGUMENTS_H
-#define RKM04_HOST_ARGUMENTS_H
+#ifndef RKM04_OPTIONS_ARGUMENTS_H
+#define RKM04_OPTIONS_ARGUMENTS_H
 
 #include <argp.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* options.h: the face of the room for the command line: options that several programs share, numbers that fit, addresses,
  * names that are near. */
-#ifndef RKM04_ROOM_OPTIONS_H
-#define RKM04_ROOM_OPTIONS_H
+#ifndef RKM04_OPTIONS_H
+#define RKM04_OPTIONS_H
 
 #include "arguments.h"
 #include "nearest.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* process.h: what a program must not inherit from whoever starts it. */
-#ifndef RKM04_HOST_PROCESS_H
-#define RKM04_HOST_PROCESS_H
+#ifndef RKM04_OPTIONS_PROCESS_H
+#define RKM04_OPTIONS_PROCESS_H
 
 /* The first thing in main(): standard streams that are closed become /dev/null, so that no file or device of ours takes their
  * numbers, and messages for people do not go there; SIGINT, SIGTERM and SIGHUP are let through, whatever the parent had blocked.

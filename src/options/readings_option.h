@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* readings_option.h: the option --readings, for those subcommands that have units. */
-#ifndef RKM04_HOST_READINGS_OPTION_H
-#define RKM04_HOST_READINGS_OPTION_H
+#ifndef RKM04_OPTIONS_READINGS_OPTION_H
+#define RKM04_OPTIONS_READINGS_OPTION_H
 
 #include <argp.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* socket_address.h: the address of a Unix socket, of a path of any length. */
-#ifndef RKM04_HOST_SOCKET_ADDRESS_H
-#define RKM04_HOST_SOCKET_ADDRESS_H
+#ifndef RKM04_OPTIONS_SOCKET_ADDRESS_H
+#define RKM04_OPTIONS_SOCKET_ADDRESS_H
 
 #include <stdbool.h>
 #include <sys/socket.h>

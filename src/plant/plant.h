@@ -5,8 +5,8 @@
  *
  * A plant is fed with pulses as they come (each motor's in order of time, T41: none come) and gives changes of inputs back. It
  * lives in ticks of the line. */
-#ifndef RKM04_SIM_PLANT_H
-#define RKM04_SIM_PLANT_H
+#ifndef RKM04_PLANT_H
+#define RKM04_PLANT_H
 
 #include <jansson.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* plant_model.h: the inside of a plant: plant_read.c makes it of a text, plant.c runs it, plant_stall.c knows what a rotor can
  * follow. Plain data without pointers: a copy is a copy. */
-#ifndef RKM04_SIM_PLANT_MODEL_H
-#define RKM04_SIM_PLANT_MODEL_H
+#ifndef RKM04_PLANT_MODEL_H
+#define RKM04_PLANT_MODEL_H
 
 #include "plant.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* journal.h: what has come in, in memory, in the form of a record, for snapshots to files. Coming back to a snapshot takes the
  * journal back, too: so it holds what led to the present state and nothing else. */
-#ifndef RKM04_SIM_JOURNAL_H
-#define RKM04_SIM_JOURNAL_H
+#ifndef RKM04_RECORD_JOURNAL_H
+#define RKM04_RECORD_JOURNAL_H
 
 #include <stdio.h>
 

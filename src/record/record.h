@@ -2,8 +2,8 @@
 /* record.h: a record of a session: the configuration, everything that came in from outside with its tick, and what went out:
  * answers as they are, pulses, outputs and bytes on the wires as running digests. `rkm04 replay` does it again and names the
  * first difference. docs/RECORD.md describes the file: JSON, one object a line. */
-#ifndef RKM04_SIM_RECORD_H
-#define RKM04_SIM_RECORD_H
+#ifndef RKM04_RECORD_H
+#define RKM04_RECORD_H
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* record_line.h: the lines of a record about what came in (docs/RECORD.md), each written by a function of its own. */
-#ifndef RKM04_SIM_RECORD_LINE_H
-#define RKM04_SIM_RECORD_LINE_H
+#ifndef RKM04_RECORD_LINE_H
+#define RKM04_RECORD_LINE_H
 
 #include <stdio.h>
 

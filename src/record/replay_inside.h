@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* replay_inside.h: what the parts of a replay share. replay_read.c reads lines, replay_head.c powers the line up, replay.c does
  * what they say, replay_compare.c compares what goes out. */
-#ifndef RKM04_SIM_REPLAY_INSIDE_H
-#define RKM04_SIM_REPLAY_INSIDE_H
+#ifndef RKM04_RECORD_REPLAY_INSIDE_H
+#define RKM04_RECORD_REPLAY_INSIDE_H
 
 #include "record.h"
 #include "tally.h"

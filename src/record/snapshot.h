@@ -4,8 +4,8 @@
  * Coming back does not turn the line's time back: ticks go on, and everything that has a time is moved along, so that what
  * follows is what followed then, later by the difference. Only what was taken of another line at a later tick takes the time
  * along: the line's time leaps to that tick. */
-#ifndef RKM04_SIM_SNAPSHOT_H
-#define RKM04_SIM_SNAPSHOT_H
+#ifndef RKM04_RECORD_SNAPSHOT_H
+#define RKM04_RECORD_SNAPSHOT_H
 
 #include "sim/sim.h"
 

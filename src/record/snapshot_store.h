@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* snapshot_store.h: the named snapshots of a sim, and what commands and records have to know of one another. Inside. */
-#ifndef RKM04_SIM_SNAPSHOT_STORE_H
-#define RKM04_SIM_SNAPSHOT_STORE_H
+#ifndef RKM04_RECORD_SNAPSHOT_STORE_H
+#define RKM04_RECORD_SNAPSHOT_STORE_H
 
 #include "command/command.h"
 #include "journal.h"

@@ -2,8 +2,8 @@
 /* tally.h: what goes out of a line, in a form that can be compared: every byte that reaches the master, and of all else, for each
  * motor and each unit, a digest at the end of every span of time in which something happened. It does not depend on how time was
  * cut into pieces. */
-#ifndef RKM04_SIM_TALLY_H
-#define RKM04_SIM_TALLY_H
+#ifndef RKM04_RECORD_TALLY_H
+#define RKM04_RECORD_TALLY_H
 
 #include "sim/sim.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* exec_program.h: the arguments [M=]FILE of `rkm04 exec`, and the texts they name. */
-#ifndef RKM04_HOST_EXEC_PROGRAM_H
-#define RKM04_HOST_EXEC_PROGRAM_H
+#ifndef RKM04_RUN_EXEC_PROGRAM_H
+#define RKM04_RUN_EXEC_PROGRAM_H
 
 #include <stdbool.h>
 

@@ -5,8 +5,8 @@
  * not decide what follows is taken out before: times count from the present tick; counters of motors whose programs have no G and
  * no H are left out; of an endless motion at its constant speed nothing is compared but that it goes on. What remains has to be
  * equal to the byte, so a state that is called the same is the same; one that is the same may be overlooked. */
-#ifndef RKM04_HOST_EXEC_REPEAT_H
-#define RKM04_HOST_EXEC_REPEAT_H
+#ifndef RKM04_RUN_EXEC_REPEAT_H
+#define RKM04_RUN_EXEC_REPEAT_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* exec_report.h: what a run of `rkm04 exec` tells at its end, for people or as JSON. */
-#ifndef RKM04_HOST_EXEC_REPORT_H
-#define RKM04_HOST_EXEC_REPORT_H
+#ifndef RKM04_RUN_EXEC_REPORT_H
+#define RKM04_RUN_EXEC_REPORT_H
 
 #include <jansson.h>
 #include <stdbool.h>

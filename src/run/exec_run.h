@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* exec_run.h: a line with one unit in virtual time (sim.h), from power-up to the end of the run. */
-#ifndef RKM04_HOST_EXEC_RUN_H
-#define RKM04_HOST_EXEC_RUN_H
+#ifndef RKM04_RUN_EXEC_RUN_H
+#define RKM04_RUN_EXEC_RUN_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -7,8 +7,8 @@
  *     # comment
  *
  * TIME as in time_value.h. The lines may stand in any order; those of one time act in the order of the file. */
-#ifndef RKM04_HOST_STIMULUS_H
-#define RKM04_HOST_STIMULUS_H
+#ifndef RKM04_RUN_STIMULUS_H
+#define RKM04_RUN_STIMULUS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* test_case.h: a scenario of `rkm04 test`: its file, its run, what came of it. */
-#ifndef RKM04_HOST_TEST_CASE_H
-#define RKM04_HOST_TEST_CASE_H
+#ifndef RKM04_RUN_TEST_CASE_H
+#define RKM04_RUN_TEST_CASE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* test_readings.h: a scenario under readings other than the defaults: on which of them does its result depend? */
-#ifndef RKM04_HOST_TEST_READINGS_H
-#define RKM04_HOST_TEST_READINGS_H
+#ifndef RKM04_RUN_TEST_READINGS_H
+#define RKM04_RUN_TEST_READINGS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* scenario.h: a scenario: what is done to a line of units and what must come of it, from a text file, in virtual time.
  * docs/SCENARIOS.md describes the file. */
-#ifndef RKM04_SIM_SCENARIO_H
-#define RKM04_SIM_SCENARIO_H
+#ifndef RKM04_SCENARIO_H
+#define RKM04_SCENARIO_H
 
 #include <stdbool.h>
 #include <stddef.h>

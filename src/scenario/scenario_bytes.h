@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* scenario_bytes.h: bytes as people write them in scenarios: pairs of hexadecimal digits and texts in double quotes, '04 "1"'.
  * In what is expected, `..` is any byte and `*` at the end any rest. */
-#ifndef RKM04_SIM_SCENARIO_BYTES_H
-#define RKM04_SIM_SCENARIO_BYTES_H
+#ifndef RKM04_SCENARIO_BYTES_H
+#define RKM04_SCENARIO_BYTES_H
 
 #include <stdbool.h>
 #include <stddef.h>

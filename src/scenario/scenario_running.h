@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* scenario_running.h: a scenario while it runs. Inside: scenario_run.c has time and stimuli, scenario_do.c the steps,
  * scenario_master.c what the master sends and hears. */
-#ifndef RKM04_SIM_SCENARIO_RUNNING_H
-#define RKM04_SIM_SCENARIO_RUNNING_H
+#ifndef RKM04_SCENARIO_RUNNING_H
+#define RKM04_SCENARIO_RUNNING_H
 
 #include "scenario_parts.h"
 

@@ -2,8 +2,8 @@
 /* notify.h: telling whoever started the emulator that it is ready: the service manager over the socket $NOTIFY_SOCKET (the
  * protocol of sd_notify(3), which is documented and stable; the library would bring more than it saves), a parent process over
  * a file descriptor that it has passed on (--ready-fd). The caller ignores SIGPIPE. */
-#ifndef RKM04_HOST_NOTIFY_H
-#define RKM04_HOST_NOTIFY_H
+#ifndef RKM04_SERVE_NOTIFY_H
+#define RKM04_SERVE_NOTIFY_H
 
 #include <stdbool.h>
 

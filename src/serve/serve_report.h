@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* serve_report.h: what `rkm04 serve` tells at its beginning and end. */
-#ifndef RKM04_HOST_SERVE_REPORT_H
-#define RKM04_HOST_SERVE_REPORT_H
+#ifndef RKM04_SERVE_REPORT_H
+#define RKM04_SERVE_REPORT_H
 
 #include "bus/bus.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* serve_sandbox.h: what `rkm04 serve` keeps for itself when it is ready (sandbox.h). */
-#ifndef RKM04_HOST_SERVE_SANDBOX_H
-#define RKM04_HOST_SERVE_SANDBOX_H
+#ifndef RKM04_SERVE_SANDBOX_H
+#define RKM04_SERVE_SANDBOX_H
 
 #include "bus/bus.h"
 

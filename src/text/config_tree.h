@@ -2,8 +2,8 @@
 /* config_tree.h: configuration files, plants and scenarios: YAML, read by libyaml, which keeps line and column of everything.
  * Scalars are text; who reads them says what they are to be, so `01` is an input and `no` a word. Anchors, aliases and tags are
  * refused, and so are keys given twice. */
-#ifndef RKM04_SIM_CONFIG_TREE_H
-#define RKM04_SIM_CONFIG_TREE_H
+#ifndef RKM04_TEXT_CONFIG_TREE_H
+#define RKM04_TEXT_CONFIG_TREE_H
 
 #include <jansson.h>
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* diagnose.h: what is wrong with a program text, for people: FILE:LINE:COLUMN: error: what was expected. */
-#ifndef RKM04_HOST_DIAGNOSE_H
-#define RKM04_HOST_DIAGNOSE_H
+#ifndef RKM04_TEXT_DIAGNOSE_H
+#define RKM04_TEXT_DIAGNOSE_H
 
 #include <stddef.h>
 #include <stdio.h>

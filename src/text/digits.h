@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* digits.h: text put together by hand, character by character. A trace has a row a pulse: printf would be most of the run time.
  * All write at `at`, where there must be room, without a terminating zero, and return where the text ends. */
-#ifndef RKM04_SIM_DIGITS_H
-#define RKM04_SIM_DIGITS_H
+#ifndef RKM04_TEXT_DIGITS_H
+#define RKM04_TEXT_DIGITS_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* exit_status.h: what the exit status of rkm04 and rkmctl says. */
-#ifndef RKM04_EXIT_STATUS_H
-#define RKM04_EXIT_STATUS_H
+#ifndef RKM04_TEXT_EXIT_STATUS_H
+#define RKM04_TEXT_EXIT_STATUS_H
 
 enum exit_status {
     STATUS_SUCCESS = 0,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* number.h: whole numbers out of texts that people and other programs write. Every number of an option, an address or a command
  * is read here: strtol() and its kin take blanks and signs, some of them wrap, and none knows what is allowed. */
-#ifndef RKM04_SIM_NUMBER_H
-#define RKM04_SIM_NUMBER_H
+#ifndef RKM04_TEXT_NUMBER_H
+#define RKM04_TEXT_NUMBER_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* program_text.h: program texts as people write them, read from files. */
-#ifndef RKM04_HOST_PROGRAM_TEXT_H
-#define RKM04_HOST_PROGRAM_TEXT_H
+#ifndef RKM04_TEXT_PROGRAM_TEXT_H
+#define RKM04_TEXT_PROGRAM_TEXT_H
 
 #include <stddef.h>
 

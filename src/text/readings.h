@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* readings.h: names, values and texts of the readings (specification section 9, rkm04/readings.h): the one table of them. A
  * text is NAME=VALUE,NAME=VALUE; a time is whole ms, written 500 or with its unit (500ms, 1.5s). */
-#ifndef RKM04_SIM_READINGS_H
-#define RKM04_SIM_READINGS_H
+#ifndef RKM04_TEXT_READINGS_H
+#define RKM04_TEXT_READINGS_H
 
 #include <jansson.h>
 #include <rkm04/readings.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* time_value.h: times as people write them, "250us", "1500ms", "2.5s", to the tick of 1 us. */
-#ifndef RKM04_HOST_TIME_VALUE_H
-#define RKM04_HOST_TIME_VALUE_H
+#ifndef RKM04_TEXT_TIME_VALUE_H
+#define RKM04_TEXT_TIME_VALUE_H
 
 #include <stddef.h>
 #include <stdint.h>

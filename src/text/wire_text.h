@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_text.h: text of limited length, put together piece by piece. What does not fit is left out. */
-#ifndef RKM04_SIM_WIRE_TEXT_H
-#define RKM04_SIM_WIRE_TEXT_H
+#ifndef RKM04_TEXT_WIRE_TEXT_H
+#define RKM04_TEXT_WIRE_TEXT_H
 
 #include <stddef.h>
 #include <stdint.h>

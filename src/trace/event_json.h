@@ -4,8 +4,8 @@
  *     "t_us":14000,"kind":"step","unit":"3","motor":1,"value":1
  *
  * docs/CONTROL.md lists the kinds, their values and further members. */
-#ifndef RKM04_SIM_EVENT_JSON_H
-#define RKM04_SIM_EVENT_JSON_H
+#ifndef RKM04_TRACE_EVENT_JSON_H
+#define RKM04_TRACE_EVENT_JSON_H
 
 #include <stddef.h>
 

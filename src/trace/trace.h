@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* trace.h: the face of the room for files about what happens on a bus: CSV, VCD, JSON lines; the log of the wires and pcapng;
  * events as JSON. */
-#ifndef RKM04_ROOM_TRACE_H
-#define RKM04_ROOM_TRACE_H
+#ifndef RKM04_TRACE_H
+#define RKM04_TRACE_H
 
 #include "event_json.h"
 #include "trace_file.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* trace_file.h: a file that takes down what happens on a line: FILE.vcd for GTKWave and PulseView, FILE.csv, FILE.jsonl. The name
  * chooses the format; docs/TRACES.md describes them. */
-#ifndef RKM04_SIM_TRACE_FILE_H
-#define RKM04_SIM_TRACE_FILE_H
+#ifndef RKM04_TRACE_FILE_H
+#define RKM04_TRACE_FILE_H
 
 #include <stdio.h>
 

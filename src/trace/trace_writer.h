@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* trace_writer.h: what the formats of traces share (trace_file.h). Text is gathered in a buffer; a format asks for room, writes,
  * and says how far it came. */
-#ifndef RKM04_SIM_TRACE_WRITER_H
-#define RKM04_SIM_TRACE_WRITER_H
+#ifndef RKM04_TRACE_WRITER_H
+#define RKM04_TRACE_WRITER_H
 
 #include "trace_file.h"
 

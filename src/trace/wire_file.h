@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_file.h: a file that takes down what passes on the wires: FILE.log for people, FILE.pcapng for Wireshark. The name chooses
  * the format. docs/WIRE.md describes both. */
-#ifndef RKM04_SIM_WIRE_FILE_H
-#define RKM04_SIM_WIRE_FILE_H
+#ifndef RKM04_TRACE_WIRE_FILE_H
+#define RKM04_TRACE_WIRE_FILE_H
 
 #include "file/file.h"
 #include "sim/sim.h"

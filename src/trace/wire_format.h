@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_format.h: what the formats of wire_file.h have to do: put what happens into bytes. */
-#ifndef RKM04_SIM_WIRE_FORMAT_H
-#define RKM04_SIM_WIRE_FORMAT_H
+#ifndef RKM04_TRACE_WIRE_FORMAT_H
+#define RKM04_TRACE_WIRE_FORMAT_H
 
 #include "file/file.h"
 #include "sim/sim.h"

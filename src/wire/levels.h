@@ -9,8 +9,8 @@
  * bits.
  *
  * Times are parts, WIRE_TICK to a tick: a bit is 625/12 us, so nothing is ever rounded. */
-#ifndef RKM04_HOST_WIRE_H
-#define RKM04_HOST_WIRE_H
+#ifndef RKM04_WIRE_LEVELS_H
+#define RKM04_WIRE_LEVELS_H
 
 #include <stdbool.h>
 #include <stdint.h>

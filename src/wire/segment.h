@@ -24,8 +24,8 @@
  *
  * Order within a tick: bytes, then what the units do (K2). What a segment does depends on the bytes handed over and their ticks
  * alone, not on how segment_advance cuts the time. */
-#ifndef RKM04_HOST_SEGMENT_H
-#define RKM04_HOST_SEGMENT_H
+#ifndef RKM04_WIRE_SEGMENT_H
+#define RKM04_WIRE_SEGMENT_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_message.h: a message as it was heard on the two wires, whole or dropped. */
-#ifndef RKM04_WIRE_WIRE_MESSAGE_H
-#define RKM04_WIRE_WIRE_MESSAGE_H
+#ifndef RKM04_WIRE_MESSAGE_H
+#define RKM04_WIRE_MESSAGE_H
 
 #include <stdbool.h>
 #include <stddef.h>

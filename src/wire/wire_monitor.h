@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_monitor.h: finds the messages in the bytes on the two wires, whole ones and what was dropped, with the reason. */
-#ifndef RKM04_SIM_WIRE_MONITOR_H
-#define RKM04_SIM_WIRE_MONITOR_H
+#ifndef RKM04_WIRE_MONITOR_H
+#define RKM04_WIRE_MONITOR_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_words.h: messages (specification section 3) in words, for people. */
-#ifndef RKM04_SIM_WIRE_WORDS_H
-#define RKM04_SIM_WIRE_WORDS_H
+#ifndef RKM04_WIRE_WORDS_H
+#define RKM04_WIRE_WORDS_H
 
 #include <rkm04/link.h>
 
