@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* `rkm04 test`: scenarios in virtual time. Its options and exit status; a scenario itself is src/sim/scenario.c. */
+/* `rkm04 test`: scenarios in virtual time. Its options and exit status; a scenario itself is the room src/scenario. */
 #include <argp.h>
 #include <errno.h>
 #include <signal.h>

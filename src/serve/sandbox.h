@@ -2,8 +2,8 @@
 /* sandbox.h: what the emulator gives up when it is ready, so that whoever should find a fault in it cannot use it for more than
  * the emulator itself does (docs/SECURITY.md): access to files outside some folders (Landlock), and system calls (seccomp). Both
  * are Linux's; a kernel without them leaves things as they are. */
-#ifndef RKM04_SERVE_SANDBOX_H
-#define RKM04_SERVE_SANDBOX_H
+#ifndef RKM04_SANDBOX_H
+#define RKM04_SANDBOX_H
 
 #include <stdbool.h>
 

@@ -15,7 +15,7 @@
 #define SANITIZED false
 #endif
 
-/* With any arguments. What the C library, libuv and jansson make of the calls in src/host, on any architecture. */
+/* With any arguments. What the C library, libuv and jansson make of the calls in src/serve and below, on any architecture. */
 static const int calls[] = {
     /* bytes */
     SCMP_SYS(read), SCMP_SYS(readv), SCMP_SYS(pread64), SCMP_SYS(write), SCMP_SYS(writev), SCMP_SYS(pwrite64), SCMP_SYS(lseek),
