@@ -23,13 +23,17 @@ static uint64_t step_end(struct replay *replay, uint64_t tick)
     return end < tick ? end : tick;
 }
 
+static void pause_replay(struct replay *replay)
+{
+    snprintf(replay->text, sizeof replay->text, "interrupted at tick %" PRIu64, sim_now(replay->sim));
+    replay->paused = true;
+}
+
 /* Is the replay to pause? */
 static bool is_interrupted(struct replay *replay)
 {
-    if (!replay->paused && replay->interrupted && replay->interrupted(replay->context)) {
-        snprintf(replay->text, sizeof replay->text, "interrupted at tick %" PRIu64, sim_now(replay->sim));
-        replay->paused = true;
-    }
+    if (!replay->paused && replay->interrupted && replay->interrupted(replay->context))
+        pause_replay(replay);
     return replay->paused;
 }
 
@@ -159,8 +163,12 @@ static json_t *restore_embedded(struct replay *replay, struct refusal *refusal)
     if (!replay->inner)
         replay->inner = restore_open(replay->sim, "the embedded record", replay->embedded, replay->embedded_length,
                                      replay->depth + 1u, refusal);
-    if (!replay->inner || (!restore_go_on(replay->inner, replay->interrupted, replay->context) && (replay->paused = true)))
+    if (!replay->inner)
         return NULL;
+    if (!restore_go_on(replay->inner, replay->interrupted, replay->context)) {
+        pause_replay(replay);
+        return NULL;
+    }
     struct restore *restore = replay->inner;
     replay->inner = NULL;
     return restore_put(restore, refusal);

@@ -9,7 +9,15 @@
 #include "fuzz.h"
 #include "record/snapshot.h"
 
+#define LOOKS_MAX 300 /* tenths of a second of its replay, at most, in which something happens */
+
 static struct sim sim;
+
+static bool is_enough(void *context)
+{
+    unsigned *looks = context;
+    return ++*looks > LOOKS_MAX;
+}
 
 static json_t *command(const char *method, json_t *params, struct refusal *refusal)
 {
@@ -31,6 +39,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FUZZ_CHECK(snapshots_keep_journal(&sim), "no memory");
     rkm04_set_command(sim_core(&sim, 1), '1', "L5 F20 R W3 E", 13, NULL);
     sim_advance(&sim, 30000);
+    unsigned looks = 0;
+    sim.interrupted = is_enough;
+    sim.interrupted_context = &looks;
     json_t *result = command("restore", json_pack("{s:s}", "file", path), &refusal);
     FUZZ_CHECK(result || refusal.text[0], "no reason");
     json_decref(result);
