@@ -313,7 +313,7 @@ static bool begin_sim(struct bus *bus)
     };
     if (options->flash)
         config.flash = (struct sim_flash){.read = flash_read, .erase = flash_erase, .program = flash_program, .context = bus};
-    if (sim_begin(&bus->sim, &config))
+    if (sim_begin(&bus->sim, &config) && snapshots_attach(&bus->sim))
         return true;
     log_error("out of memory");
     return false;

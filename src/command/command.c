@@ -5,43 +5,47 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "methods.h"
 #include "text/text.h"
 
-static const struct method {
-    const char *name;
-    command_function *function;
-    bool changes; /* something: the journal takes it down */
-} methods[] = {
-    {"state", command_state, false},
-    {"di.set", command_di_set, true},
-    {"reset", command_reset, true},
-    {"power", command_power, true},
-    {"switch", command_switch, true},
-    {"plant.get", command_plant_get, false},
-    {"plant.set", command_plant_set, true},
-    {"snapshot", command_snapshot, true},
-    {"restore", command_restore, true},
-    {"fault.inject", command_fault_inject, true},
-    {"fault.clear", command_fault_clear, true},
-    {"fault.list", command_fault_list, false},
-};
+static const struct command_method *const tables[] = {unit_methods, plant_methods, fault_methods};
 
-static const struct method *find(const char *name)
+static const struct command_method *find_in(const struct command_method *method, const char *name)
 {
-    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
-        if (strcmp(methods[i].name, name) == 0)
-            return &methods[i];
-    return NULL;
+    while (method->name && strcmp(method->name, name) != 0)
+        method++;
+    return method->name ? method : NULL;
 }
 
-bool sim_command_known(const char *method)
+static const struct command_method *find(const struct sim *sim, const char *name)
 {
-    return find(method) != NULL;
+    const struct command_method *method = NULL;
+    for (size_t i = 0; i < sizeof tables / sizeof tables[0] && !method; i++)
+        method = find_in(tables[i], name);
+    for (size_t i = 0; i < SIM_COMMAND_TABLES && sim->commands[i] && !method; i++)
+        method = find_in(sim->commands[i], name);
+    return method;
+}
+
+bool command_attach(struct sim *sim, const struct command_method *methods)
+{
+    for (size_t i = 0; i < SIM_COMMAND_TABLES; i++) {
+        if (sim->commands[i] && sim->commands[i] != methods)
+            continue;
+        sim->commands[i] = methods;
+        return true;
+    }
+    return false;
+}
+
+bool sim_command_known(const struct sim *sim, const char *method)
+{
+    return find(sim, method) != NULL;
 }
 
 json_t *sim_command(struct sim *sim, const char *name, const json_t *params, struct refusal *refusal)
 {
-    const struct method *method = find(name);
+    const struct command_method *method = find(sim, name);
     if (!method)
         return refuse(refusal, REFUSED_METHOD, "there is no method `%s'", name);
     if (params && !json_is_object(params))

@@ -2,8 +2,9 @@
 /* command.h: what can be done to a line and asked of it from outside, at the present tick, by name and JSON parameters. The
  * control socket, scenarios and replays all go this way; docs/CONTROL.md describes each method.
  *
- * One table, in command.c, is the only place to add one: name, function, whether it changes anything (then the journal takes it
- * down). Parameters: `unit`, a name as in "3" or 3, may be left out where there is one unit. */
+ * Each file that implements methods ends with their table: name, function, whether it changes anything (then the journal takes it
+ * down). command.c lists the tables of this room; a room above it (record, a kind of device) attaches its own to the sim with
+ * command_attach(). Parameters: `unit`, a name as in "3" or 3, may be left out where there is one unit. */
 #ifndef RKM04_COMMAND_H
 #define RKM04_COMMAND_H
 
@@ -25,15 +26,26 @@ struct refusal {
     char text[640];
 };
 
+typedef json_t *command_function(struct sim *sim, const json_t *params, struct refusal *refusal);
+
+/* A method. Tables of them end with a row without name. */
+struct command_method {
+    const char *name;
+    command_function *function;
+    bool changes; /* something: the journal takes it down */
+};
+
+/* Let `sim` obey the methods of a table, too, which must stay; after sim_begin(). Does nothing if they are attached already.
+ * Returns false if SIM_COMMAND_TABLES are attached. */
+bool command_attach(struct sim *sim, const struct command_method *methods);
+
 /* Do it. `params`: an object or NULL. Returns the result, a new reference; NULL: refused, nothing was changed. */
 json_t *sim_command(struct sim *sim, const char *method, const json_t *params, struct refusal *refusal);
 
-/* Is there such a method? */
-bool sim_command_known(const char *method);
+/* Does `sim` know such a method? */
+bool sim_command_known(const struct sim *sim, const char *method);
 
-/* ---- For the functions behind it (command_*.c, plant_command.c, …) ---------------------------------------------------- */
-
-typedef json_t *command_function(struct sim *sim, const json_t *params, struct refusal *refusal);
+/* ---- For the functions behind it -------------------------------------------------------------------------------------- */
 
 /* Refuse; always returns NULL. */
 json_t *refuse(struct refusal *refusal, int code, const char *format, ...) __attribute__((format(printf, 3, 4)));
@@ -58,10 +70,5 @@ bool param_flag(const json_t *params, const char *name, bool *value, struct refu
 
 /* Refuse every parameter that is not in the list, which ends with NULL: a typing error must not go unnoticed. */
 bool params_known(const json_t *params, const char *const *names, struct refusal *refusal);
-
-command_function command_state, command_di_set, command_reset, command_power, command_switch; /* command_unit.c */
-command_function command_plant_get, command_plant_set;                                      /* plant_command.c */
-command_function command_snapshot, command_restore;                                         /* snapshot.c */
-command_function command_fault_inject, command_fault_clear, command_fault_list;             /* fault_command.c */
 
 #endif

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "command.h"
+#include "methods.h"
 #include "unit_state.h"
 
 /* "1", "01", … "08" -> 1..8; 0: no input. */
@@ -27,7 +27,7 @@ static int level_of(const json_t *value)
                : -1;
 }
 
-json_t *command_state(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_state(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {"unit", NULL};
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
@@ -83,7 +83,7 @@ static bool read_di(const json_t *params, uint8_t *given, uint8_t *levels, struc
     return true;
 }
 
-json_t *command_di_set(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_di_set(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {"di", "mask", "unit", NULL};
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
@@ -103,7 +103,7 @@ json_t *command_di_set(struct sim *sim, const json_t *params, struct refusal *re
 
 /* ---- Power and address ---------------------------------------------------------------------------------------------- */
 
-json_t *command_reset(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_reset(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {"unit", NULL};
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
@@ -115,7 +115,7 @@ json_t *command_reset(struct sim *sim, const json_t *params, struct refusal *ref
     return json_pack("{s:I}", "t_us", (json_int_t)sim_now(sim));
 }
 
-json_t *command_power(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_power(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {"on", "unit", NULL};
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
@@ -129,7 +129,7 @@ json_t *command_power(struct sim *sim, const json_t *params, struct refusal *ref
     return json_pack("{s:I, s:b}", "t_us", (json_int_t)sim_now(sim), "powered", json_is_true(on));
 }
 
-json_t *command_switch(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_switch(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {"node", "reset", "unit", NULL};
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
@@ -145,3 +145,12 @@ json_t *command_switch(struct sim *sim, const json_t *params, struct refusal *re
     return json_pack("{s:I, s:i, s:i}", "t_us", (json_int_t)sim_now(sim), "switch", (int)node, "node",
                      (int)sim_core(sim, number)->config.node);
 }
+
+const struct command_method unit_methods[] = {
+    {"state", command_state, false},
+    {"di.set", command_di_set, true},
+    {"reset", command_reset, true},
+    {"power", command_power, true},
+    {"switch", command_switch, true},
+    {NULL, NULL, false},
+};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "command.h"
+#include "methods.h"
 
 #define SURE 1000000u        /* millionths */
 #define COUNT_MAX UINT32_MAX
@@ -268,7 +268,7 @@ static bool read_whose(struct sim *sim, const json_t *params, unsigned takes, st
 
 /* ---- Methods -------------------------------------------------------------------------------------------------------- */
 
-json_t *command_fault_inject(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_fault_inject(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     struct fault fault = {0};
     if (!read_kind(params, &fault, refusal))
@@ -286,7 +286,7 @@ json_t *command_fault_inject(struct sim *sim, const json_t *params, struct refus
     return json_pack("{s:I}", "id", (json_int_t)id);
 }
 
-json_t *command_fault_clear(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_fault_clear(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {"id", NULL};
     int64_t id;
@@ -297,3 +297,10 @@ json_t *command_fault_clear(struct sim *sim, const json_t *params, struct refusa
         return refuse(refusal, REFUSED_PARAMS, "id: there is no fault %lld: see fault.list", (long long)id);
     return json_pack("{s:i}", "cleared", (int)cleared);
 }
+
+const struct command_method fault_methods[] = {
+    {"fault.inject", command_fault_inject, true},
+    {"fault.clear", command_fault_clear, true},
+    {"fault.list", command_fault_list, false},
+    {NULL, NULL, false},
+};

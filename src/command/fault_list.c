@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* fault.list: what faults there are, and how often each has acted. */
-#include "command.h"
+#include "methods.h"
 
 static void put(json_t *object, const char *name, json_t *value)
 {

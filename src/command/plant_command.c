@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "command.h"
+#include "methods.h"
 
 #define ERRORS_SIZE 280u /* of what a refusal repeats */
 
@@ -33,7 +33,7 @@ static json_t *report(struct sim *sim, unsigned number, struct refusal *refusal)
     return refuse(refusal, REFUSED_MEMORY, "memory is short");
 }
 
-json_t *command_plant_get(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_plant_get(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {"unit", NULL};
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
@@ -122,7 +122,7 @@ static json_t *handle(struct sim *sim, unsigned number, const json_t *params, st
     return report(sim, number, refusal);
 }
 
-json_t *command_plant_set(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_plant_set(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const whole[] = {"plant", NULL};
     static const char *const names[] = {"unit", "motor", "position", "jammed", "missing_lead", NULL};
@@ -134,3 +134,9 @@ json_t *command_plant_set(struct sim *sim, const json_t *params, struct refusal 
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
     return number > 0 ? handle(sim, number, params, refusal) : NULL;
 }
+
+const struct command_method plant_methods[] = {
+    {"plant.get", command_plant_get, false},
+    {"plant.set", command_plant_set, true},
+    {NULL, NULL, false},
+};

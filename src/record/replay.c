@@ -193,7 +193,7 @@ static bool do_command(struct replay *replay)
         return false;
     if (!json_is_object(params))
         return replay_wrong(replay, "params", "expected \"params\", an object");
-    if (!sim_command_known(method))
+    if (!sim_command_known(replay->sim, method))
         return replay_wrong(replay, "command", "expected \"command\", one that rkm04 " RKM04_VERSION " knows");
     bool restore = strcmp(method, "restore") == 0 && json_object_get(params, "file");
     if (restore && !replay->embedded)

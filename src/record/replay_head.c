@@ -164,7 +164,7 @@ static bool set_plant(struct replay *replay, const char *plant)
 static bool power_up(struct replay *replay, const struct sim_config *config, const char *plant)
 {
     replay->sim = calloc(1, sizeof *replay->sim);
-    if (!replay->sim || !sim_begin(replay->sim, config))
+    if (!replay->sim || !sim_begin(replay->sim, config) || !snapshots_attach(replay->sim))
         return replay_no_memory(replay);
     return !plant || set_plant(replay, plant);
 }

@@ -60,8 +60,9 @@ void restore_cancel(struct restore *restore);
 
 /* ---- What a sim has ------------------------------------------------------------------------------------------------------ */
 
-/* The named ones of a sim, and its journal. */
-void snapshots_free(struct sim_snapshots *snapshots);
+/* Let `sim` obey the commands snapshot and restore. After sim_begin(). Its snapshots are freed at sim_end(). Returns false if
+ * there is no place for the table (command_attach()). */
+bool snapshots_attach(struct sim *sim);
 
 /* Keep in memory all that comes in, so that commands can write snapshots to files. To be called at tick 0, when the plant is
  * there and before anything has come in. Returns false if memory is short. */

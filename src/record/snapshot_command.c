@@ -10,16 +10,6 @@
 
 static const char out_of_memory[] = "out of memory";
 
-struct sim_snapshots *snapshots_of(struct sim *sim)
-{
-    if (!sim->snapshots) {
-        sim->snapshots = calloc(1, sizeof *sim->snapshots);
-        if (sim->snapshots)
-            sim->snapshots->sim = sim;
-    }
-    return sim->snapshots;
-}
-
 static void forget(struct named_snapshot *named)
 {
     free(named->name);
@@ -28,15 +18,24 @@ static void forget(struct named_snapshot *named)
     *named = (struct named_snapshot){0};
 }
 
-void snapshots_free(struct sim_snapshots *snapshots)
+static void snapshots_free(struct sim_snapshots *snapshots)
 {
-    if (!snapshots)
-        return;
     for (size_t i = 0; i < snapshots->count; i++)
         forget(&snapshots->named[i]);
     journal_free(snapshots->journal);
     free(snapshots->text);
     free(snapshots);
+}
+
+struct sim_snapshots *snapshots_of(struct sim *sim)
+{
+    if (!sim->snapshots) {
+        sim->snapshots = calloc(1, sizeof *sim->snapshots);
+        if (sim->snapshots)
+            sim->snapshots->sim = sim;
+        sim->free_snapshots = snapshots_free;
+    }
+    return sim->snapshots;
 }
 
 bool snapshots_keep_journal(struct sim *sim)
@@ -124,7 +123,7 @@ static json_t *write_file(struct sim_snapshots *store, const char *path, bool fo
     return NULL;
 }
 
-json_t *command_snapshot(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_snapshot(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const known[] = {"name", "file", "force", NULL};
     const char *name, *file;
@@ -172,7 +171,7 @@ static json_t *restore_named(struct sim_snapshots *store, const char *name, stru
                   store->count > 0 ? names : "those taken with `snapshot': none yet");
 }
 
-json_t *command_restore(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_restore(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const known[] = {"name", "file", "timeout", NULL};
     const char *name, *file;
@@ -186,4 +185,15 @@ json_t *command_restore(struct sim *sim, const json_t *params, struct refusal *r
         return restore_named(store, name, refusal);
     struct restore *restore = restore_begin(sim, params, refusal);
     return restore ? restore_at_once(restore, refusal) : NULL;
+}
+
+static const struct command_method snapshot_methods[] = {
+    {"snapshot", command_snapshot, true},
+    {"restore", command_restore, true},
+    {NULL, NULL, false},
+};
+
+bool snapshots_attach(struct sim *sim)
+{
+    return command_attach(sim, snapshot_methods);
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "record/record.h"
 #include "scenario_parts.h"
 #include "text/text.h"
 
@@ -210,11 +211,11 @@ static bool read_lists(struct scenario_reader *reader, const struct config_node 
 
 bool scenario_power_up(const struct scenario *scenario, struct sim *sim, FILE *errors)
 {
-    if (!sim_begin(sim, &scenario->config))
+    if (!sim_begin(sim, &scenario->config) || !snapshots_attach(sim))
         return false;
     return scenario->plant == NULL ||
            sim_configure_plants(sim, scenario->plant_name != NULL ? scenario->plant_name : "plant", scenario->plant,
-                           scenario->plant_length, errors);
+                                scenario->plant_length, errors);
 }
 
 bool scenario_begin_inputs(const struct scenario *scenario, struct sim *sim, struct refusal *refusal)

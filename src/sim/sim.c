@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "record/record.h"
-
 #define LONGEST_ANSWER 20000000u /* ticks: more than the longest answer takes */
 
 static uint64_t earlier(uint64_t a, uint64_t b)
@@ -505,7 +503,8 @@ void sim_end(struct sim *sim)
 {
     watch_end(&sim->watch);
     wire_monitor_end(&sim->monitor);
-    snapshots_free(sim->snapshots);
+    if (sim->snapshots)
+        sim->free_snapshots(sim->snapshots);
     free(sim->plant_text);
     for (unsigned at = 0; at < SEGMENT_UNITS; at++) {
         plant_free(sim->unit[at].plant);

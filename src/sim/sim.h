@@ -23,7 +23,10 @@
 #include "watch.h"
 
 struct sim;
-struct sim_snapshots; /* snapshot.h */
+struct sim_snapshots;  /* of the room `record` */
+struct command_method; /* command.h */
+
+#define SIM_COMMAND_TABLES 4u /* that rooms above `command` may attach */
 
 /* The flash of unit `number`, as in struct rkm04_port; all functions set. */
 struct sim_flash {
@@ -74,6 +77,8 @@ struct sim {
     struct faults faults;
     const struct sim_journal *journal; /* NULL: none */
     struct sim_snapshots *snapshots;   /* NULL: none yet */
+    void (*free_snapshots)(struct sim_snapshots *snapshots); /* set by who sets `snapshots`; called by sim_end() */
+    const struct command_method *commands[SIM_COMMAND_TABLES]; /* command_attach(); the first NULL ends them */
     bool (*interrupted)(void *context); /* is a command that takes long to be given up? NULL: never but by its own limit */
     void *interrupted_context;
     char *plant_text;                  /* what plant.set or --plant gave, for records; NULL: no plant */

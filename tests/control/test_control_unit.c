@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "plant/plant_rig.h"
+#include "record/record.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define SECOND UINT64_C(1000000)
@@ -16,6 +17,7 @@ static json_t *state;
 static void setup(void)
 {
     ck_assert(plant_rig_begin(&rig, "1", NULL));
+    ck_assert(snapshots_attach(&rig.sim));
     state = NULL;
 }
 

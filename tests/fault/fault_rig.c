@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "record/record.h"
+
 struct fault_rig rig;
 
 static uint8_t last_answer[RKM04_MESSAGE_MAX];
@@ -60,6 +62,7 @@ void rig_begin_with(bool timed, unsigned units, uint64_t seed, const struct rkm0
         config.nodes.node[at] = (uint8_t)(at + 1u);
     memset(&rig, 0, sizeof rig);
     ck_assert(sim_begin(&rig.sim, &config));
+    ck_assert(snapshots_attach(&rig.sim));
     rig.watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_INJECTED) | WATCH_BIT(WATCH_BYTE), .see = see};
     sim_watch(&rig.sim, &rig.watcher);
 }

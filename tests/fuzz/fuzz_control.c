@@ -107,7 +107,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     config.timed = mode & 4;
     left = TIME_MAX;
     memset(&sim, 0, sizeof sim);
-    FUZZ_CHECK(node_list_read(&config.nodes, nodes[mode & 3]) && sim_begin(&sim, &config), "no memory");
+    FUZZ_CHECK(node_list_read(&config.nodes, nodes[mode & 3]) && sim_begin(&sim, &config) && snapshots_attach(&sim), "no memory");
     if (mode & 8)
         FUZZ_CHECK(snapshots_keep_journal(&sim), "no memory");
     for (unsigned i = 0; i < REQUESTS_MAX && fuzz.left > 0; i++) {

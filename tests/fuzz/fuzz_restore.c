@@ -35,7 +35,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FUZZ_CHECK(file >= 0 && write(file, data, size) == (ssize_t)size, "no memory");
     snprintf(path, sizeof path, "/proc/self/fd/%d", file);
     memset(&sim, 0, sizeof sim);
-    FUZZ_CHECK(node_list_read(&config.nodes, "1") && sim_begin(&sim, &config), "no memory");
+    FUZZ_CHECK(node_list_read(&config.nodes, "1") && sim_begin(&sim, &config) && snapshots_attach(&sim), "no memory");
     FUZZ_CHECK(snapshots_keep_journal(&sim), "no memory");
     rkm04_set_command(sim_core(&sim, 1), '1', "L5 F20 R W3 E", 13, NULL);
     sim_advance(&sim, 30000);

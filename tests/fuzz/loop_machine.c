@@ -162,7 +162,8 @@ struct trace_file *__wrap_trace_file_begin(struct sim *sim, const char *path, un
 struct trace_file *__real_trace_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 struct wire_file *__wrap_wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 struct wire_file *__real_wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
-command_function __wrap_command_snapshot, __real_command_snapshot;
+json_t *__wrap_sim_command(struct sim *sim, const char *method, const json_t *params, struct refusal *refusal);
+json_t *__real_sim_command(struct sim *sim, const char *method, const json_t *params, struct refusal *refusal);
 struct restore *__wrap_restore_begin(struct sim *sim, const json_t *params, struct refusal *refusal);
 struct restore *__real_restore_begin(struct sim *sim, const json_t *params, struct refusal *refusal);
 
@@ -244,9 +245,11 @@ static json_t *with_safe_file(const json_t *params)
     return changed;
 }
 
-json_t *__wrap_command_snapshot(struct sim *sim, const json_t *params, struct refusal *refusal)
+json_t *__wrap_sim_command(struct sim *sim, const char *method, const json_t *params, struct refusal *refusal)
 {
-    json_t *safe = with_safe_file(params), *result = __real_command_snapshot(sim, safe, refusal);
+    bool is_snapshot = strcmp(method, "snapshot") == 0 && json_is_object(params);
+    json_t *safe = is_snapshot ? with_safe_file(params) : json_incref((json_t *)params);
+    json_t *result = __real_sim_command(sim, method, safe, refusal);
     json_decref(safe);
     return result;
 }

@@ -7,6 +7,7 @@
 
 #include "wire/wire_monitor.h"
 #include "text/readings.h"
+#include "record/record.h"
 
 static const char axis[] =
     "motors:\n"
@@ -289,6 +290,7 @@ void session_begin(struct session *session, const struct session_kind *kind)
     *session = (struct session){.dice = 88172645463325252u};
     ck_assert(node_list_read(&config.nodes, kind->nodes));
     ck_assert(sim_begin(&session->sim, &config));
+    ck_assert(snapshots_attach(&session->sim));
     ck_assert(!kind->plant || sim_configure_plants(&session->sim, "plant", kind->plant, strlen(kind->plant), stderr));
     session_forget(session);
     session->watcher = (struct watcher){.kinds = WATCH_ALL, .see = see, .context = session};

@@ -333,6 +333,7 @@ START_TEST(the_flash_and_the_plant_at_the_beginning_are_part_of_a_record)
     /* the same flash in a new line: the unit starts with its program */
     struct sim_config config = {.nodes = {.count = 1, .node = {5}}};
     ck_assert(sim_begin(&session.sim, &config));
+    ck_assert(snapshots_attach(&session.sim));
     session.sim.unit[0].memory = memory;
     sim_power(&session.sim, 1, true);
     sim_advance(&session.sim, 0);

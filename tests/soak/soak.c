@@ -16,6 +16,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "record/record.h"
+
 #if defined __SANITIZE_ADDRESS__
 #define MEMORY_JUDGED false /* its own memory grows; it looks for leaks at the end */
 #else
@@ -85,7 +87,7 @@ static void begin(struct soak *soak)
     };
     soak->dice.state = options.seed;
     soak->exact = true;
-    if (!node_list_read(&config.nodes, "1-16") || !sim_begin(&soak->sim, &config))
+    if (!node_list_read(&config.nodes, "1-16") || !sim_begin(&soak->sim, &config) || !snapshots_attach(&soak->sim))
         soak_fail(soak, "no memory");
     counters_begin(soak);
 }

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* methods.h: the tables of methods of this room. Private. */
+#ifndef RKM04_COMMAND_METHODS_H
+#define RKM04_COMMAND_METHODS_H
+
+#include "command.h"
+
+extern const struct command_method unit_methods[];  /* command_unit.c */
+extern const struct command_method plant_methods[]; /* plant_command.c */
+extern const struct command_method fault_methods[]; /* fault_command.c */
+
+/* fault_list.c */
+command_function command_fault_list;
+
+#endif
