@@ -193,8 +193,8 @@ static uint64_t next_wake(const struct bus_time *time, uint64_t now)
         return now;
     if (wanted < byte)
         byte = wanted;
-    if (faults_next(time->sim) < byte)
-        byte = faults_next(time->sim); /* an adapter that is unplugged shows at once */
+    if (faults_next(&time->sim->faults) < byte)
+        byte = faults_next(&time->sim->faults); /* an adapter that is unplugged shows at once */
     if (byte != RKM04_NEVER) {
         when = virtual_clock_when(&time->clock, byte);
         when = when > 0 ? when : now;

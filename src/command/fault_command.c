@@ -280,7 +280,7 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
         return NULL;
     if (fault.kind == FAULT_WRONG_FCS && sim->config.unit.framing && sim->config.unit.framing != &rkm04_hdlc)
         return refuse(refusal, REFUSED_STATE, "wrong_fcs: framing `%s' has no check value", sim->config.unit.framing->name);
-    uint32_t id = faults_add(sim, &fault);
+    uint32_t id = faults_add(&sim->faults, &fault);
     if (id == 0)
         return refuse(refusal, REFUSED_STATE, "there are %u faults already that may still act: clear some", FAULTS_MAX);
     return json_pack("{s:I}", "id", (json_int_t)id);
@@ -292,7 +292,7 @@ static json_t *command_fault_clear(struct sim *sim, const json_t *params, struct
     int64_t id;
     if (!params_known(params, names, refusal) || !param_integer_or(params, "id", 1, UINT32_MAX, 0, &id, refusal))
         return NULL;
-    unsigned cleared = faults_remove(sim, (uint32_t)id);
+    unsigned cleared = faults_remove(&sim->faults, (uint32_t)id);
     if (id != 0 && cleared == 0)
         return refuse(refusal, REFUSED_PARAMS, "id: there is no fault %lld: see fault.list", (long long)id);
     return json_pack("{s:i}", "cleared", (int)cleared);

@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "sim/sim.h"
-
 #define SURE 1000000u /* millionths */
 
 static const char *const names[FAULT_KINDS] = {
@@ -29,22 +27,15 @@ enum fault_kind fault_kind_named(const char *name)
     return (enum fault_kind)kind;
 }
 
-void fault_tell(struct sim *sim, const struct fault *fault, unsigned unit, const char *format, ...)
+void fault_report(const struct faults *faults, const struct fault *fault, unsigned unit, const char *format, ...)
 {
-    char text[160];
+    char text[192];
     va_list list;
-    if ((sim->watch.kinds & WATCH_BIT(WATCH_INJECTED)) == 0)
-        return;
+    size_t length = (size_t)snprintf(text, sizeof text, "%s: ", names[fault->kind]);
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    vsnprintf(text + length, sizeof text - length, format, list);
     va_end(list);
-    struct watch_event event = {
-        .tick = sim_now(sim),
-        .value = (int32_t)fault->id,
-        .kind = WATCH_INJECTED,
-        .unit = (uint8_t)unit,
-    };
-    sim_tell_text(sim, WATCH_DELIVERED, &event, "%s: %s", names[fault->kind], text);
+    faults->calls->report(faults->context, fault, unit, text);
 }
 
 /* ---- Chance --------------------------------------------------------------------------------------------------------- */
@@ -59,7 +50,7 @@ uint64_t faults_random(struct faults *faults)
 }
 
 /* An occasion within the window. Returns whether the fault acts, and counts it. */
-static bool takes(struct faults *faults, struct fault *fault)
+static bool use_occasion(struct faults *faults, struct fault *fault)
 {
     if (fault->counted && fault->left == 0)
         return false;
@@ -74,9 +65,9 @@ static bool takes(struct faults *faults, struct fault *fault)
     return true;
 }
 
-struct fault *fault_acts(struct sim *sim, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation)
+struct fault *fault_apply(struct faults *faults, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation)
 {
-    struct faults *faults = &sim->faults;
+    const uint64_t now = segment_now(faults->segment);
     struct fault *acting = NULL;
     if ((faults->kinds >> kind & 1u) == 0)
         return NULL;
@@ -85,7 +76,7 @@ struct fault *fault_acts(struct sim *sim, enum fault_kind kind, unsigned unit, u
         bool meant = fault->kind == kind && (fault->unit == 0 || fault->unit == unit) &&
                      (direction == 0 || (fault->direction & direction) != 0) &&
                      (operation == 0 || (fault->operations & operation) != 0);
-        if (meant && fault->from <= sim_now(sim) && sim_now(sim) < fault->until && takes(faults, fault))
+        if (meant && fault->from <= now && now < fault->until && use_occasion(faults, fault))
             acting = fault;
     }
     return acting;
@@ -98,9 +89,8 @@ static bool has_spells(const struct fault *fault)
     return fault->kind >= FAULT_BREAK;
 }
 
-const struct fault *fault_lasts(const struct sim *sim, enum fault_kind kind, unsigned unit)
+const struct fault *fault_in_force(const struct faults *faults, enum fault_kind kind, unsigned unit)
 {
-    const struct faults *faults = &sim->faults;
     if ((faults->kinds >> kind & 1u) == 0)
         return NULL;
     for (unsigned i = 0; i < faults->count; i++) {
@@ -111,9 +101,8 @@ const struct fault *fault_lasts(const struct sim *sim, enum fault_kind kind, uns
     return NULL;
 }
 
-uint8_t faults_hold_inputs(const struct sim *sim, unsigned unit, uint8_t levels)
+uint8_t faults_hold_inputs(const struct faults *faults, unsigned unit, uint8_t levels)
 {
-    const struct faults *faults = &sim->faults;
     for (unsigned i = 0; i < faults->count; i++) {
         const struct fault *fault = &faults->fault[i];
         if (fault->kind != FAULT_INPUT || !fault->active || (fault->unit != 0 && fault->unit != unit))
@@ -134,89 +123,87 @@ static uint64_t earlier(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-static void tell_begin(struct sim *sim, const struct fault *fault)
+static void report_begin(const struct faults *faults, const struct fault *fault)
 {
     if (fault->kind == FAULT_INPUT)
-        fault_tell(sim, fault, fault->unit, "input %u is stuck at %d", (unsigned)fault->number, fault->level);
+        fault_report(faults, fault, fault->unit, "input %u is stuck at %d", (unsigned)fault->number, fault->level);
     else if (fault->kind == FAULT_CABLE)
-        fault_tell(sim, fault, fault->unit, fault->unit > 0 ? "the cable of the unit is cut" : "the cable is cut");
+        fault_report(faults, fault, fault->unit, fault->unit > 0 ? "the cable of the unit is cut" : "the cable is cut");
     else
-        fault_tell(sim, fault, 0, fault->kind == FAULT_BREAK ? "the line is held at 0" : "the adapter is unplugged");
+        fault_report(faults, fault, 0, fault->kind == FAULT_BREAK ? "the line is held at 0" : "the adapter is unplugged");
 }
 
 /* Begin and end the spells of a fault that are due by now. */
-static void follow(struct sim *sim, struct fault *fault)
+static void update_spells(struct faults *faults, struct fault *fault)
 {
-    uint64_t now = sim_now(sim);
+    uint64_t now = segment_now(faults->segment);
     if (fault->active && fault->ends <= now) {
         fault->active = false;
-        fault_tell(sim, fault, fault->unit, "over");
+        fault_report(faults, fault, fault->unit, "over");
     }
     while (!fault->active && fault->next <= now) {
         uint64_t at = fault->next;
         fault->next = fault->every > 0 ? later(at, fault->every) : RKM04_NEVER;
         if (fault->next >= fault->until)
             fault->next = RKM04_NEVER;
-        if (!takes(&sim->faults, fault))
+        if (!use_occasion(faults, fault))
             continue;
         if (fault->counted && fault->left == 0)
             fault->next = RKM04_NEVER;
         fault->ends = earlier(later(at, fault->ticks), fault->until);
         fault->active = fault->ends > now;
         if (fault->active)
-            tell_begin(sim, fault);
+            report_begin(faults, fault);
     }
 }
 
 /* Give the power back to a unit that has lost it. */
-static void give_power(struct sim *sim, struct fault *fault)
+static void give_power(struct faults *faults, struct fault *fault)
 {
     unsigned unit = fault->victim;
     fault->victim = 0;
     fault->ends = RKM04_NEVER;
-    if (sim_powered(sim, unit))
+    if (faults->segment->unit[unit - 1u].powered)
         return;
-    fault_tell(sim, fault, unit, "the power is back");
-    sim_power(sim, unit, true);
+    fault_report(faults, fault, unit, "the power is back");
+    faults->calls->power(faults->context, unit, true);
 }
 
 /* Let the line, the adapter and the inputs be as the spells in force want them. */
-static void apply(struct sim *sim)
+static void apply_spells(struct faults *faults)
 {
-    bool unplugged = fault_lasts(sim, FAULT_UNPLUGGED, 0) != NULL;
-    bool disturbed = fault_lasts(sim, FAULT_BREAK, 0) != NULL;
-    if (disturbed != sim->segment.disturbed)
-        segment_disturb(&sim->segment, disturbed);
-    for (unsigned number = 1; number <= sim_units(sim); number++)
-        sim_update_inputs(sim, number);
-    if (unplugged == sim->faults.unplugged)
+    bool unplugged = fault_in_force(faults, FAULT_UNPLUGGED, 0) != NULL;
+    bool disturbed = fault_in_force(faults, FAULT_BREAK, 0) != NULL;
+    if (disturbed != faults->segment->disturbed)
+        segment_disturb(faults->segment, disturbed);
+    for (unsigned number = 1; number <= faults->segment->units; number++)
+        faults->calls->inputs_changed(faults->context, number);
+    if (unplugged == faults->unplugged)
         return;
-    sim->faults.unplugged = unplugged;
+    faults->unplugged = unplugged;
     if (unplugged)
-        segment_purge(&sim->segment); /* what the adapter had in its memory is gone with it */
-    if (sim->config.adapter)
-        sim->config.adapter(sim->config.context, !unplugged);
+        segment_purge(faults->segment); /* what the adapter had in its memory is gone with it */
+    if (faults->calls->adapter)
+        faults->calls->adapter(faults->context, !unplugged);
 }
 
-void faults_look(struct sim *sim)
+void faults_update(struct faults *faults)
 {
-    struct faults *faults = &sim->faults;
-    for (unsigned number = 1; number <= sim_units(sim) && faults->dying != 0; number++)
-        faults_hooks.obeyed(sim, number);
+    for (unsigned number = 1; number <= faults->segment->units && faults->dying != 0; number++)
+        faults_hooks.obeyed(faults, number);
     for (unsigned i = 0; i < faults->count; i++) {
         struct fault *fault = &faults->fault[i];
         if (has_spells(fault))
-            follow(sim, fault);
-        else if (fault->victim != 0 && fault->ends <= sim_now(sim))
-            give_power(sim, fault);
+            update_spells(faults, fault);
+        else if (fault->victim != 0 && fault->ends <= segment_now(faults->segment))
+            give_power(faults, fault);
     }
-    apply(sim);
+    apply_spells(faults);
 }
 
-uint64_t faults_next(const struct sim *sim)
+uint64_t faults_next(const struct faults *faults)
 {
-    const struct faults *faults = &sim->faults;
-    uint64_t next = faults->dying != 0 ? sim_now(sim) : RKM04_NEVER;
+    uint64_t next = faults->dying != 0 ? segment_now(faults->segment) : RKM04_NEVER;
     for (unsigned i = 0; i < faults->count; i++) {
         const struct fault *fault = &faults->fault[i];
         if (has_spells(fault))
@@ -243,11 +230,23 @@ void faults_shift(struct faults *faults, uint64_t shift)
     }
 }
 
+void faults_restore(struct faults *faults, const struct faults *snapshot, uint64_t shift)
+{
+    struct segment *segment = faults->segment;
+    const struct fault_calls *calls = faults->calls;
+    void *context = faults->context;
+    *faults = *snapshot;
+    faults->segment = segment;
+    faults->calls = calls;
+    faults->context = context;
+    faults_shift(faults, shift);
+}
+
 /* ---- The list ------------------------------------------------------------------------------------------------------- */
 
-void faults_begin(struct faults *faults, uint64_t seed)
+void faults_begin(struct faults *faults, uint64_t seed, struct segment *segment, const struct fault_calls *calls, void *context)
 {
-    *faults = (struct faults){.random = seed};
+    *faults = (struct faults){.segment = segment, .calls = calls, .context = context, .random = seed};
     for (unsigned at = 0; at < SEGMENT_UNITS; at++)
         faults->answer[at] = fault_answer_well;
 }
@@ -278,10 +277,9 @@ static bool make_room(struct faults *faults, uint64_t now)
     return faults->count < FAULTS_MAX;
 }
 
-uint32_t faults_add(struct sim *sim, const struct fault *fault)
+uint32_t faults_add(struct faults *faults, const struct fault *fault)
 {
-    struct faults *faults = &sim->faults;
-    if (!make_room(faults, sim_now(sim)))
+    if (!make_room(faults, segment_now(faults->segment)))
         return 0;
     struct fault *added = &faults->fault[faults->count++];
     *added = *fault;
@@ -292,15 +290,14 @@ uint32_t faults_add(struct sim *sim, const struct fault *fault)
     added->victim = 0;
     added->active = false;
     faults->kinds |= UINT32_C(1) << added->kind;
-    sim->segment.config.hooks = &faults_hooks;
+    faults->segment->config.hooks = &faults_hooks;
     uint32_t id = added->id;
-    faults_look(sim);
+    faults_update(faults);
     return id;
 }
 
-unsigned faults_remove(struct sim *sim, uint32_t id)
+unsigned faults_remove(struct faults *faults, uint32_t id)
 {
-    struct faults *faults = &sim->faults;
     unsigned removed = 0;
     for (unsigned i = faults->count; i-- > 0;) {
         if (id != 0 && faults->fault[i].id != id)
@@ -308,6 +305,6 @@ unsigned faults_remove(struct sim *sim, uint32_t id)
         drop_at(faults, i);
         removed++;
     }
-    faults_look(sim);
+    faults_update(faults);
     return removed;
 }

@@ -6,14 +6,13 @@
  * those of the faults of the flash are its operations. The others have spells (FAULT_BREAK and following): their occasions are
  * the begin of their window, and one every `every` ticks from then on.
  *
- * What a sim has to do:
- *   begin:        faults_begin(); the hooks of the segment are put in with the first fault, so that a line without faults pays
- *                 nothing
- *   each leap:    end at faults_next() at the latest, then faults_look() if that is the present tick
+ * What the owner of the bus has to do:
+ *   begin:        faults_begin() with the segment, whose config.hooks_context has to be the faults; the hooks are put in with the
+ *                 first fault, so that a line without faults pays nothing
+ *   each leap:    end at faults_next() at the latest, then faults_update() if that is the present tick
  *   the units' port: faults_flash_read(), faults_flash_erase(), faults_flash_program() stand before the flash
  *   inputs:       faults_hold_inputs() has the last word
- *   snapshots:    struct faults is part of them (struct segment, too); after coming back faults_shift(); config.adapter is to be
- *                 told if `unplugged` is another than before */
+ *   snapshots:    struct faults is part of them (struct segment, too), and is put back with faults_restore() */
 #ifndef RKM04_FAULT_H
 #define RKM04_FAULT_H
 
@@ -22,9 +21,6 @@
 #include <stdint.h>
 
 #include "wire/wire.h"
-
-struct sim;
-struct sim_unit;
 
 #define FAULTS_MAX 64u
 
@@ -84,48 +80,71 @@ struct fault_answer {
 
 extern const struct fault_answer fault_answer_well; /* nothing is */
 
+/* What faults need of what is around the bus. All are set, but for `adapter`. */
+struct fault_calls {
+    /* A fault has acted on unit `unit` (0: the line). `text` says what it did; valid during the call. */
+    void (*report)(void *context, const struct fault *fault, unsigned unit, const char *text);
+    /* What holds the inputs of a unit may have changed: faults_hold_inputs(). */
+    void (*inputs_changed)(void *context, unsigned unit);
+    void (*power)(void *context, unsigned unit, bool on);
+    void (*adapter)(void *context, bool plugged);
+    const char *(*unit_name)(void *context, unsigned unit);
+    /* The flash as it is, as in struct rkm04_port. */
+    int (*flash_read)(void *context, unsigned unit, unsigned block, unsigned offset, void *data, unsigned length);
+    int (*flash_erase)(void *context, unsigned unit, unsigned block);
+    int (*flash_program)(void *context, unsigned unit, unsigned block, unsigned offset, const void *data, unsigned length);
+};
+
 struct faults {
+    struct segment *segment;         /* of the bus */
+    const struct fault_calls *calls;
+    void *context;                   /* of the calls */
     uint32_t last_id;
     uint64_t random;   /* state of the generator, seeded */
     uint32_t kinds;    /* there are some of these: bit n is kind n */
-    bool unplugged;    /* config.adapter of the sim has been told so */
+    bool unplugged;    /* calls.adapter has been told so */
     uint32_t dying;    /* bit n: unit n has lost its power in the middle of an operation, and is to be switched off */
     unsigned count;
     struct fault fault[FAULTS_MAX]; /* in order of their ids */
     struct fault_answer answer[SEGMENT_UNITS];
 };
 
-void faults_begin(struct faults *faults, uint64_t seed);
+/* No faults. `calls` must stay. */
+void faults_begin(struct faults *faults, uint64_t seed, struct segment *segment, const struct fault_calls *calls, void *context);
 
 /* Add a fault; `id`, `acted`, `next`, `ends` and `active` are set here. One that begins now acts from now on. Returns its id; 0:
  * there are FAULTS_MAX that may still act. */
-uint32_t faults_add(struct sim *sim, const struct fault *fault);
+uint32_t faults_add(struct faults *faults, const struct fault *fault);
 
-/* Take fault `id` away, or all with 0; a spell in force ends. Returns how many it were. */
-unsigned faults_remove(struct sim *sim, uint32_t id);
+/* Remove fault `id`, or all with 0; a spell in force ends. Returns how many were removed. */
+unsigned faults_remove(struct faults *faults, uint32_t id);
 
 /* Will it never act again? It is kept for a while so that it can be seen how often it did. */
 bool fault_spent(const struct fault *fault, uint64_t now);
 
 /* Is there a spell of this kind in force now, for unit `unit` alone, or with 0 for all? Returns it, or NULL. */
-const struct fault *fault_lasts(const struct sim *sim, enum fault_kind kind, unsigned unit);
+const struct fault *fault_in_force(const struct faults *faults, enum fault_kind kind, unsigned unit);
 
 /* `levels` of the inputs of a unit, with those that a fault holds as it holds them. */
-uint8_t faults_hold_inputs(const struct sim *sim, unsigned unit, uint8_t levels);
+uint8_t faults_hold_inputs(const struct faults *faults, unsigned unit, uint8_t levels);
 
-/* The flash as the unit finds it: sim_flash_read(), … with what goes wrong. */
-int faults_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);
-int faults_flash_erase(struct sim_unit *unit, unsigned block);
-int faults_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length);
+/* The flash as the unit finds it: calls.flash_read(), … with what goes wrong. */
+int faults_flash_read(struct faults *faults, unsigned unit, unsigned block, unsigned offset, void *data, unsigned length);
+int faults_flash_erase(struct faults *faults, unsigned unit, unsigned block);
+int faults_flash_program(struct faults *faults, unsigned unit, unsigned block, unsigned offset, const void *data,
+                         unsigned length);
 
 /* Begin and end what is due by now, and do what follows (inputs, line, adapter, power). */
-void faults_look(struct sim *sim);
+void faults_update(struct faults *faults);
 
 /* The next tick at which that is due, which may be over; RKM04_NEVER: never. */
-uint64_t faults_next(const struct sim *sim);
+uint64_t faults_next(const struct faults *faults);
 
-/* All times `shift` ticks later, for snapshots. */
+/* All times `shift` ticks later. */
 void faults_shift(struct faults *faults, uint64_t shift);
+
+/* Be like the faults of a snapshot, all times `shift` ticks later; segment and calls stay. calls.adapter is not made. */
+void faults_restore(struct faults *faults, const struct faults *snapshot, uint64_t shift);
 
 /* "drop", "flip", … as in fault.inject. Never NULL. */
 const char *fault_kind_name(enum fault_kind kind);
@@ -133,20 +152,20 @@ const char *fault_kind_name(enum fault_kind kind);
 /* Find a kind by its name. Returns FAULT_KINDS if there is none of that name. */
 enum fault_kind fault_kind_named(const char *name);
 
-/* The hooks of a line with faults; config.context of the segment is the sim. fault_line.c */
+/* The hooks of a line with faults; their context is the faults. fault_line.c */
 extern const struct segment_hooks faults_hooks;
 
 /* ---- Inside: between the parts of this module ------------------------------------------------------------------------- */
 
 /* An occasion: does a fault of this kind act? Counts it. `direction`, `operation`: for kinds that have one, else 0. Returns it
  * (valid until the next call), or NULL. */
-struct fault *fault_acts(struct sim *sim, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation);
+struct fault *fault_apply(struct faults *faults, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation);
 
 /* The next random number. */
 uint64_t faults_random(struct faults *faults);
 
-/* A fault has done something to unit `unit` (0: the line): tell the watchers. */
-void fault_tell(struct sim *sim, const struct fault *fault, unsigned unit, const char *format, ...)
+/* A fault has done something to unit `unit` (0: the line): report it. */
+void fault_report(const struct faults *faults, const struct fault *fault, unsigned unit, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
 #endif

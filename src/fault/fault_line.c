@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Faults of bytes and answers: what the hooks of the segment do on a line with faults. */
-#include <stdio.h>
+#include "fault.h"
 
-#include "sim/sim.h"
+#include <stdio.h>
 
 #define ESCAPE 0x7d
 #define FLAG 0x7e
@@ -14,11 +14,11 @@ struct name {
 };
 
 /* "the master", "unit 3". */
-static struct name name_of(const struct sim *sim, unsigned station)
+static struct name name_of(const struct faults *faults, unsigned station)
 {
     struct name name = {"the master"};
     if (station > 0)
-        snprintf(name.text, sizeof name.text, "unit %s", sim->unit[station - 1u].name);
+        snprintf(name.text, sizeof name.text, "unit %s", faults->calls->unit_name(faults->context, station));
     return name;
 }
 
@@ -53,27 +53,27 @@ static void find_check_value(const struct rkm04_unit *unit, struct fault_answer 
 
 static uint64_t on_answer(void *context, unsigned number)
 {
-    struct sim *sim = context;
-    struct fault_answer *answer = &sim->faults.answer[number - 1u];
+    struct faults *faults = context;
+    struct fault_answer *answer = &faults->answer[number - 1u];
     const struct fault *fault;
     uint64_t delay = 0;
     *answer = fault_answer_well;
-    if ((fault = fault_acts(sim, FAULT_NO_ANSWER, number, 0, 0))) {
+    if ((fault = fault_apply(faults, FAULT_NO_ANSWER, number, 0, 0))) {
         answer->end = 0;
-        fault_tell(sim, fault, number, "no answer");
+        fault_report(faults, fault, number, "no answer");
         return 0;
     }
-    if ((fault = fault_acts(sim, FAULT_DELAY, number, 0, 0))) {
+    if ((fault = fault_apply(faults, FAULT_DELAY, number, 0, 0))) {
         delay = fault->ticks;
-        fault_tell(sim, fault, number, "the answer is late by %llu us", (unsigned long long)delay);
+        fault_report(faults, fault, number, "the answer is late by %llu us", (unsigned long long)delay);
     }
-    if ((fault = fault_acts(sim, FAULT_CUT, number, 0, 0))) {
+    if ((fault = fault_apply(faults, FAULT_CUT, number, 0, 0))) {
         answer->end = fault->number;
-        fault_tell(sim, fault, number, "the answer ends after %u bytes", (unsigned)fault->number);
+        fault_report(faults, fault, number, "the answer ends after %u bytes", (unsigned)fault->number);
     }
-    if ((fault = fault_acts(sim, FAULT_WRONG_FCS, number, 0, 0))) {
-        find_check_value(segment_unit(&sim->segment, number), answer);
-        fault_tell(sim, fault, number, "the check value of the answer is wrong");
+    if ((fault = fault_apply(faults, FAULT_WRONG_FCS, number, 0, 0))) {
+        find_check_value(segment_unit(faults->segment, number), answer);
+        fault_report(faults, fault, number, "the check value of the answer is wrong");
     }
     return delay;
 }
@@ -90,70 +90,70 @@ static bool as_answered(struct fault_answer *answer, uint8_t *byte)
 /* ---- Bytes ---------------------------------------------------------------------------------------------------------- */
 
 /* Does what a station sends get as far as the line? */
-static bool connected(const struct sim *sim, unsigned station)
+static bool is_connected(const struct faults *faults, unsigned station)
 {
-    if (station == 0 && fault_lasts(sim, FAULT_UNPLUGGED, 0))
+    if (station == 0 && fault_in_force(faults, FAULT_UNPLUGGED, 0))
         return false;
-    return !fault_lasts(sim, FAULT_CABLE, station);
+    return !fault_in_force(faults, FAULT_CABLE, station);
 }
 
 static size_t on_send(void *context, unsigned station, uint8_t byte, uint8_t *bytes)
 {
-    struct sim *sim = context;
+    struct faults *faults = context;
     unsigned direction = station == 0 ? FAULT_TO_UNITS : FAULT_TO_MASTER;
     const struct fault *fault;
     size_t length = 0;
-    if (station > 0 && !as_answered(&sim->faults.answer[station - 1u], &byte))
+    if (station > 0 && !as_answered(&faults->answer[station - 1u], &byte))
         return 0;
-    if (!connected(sim, station))
+    if (!is_connected(faults, station))
         return 0;
-    if ((fault = fault_acts(sim, FAULT_DROP, station, direction, 0))) {
-        fault_tell(sim, fault, station, "%02X of %s is lost", byte, name_of(sim, station).text);
+    if ((fault = fault_apply(faults, FAULT_DROP, station, direction, 0))) {
+        fault_report(faults, fault, station, "%02X of %s is lost", byte, name_of(faults, station).text);
         return 0;
     }
-    if ((fault = fault_acts(sim, FAULT_FLIP, station, direction, 0))) {
+    if ((fault = fault_apply(faults, FAULT_FLIP, station, direction, 0))) {
         uint8_t flipped = (uint8_t)(byte ^ fault->number);
-        fault_tell(sim, fault, station, "%02X of %s becomes %02X", byte, name_of(sim, station).text, flipped);
+        fault_report(faults, fault, station, "%02X of %s becomes %02X", byte, name_of(faults, station).text, flipped);
         byte = flipped;
     }
-    if ((fault = fault_acts(sim, FAULT_INSERT, station, direction, 0))) {
+    if ((fault = fault_apply(faults, FAULT_INSERT, station, direction, 0))) {
         bytes[length++] = (uint8_t)fault->number;
-        fault_tell(sim, fault, station, "%02X comes before %02X of %s", (unsigned)fault->number, byte,
-                   name_of(sim, station).text);
+        fault_report(faults, fault, station, "%02X comes before %02X of %s", (unsigned)fault->number, byte,
+                   name_of(faults, station).text);
     }
     bytes[length++] = byte;
-    if ((fault = fault_acts(sim, FAULT_DUPLICATE, station, direction, 0))) {
+    if ((fault = fault_apply(faults, FAULT_DUPLICATE, station, direction, 0))) {
         bytes[length++] = byte;
-        fault_tell(sim, fault, station, "%02X of %s comes twice", byte, name_of(sim, station).text);
+        fault_report(faults, fault, station, "%02X of %s comes twice", byte, name_of(faults, station).text);
     }
     return length;
 }
 
 static bool on_hears(void *context, unsigned station, uint32_t senders)
 {
-    const struct sim *sim = context;
-    if (!connected(sim, station))
+    const struct faults *faults = context;
+    if (!is_connected(faults, station))
         return false;
-    return senders != 1u || connected(sim, 0); /* cut while the byte was under way */
+    return senders != 1u || is_connected(faults, 0); /* cut while the byte was under way */
 }
 
 static bool on_echoes(void *context, uint8_t byte)
 {
-    struct sim *sim = context;
-    const struct fault *fault = fault_acts(sim, FAULT_ECHO, 0, 0, 0);
+    struct faults *faults = context;
+    const struct fault *fault = fault_apply(faults, FAULT_ECHO, 0, 0, 0);
     if (fault)
-        fault_tell(sim, fault, 0, "the master hears its own %02X", byte);
+        fault_report(faults, fault, 0, "the master hears its own %02X", byte);
     return fault != NULL;
 }
 
 static void on_obeyed(void *context, unsigned number)
 {
-    struct sim *sim = context;
+    struct faults *faults = context;
     uint32_t bit = UINT32_C(1) << number;
-    if ((sim->faults.dying & bit) == 0)
+    if ((faults->dying & bit) == 0)
         return;
-    sim->faults.dying &= ~bit;
-    sim_power(sim, number, false);
+    faults->dying &= ~bit;
+    faults->calls->power(faults->context, number, false);
 }
 
 const struct segment_hooks faults_hooks = {

@@ -212,7 +212,7 @@ static void tell(struct sim *sim, unsigned number, unsigned motor, enum watch_ki
         .motor = (uint8_t)motor,
     };
     if (before != after)
-        sim_tell(sim, WATCH_DELIVERED, &event);
+        sim_report(sim, WATCH_DELIVERED, &event);
 }
 
 static void tell_changes(struct sim *sim, unsigned number, const struct look *before)
@@ -301,8 +301,7 @@ static bool put_later(struct sim *sim, const struct snapshot *snapshot, uint64_t
     for (unsigned at = 0; at < sim_units(sim); at++)
         put_unit(&sim->unit[at], &snapshot->unit[at], plant[at]);
     sim->config.nodes = snapshot->switches;
-    sim->faults = snapshot->faults;
-    faults_shift(&sim->faults, later);
+    faults_restore(&sim->faults, &snapshot->faults, later);
     wire_monitor_copy(&sim->monitor, &snapshot->monitor, later);
     free(sim->plant_text);
     sim->plant_text = text;

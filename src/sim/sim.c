@@ -13,14 +13,14 @@ static uint64_t earlier(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-/* ---- Telling -------------------------------------------------------------------------------------------------------- */
+/* ---- Events --------------------------------------------------------------------------------------------------------- */
 
-void sim_tell(struct sim *sim, enum watch_phase phase, const struct watch_event *event)
+void sim_report(struct sim *sim, enum watch_phase phase, const struct watch_event *event)
 {
     watch_add(&sim->watch, phase, *event);
 }
 
-void sim_tell_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
+void sim_report_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
 {
     struct watch_event copy = *event;
     va_list list;
@@ -95,17 +95,20 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_ev
 
 static int on_flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
 {
-    return faults_flash_read(context, block, offset, data, length);
+    struct sim_unit *unit = context;
+    return faults_flash_read(&unit->sim->faults, unit->number, block, offset, data, length);
 }
 
 static int on_flash_erase(void *context, unsigned block)
 {
-    return faults_flash_erase(context, block);
+    struct sim_unit *unit = context;
+    return faults_flash_erase(&unit->sim->faults, unit->number, block);
 }
 
 static int on_flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
 {
-    return faults_flash_program(context, block, offset, data, length);
+    struct sim_unit *unit = context;
+    return faults_flash_program(&unit->sim->faults, unit->number, block, offset, data, length);
 }
 
 /* Pulses cost time: they are asked for while somebody wants them. */
@@ -182,7 +185,7 @@ static uint8_t inputs_of(struct sim *sim, const struct sim_unit *unit)
 {
     uint8_t mask = unit->plant ? plant_mask(unit->plant) : 0;
     uint8_t levels = (uint8_t)((unit->di & ~mask) | (unit->plant ? plant_levels(unit->plant) & mask : 0));
-    return faults_hold_inputs(sim, unit->number, levels);
+    return faults_hold_inputs(&sim->faults, unit->number, levels);
 }
 
 static void set_inputs(struct sim *sim, struct sim_unit *unit, uint64_t tick)
@@ -217,7 +220,7 @@ static void tell_plant(struct sim *sim, const struct sim_unit *unit)
                                     .kind = WATCH_PLANT,
                                     .unit = (uint8_t)unit->number,
                                     .motor = report.motor};
-        sim_tell_text(sim, WATCH_PULSES, &event, "%s", report.text);
+        sim_report_text(sim, WATCH_PULSES, &event, "%s", report.text);
     }
 }
 
@@ -336,12 +339,12 @@ static uint64_t plants_next(const struct sim *sim)
 
 uint64_t sim_next_event(const struct sim *sim)
 {
-    return earlier(segment_next_event(&sim->segment), earlier(plants_next(sim), faults_next(sim)));
+    return earlier(segment_next_event(&sim->segment), earlier(plants_next(sim), faults_next(&sim->faults)));
 }
 
 uint64_t sim_next_report(const struct sim *sim)
 {
-    return earlier(segment_next_report(&sim->segment), earlier(plants_next(sim), faults_next(sim)));
+    return earlier(segment_next_report(&sim->segment), earlier(plants_next(sim), faults_next(&sim->faults)));
 }
 
 /* The first slot of a unit after `tick`: its time began when it was powered up. */
@@ -356,7 +359,7 @@ static uint64_t slot_after(const struct sim *sim, unsigned number, uint64_t tick
  * leap ends with it: when the power comes back is not known before. */
 static uint64_t leap_end(const struct sim *sim, uint64_t tick)
 {
-    uint64_t now = sim_now(sim), end = earlier(tick, faults_next(sim)), bounce = plants_next(sim), due = sim_due(sim);
+    uint64_t now = sim_now(sim), end = earlier(tick, faults_next(&sim->faults)), bounce = plants_next(sim), due = sim_due(sim);
     uint64_t event = earlier(segment_next_event(&sim->segment), due);
     event = event > now ? event : now;
     if ((sim->faults.kinds >> FAULT_POWER & 1u) != 0)
@@ -378,8 +381,8 @@ void sim_advance(struct sim *sim, uint64_t tick)
     do {
         segment_advance(&sim->segment, leap_end(sim, tick));
         take_changes(sim); /* they were before the faults that begin or end now */
-        if (faults_next(sim) <= sim_now(sim))
-            faults_look(sim);
+        if (faults_next(&sim->faults) <= sim_now(sim))
+            faults_update(&sim->faults);
         watch_hand_out(&sim->watch, sim_now(sim) + 1u); /* of the present tick there is only what was delivered */
     } while (sim_now(sim) < tick);
 }
@@ -457,6 +460,72 @@ void sim_unwatch(struct sim *sim, struct watcher *watcher)
     look_who_watches(sim);
 }
 
+/* ---- Faults ---------------------------------------------------------------------------------------------------------- */
+
+static void on_fault(void *context, const struct fault *fault, unsigned unit, const char *text)
+{
+    struct sim *sim = context;
+    struct watch_event event = {
+        .tick = sim_now(sim),
+        .value = (int32_t)fault->id,
+        .kind = WATCH_INJECTED,
+        .unit = (uint8_t)unit,
+    };
+    sim_report_text(sim, WATCH_DELIVERED, &event, "%s", text);
+}
+
+static void on_fault_of_inputs(void *context, unsigned number)
+{
+    sim_update_inputs(context, number);
+}
+
+static void on_fault_of_power(void *context, unsigned number, bool on)
+{
+    sim_power(context, number, on);
+}
+
+static void on_fault_of_adapter(void *context, bool plugged)
+{
+    const struct sim *sim = context;
+    if (sim->config.adapter)
+        sim->config.adapter(sim->config.context, plugged);
+}
+
+static const char *name_of_unit(void *context, unsigned number)
+{
+    const struct sim *sim = context;
+    return sim->unit[number - 1u].name;
+}
+
+static int read_flash(void *context, unsigned number, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    struct sim *sim = context;
+    return sim_flash_read(&sim->unit[number - 1u], block, offset, data, length);
+}
+
+static int erase_flash(void *context, unsigned number, unsigned block)
+{
+    struct sim *sim = context;
+    return sim_flash_erase(&sim->unit[number - 1u], block);
+}
+
+static int program_flash(void *context, unsigned number, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    struct sim *sim = context;
+    return sim_flash_program(&sim->unit[number - 1u], block, offset, data, length);
+}
+
+static const struct fault_calls fault_calls = {
+    .report = on_fault,
+    .inputs_changed = on_fault_of_inputs,
+    .power = on_fault_of_power,
+    .adapter = on_fault_of_adapter,
+    .unit_name = name_of_unit,
+    .flash_read = read_flash,
+    .flash_erase = erase_flash,
+    .flash_program = program_flash,
+};
+
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
 static bool add_unit(struct sim *sim, unsigned at)
@@ -486,9 +555,10 @@ bool sim_begin(struct sim *sim, const struct sim_config *config)
         .out = on_out,
         .monitor = on_byte,
         .context = sim,
+        .hooks_context = &sim->faults,
     };
     sim->config = *config;
-    faults_begin(&sim->faults, config->seed);
+    faults_begin(&sim->faults, config->seed, &sim->segment, &fault_calls, sim);
     segment_begin(&sim->segment, &segment);
     struct wire_monitor_calls calls = {.is_wanted = is_message_wanted, .message = on_message, .context = sim};
     if (!wire_monitor_begin(&sim->monitor, config->unit.framing, &sim->segment, calls))

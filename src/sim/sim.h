@@ -169,9 +169,9 @@ int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, co
 void sim_watch(struct sim *sim, struct watcher *watcher);
 void sim_unwatch(struct sim *sim, struct watcher *watcher);
 
-/* For the parts of a sim: something happens at `tick`. `text`: printf-like, for WATCH_PLANT and WATCH_INJECTED. */
-void sim_tell(struct sim *sim, enum watch_phase phase, const struct watch_event *event);
-void sim_tell_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
+/* Report that something happens at `tick`. `text`: printf-like, for WATCH_PLANT and WATCH_INJECTED. */
+void sim_report(struct sim *sim, enum watch_phase phase, const struct watch_event *event);
+void sim_report_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
 #endif

@@ -43,7 +43,7 @@ static void give_master(struct segment *segment, const uint8_t *bytes, size_t le
 static bool hears(const struct segment *segment, unsigned station, uint32_t senders)
 {
     const struct segment_hooks *hooks = segment->config.hooks;
-    return !hooks || !hooks->hears || hooks->hears(segment->config.context, station, senders);
+    return !hooks || !hooks->hears || hooks->hears(segment->config.hooks_context, station, senders);
 }
 
 static bool echoes(const struct segment *segment, uint32_t senders, uint8_t byte)
@@ -51,14 +51,14 @@ static bool echoes(const struct segment *segment, uint32_t senders, uint8_t byte
     const struct segment_hooks *hooks = segment->config.hooks;
     if (segment->config.echo)
         return true;
-    return hooks && hooks->echoes && (senders & 1u) != 0 && hooks->echoes(segment->config.context, byte);
+    return hooks && hooks->echoes && (senders & 1u) != 0 && hooks->echoes(segment->config.hooks_context, byte);
 }
 
 static void obeyed(struct segment *segment, const struct segment_unit *unit)
 {
     const struct segment_hooks *hooks = segment->config.hooks;
     if (hooks && hooks->obeyed)
-        hooks->obeyed(segment->config.context, (unsigned)(unit - segment->unit) + 1u);
+        hooks->obeyed(segment->config.hooks_context, (unsigned)(unit - segment->unit) + 1u);
 }
 
 /* What passes on the line in the place of a byte: the first bytes of *more. */
@@ -69,7 +69,7 @@ static void change(struct segment *segment, unsigned station, uint8_t byte, stru
     more->count = 1;
     more->byte[0] = byte;
     if (hooks && hooks->send)
-        more->count = (uint8_t)hooks->send(segment->config.context, station, byte, more->byte);
+        more->count = (uint8_t)hooks->send(segment->config.hooks_context, station, byte, more->byte);
 }
 
 /* Has the unit an answer, now or later? */
@@ -94,7 +94,7 @@ static uint64_t delay(struct segment *segment, struct segment_unit *unit)
     if (unit->unit.busy > 0)
         return store_left(unit);
     unit->begun = true;
-    return hooks && hooks->answer ? hooks->answer(segment->config.context, (unsigned)(unit - segment->unit) + 1u) : 0;
+    return hooks && hooks->answer ? hooks->answer(segment->config.hooks_context, (unsigned)(unit - segment->unit) + 1u) : 0;
 }
 
 /* Fetch the next byte of a unit's answer. Returns false if there is none. */

@@ -83,8 +83,9 @@ struct segment_config {
     uint32_t turnaround;    /* ticks, 0..SEGMENT_TURNAROUND_MAX, from the end of a request to the start bit of the answer */
     segment_out *out;       /* NULL: nobody */
     segment_monitor *monitor; /* NULL: nobody */
+    void *context;          /* of these two */
     const struct segment_hooks *hooks; /* NULL: nothing goes wrong */
-    void *context;          /* of all three */
+    void *hooks_context;
 };
 
 /* A unit on the line. Who may read it: all. */

@@ -127,8 +127,8 @@ START_TEST(a_text_is_quoted)
     struct sim *sim = trace_rig_sim();
     const struct watch_event plant = {.tick = 5, .value = PLANT_JAM, .kind = WATCH_PLANT, .unit = 1, .motor = 3};
     const struct watch_event injected = {.tick = 6, .value = 17, .kind = WATCH_INJECTED};
-    sim_tell_text(sim, WATCH_PULSES, &plant, "a \"jam\"\\\n\x01%s", "\xC3\xA9");
-    sim_tell_text(sim, WATCH_DELIVERED, &injected, "%s", "");
+    sim_report_text(sim, WATCH_PULSES, &plant, "a \"jam\"\\\n\x01%s", "\xC3\xA9");
+    sim_report_text(sim, WATCH_DELIVERED, &injected, "%s", "");
     sim_advance(sim, 10);
     json_t *list = lines();
     json_t *line = first_of(list, "plant");
@@ -147,7 +147,7 @@ START_TEST(a_line_may_be_longer_than_the_buffer)
     memset(text, '\x02', length);
     text[length] = '\0';
     happens(4, WATCH_TURNS, 1, WATCH_COMMAND, 1);
-    sim_tell_text(trace_rig_sim(), WATCH_DELIVERED, &event, "%s", text);
+    sim_report_text(trace_rig_sim(), WATCH_DELIVERED, &event, "%s", text);
     happens(6, WATCH_TURNS, 1, WATCH_COMMAND, 2);
     sim_advance(trace_rig_sim(), 10);
     json_t *list = lines();

@@ -60,7 +60,7 @@ void happens(uint64_t tick, enum watch_phase phase, unsigned motor, enum watch_k
 {
     struct watch_event event = {
         .tick = tick, .value = value, .kind = (uint8_t)kind, .unit = 1, .motor = (uint8_t)motor};
-    sim_tell(&sim, phase, &event);
+    sim_report(&sim, phase, &event);
 }
 
 const char *trace_rig_so_far(void)
