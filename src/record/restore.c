@@ -221,7 +221,7 @@ json_t *restore_put(struct restore *restore, struct refusal *refusal)
 {
     struct sim_snapshots *store = snapshots_of(restore->sim);
     if (store && restore->text) {
-        snapshots_take_text(store, restore->text, restore->length);
+        snapshots_keep_text(store, restore->text, restore->length);
         restore->text = NULL; /* it stays until the next one: records and the journal want it */
     }
     json_t *result = put(restore, refusal);

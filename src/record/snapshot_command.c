@@ -10,7 +10,7 @@
 
 static const char out_of_memory[] = "out of memory";
 
-static void forget(struct named_snapshot *named)
+static void free_named(struct named_snapshot *named)
 {
     free(named->name);
     snapshot_free(named->snapshot);
@@ -21,7 +21,7 @@ static void forget(struct named_snapshot *named)
 static void snapshots_free(struct sim_snapshots *snapshots)
 {
     for (size_t i = 0; i < snapshots->count; i++)
-        forget(&snapshots->named[i]);
+        free_named(&snapshots->named[i]);
     journal_free(snapshots->journal);
     free(snapshots->text);
     free(snapshots);
@@ -91,13 +91,13 @@ static json_t *take_named(struct sim_snapshots *store, const char *name, struct 
     made.name = strdup(name);
     made.snapshot = snapshot_take(store->sim);
     if (!made.name || !made.snapshot) {
-        forget(&made);
+        free_named(&made);
         return refuse(refusal, REFUSED_MEMORY, "out of memory, or the flash image of a unit cannot be read");
     }
     if (store->journal)
         made.page = journal_mark(store->journal);
     if (named)
-        forget(named);
+        free_named(named);
     else
         named = &store->named[store->count++];
     *named = made;
@@ -138,7 +138,7 @@ static json_t *command_snapshot(struct sim *sim, const json_t *params, struct re
 
 /* ---- restore -------------------------------------------------------------------------------------------------------- */
 
-void snapshots_take_text(struct sim_snapshots *store, char *text, size_t length)
+void snapshots_keep_text(struct sim_snapshots *store, char *text, size_t length)
 {
     free(store->text);
     store->text = text;
@@ -178,7 +178,7 @@ static json_t *command_restore(struct sim *sim, const json_t *params, struct ref
     struct sim_snapshots *store = snapshots_of(sim);
     if (!store)
         return refuse(refusal, REFUSED_MEMORY, out_of_memory);
-    snapshots_take_text(store, NULL, 0);
+    snapshots_keep_text(store, NULL, 0);
     if (!read_params(params, known, &name, &file, refusal))
         return NULL;
     if (name)

@@ -29,7 +29,7 @@ struct sim_snapshots {
 struct sim_snapshots *snapshots_of(struct sim *sim);
 
 /* Keep the text, from malloc(), as the file of the present restore; NULL: there is none. */
-void snapshots_take_text(struct sim_snapshots *store, char *text, size_t length);
+void snapshots_keep_text(struct sim_snapshots *store, char *text, size_t length);
 
 /* Put a snapshot, and turn the journal with it. Returns the result of the command; NULL: refused. */
 json_t *snapshots_put(struct sim_snapshots *store, const struct snapshot *snapshot, struct journal_page *page,
