@@ -39,7 +39,7 @@ static bool begin_record(struct bus_files *files)
         return true;
     if (!path_of(files, files->options->record, path))
         return false;
-    files->record_stream = output_file_open(path, OUTPUT_RECORDING, files->options->output_flags, &why);
+    files->record_stream = output_file_open(path, &output_recording, files->options->output_flags, &why);
     if (!files->record_stream) {
         log_error("cannot write %s: %s", path, why ? why : strerror(ENOMEM));
         free(why);

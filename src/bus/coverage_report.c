@@ -114,7 +114,7 @@ static bool print_json(const struct coverage *coverage, FILE *out)
     return well;
 }
 
-static bool open_one(FILE **out, const char *name, enum output_kind kind, unsigned flags)
+static bool open_one(FILE **out, const char *name, const struct output_kind *kind, unsigned flags)
 {
     char *why = NULL;
     *out = name ? output_file_open(name, kind, flags | OUTPUT_KEEP, &why) : NULL;
@@ -133,10 +133,10 @@ bool coverage_open(struct coverage_files *files, const char *file, unsigned flag
         files->text_name = strdup(file);
         if (asprintf(&files->json_name, "%s" JSON_ENDING, file) < 0)
             files->json_name = NULL;
-        if (!open_one(&files->text, files->text_name, OUTPUT_COVERAGE, flags))
+        if (!open_one(&files->text, files->text_name, &output_coverage, flags))
             return false;
     }
-    return open_one(&files->json, files->json_name, OUTPUT_COVERAGE_JSON, flags);
+    return open_one(&files->json, files->json_name, &output_coverage_json, flags);
 }
 
 /* Write and close one file. Reports what goes wrong. */

@@ -7,22 +7,15 @@
 
 #define SURE 1000000u /* millionths */
 
-static const char *const names[FAULT_KINDS] = {
-    [FAULT_DROP] = "drop",           [FAULT_FLIP] = "flip",   [FAULT_DUPLICATE] = "duplicate", [FAULT_INSERT] = "insert",
-    [FAULT_ECHO] = "echo",           [FAULT_DELAY] = "delay", [FAULT_NO_ANSWER] = "no_answer", [FAULT_WRONG_FCS] = "wrong_fcs",
-    [FAULT_CUT] = "cut",             [FAULT_FLASH] = "flash", [FAULT_POWER] = "power",         [FAULT_BREAK] = "break",
-    [FAULT_UNPLUGGED] = "unplugged", [FAULT_CABLE] = "cable", [FAULT_INPUT] = "input",
-};
-
 const char *fault_kind_name(enum fault_kind kind)
 {
-    return names[kind];
+    return fault_names[kind];
 }
 
 enum fault_kind fault_kind_named(const char *name)
 {
     unsigned kind = 0;
-    while (kind < FAULT_KINDS && strcmp(names[kind], name) != 0)
+    while (kind < FAULT_KINDS && strcmp(fault_names[kind], name) != 0)
         kind++;
     return (enum fault_kind)kind;
 }
@@ -31,7 +24,7 @@ void fault_report(const struct faults *faults, const struct fault *fault, unsign
 {
     char text[192];
     va_list list;
-    size_t length = (size_t)snprintf(text, sizeof text, "%s: ", names[fault->kind]);
+    size_t length = (size_t)snprintf(text, sizeof text, "%s: ", fault_names[fault->kind]);
     va_start(list, format);
     vsnprintf(text + length, sizeof text - length, format, list);
     va_end(list);

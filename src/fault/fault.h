@@ -43,6 +43,14 @@ enum fault_kind {
     FAULT_KINDS
 };
 
+/* Their names. */
+static const char *const fault_names[FAULT_KINDS] = {
+    [FAULT_DROP] = "drop",           [FAULT_FLIP] = "flip",   [FAULT_DUPLICATE] = "duplicate", [FAULT_INSERT] = "insert",
+    [FAULT_ECHO] = "echo",           [FAULT_DELAY] = "delay", [FAULT_NO_ANSWER] = "no_answer", [FAULT_WRONG_FCS] = "wrong_fcs",
+    [FAULT_CUT] = "cut",             [FAULT_FLASH] = "flash", [FAULT_POWER] = "power",         [FAULT_BREAK] = "break",
+    [FAULT_UNPLUGGED] = "unplugged", [FAULT_CABLE] = "cable", [FAULT_INPUT] = "input",
+};
+
 enum fault_direction { FAULT_TO_UNITS = 1, FAULT_TO_MASTER = 2, FAULT_BOTH = 3 };
 
 /* Operations of the flash, as a mask. */

@@ -130,34 +130,28 @@ void output_file_release(int fd)
 
 /* ---- Open and close ------------------------------------------------------------------------------------------------- */
 
-static bool check_kind(int fd, enum output_kind kind, unsigned flags, char **why)
+static bool check_kind(int fd, const struct output_kind *kind, unsigned flags, char **why)
 {
     char bytes[OUTPUT_KIND_BYTES];
     ssize_t length = pread(fd, bytes, sizeof bytes, 0); /* -1: it may be written, but not read */
     if ((flags & OUTPUT_FORCE) || (length >= 0 && output_kind_is(kind, bytes, (size_t)length)))
         return true;
-    return explain(why, "it exists and is not %s: choose another name, or overwrite it with %s", output_kind_name(kind),
+    return explain(why, "it exists and is not %s: choose another name, or overwrite it with %s", kind->name,
                    flags & OUTPUT_REQUESTED ? "`force': true (rkmctl --force)" : "--force");
 }
 
 /* Traces, logs of the wires and recordings tell all that a host does: they are made for their owner alone, whatever the umask.
- * Reports are made for others. */
-static bool is_private(enum output_kind kind)
+ * Make a file of that name. Returns -1 if there is one already, or errno says why not. */
+static int make_output(const char *path, int how, const struct output_kind *kind)
 {
-    return kind != OUTPUT_JUNIT && kind != OUTPUT_COVERAGE && kind != OUTPUT_COVERAGE_JSON;
-}
-
-/* Make a file of that name. Returns -1 if there is one already, or errno says why not. */
-static int make_output(const char *path, int how, enum output_kind kind)
-{
-    int fd = open(path, how | O_RDWR | O_CREAT | O_EXCL, is_private(kind) ? 0600 : 0666);
-    if (fd >= 0 && is_private(kind))
+    int fd = open(path, how | O_RDWR | O_CREAT | O_EXCL, kind->is_report ? 0666 : 0600);
+    if (fd >= 0 && !kind->is_report)
         (void)fchmod(fd, 0600); /* not every file system has modes */
     return fd;
 }
 
 /* Regular files are opened for reading, too, to look at their kind; a pipe must not be, or nobody would have to read it. */
-static int open_output(const char *path, enum output_kind kind, unsigned flags)
+static int open_output(const char *path, const struct output_kind *kind, unsigned flags)
 {
     struct stat there;
     int how = O_CLOEXEC | O_NOCTTY | (flags & OUTPUT_MAY_WAIT ? 0 : O_NONBLOCK);
@@ -165,7 +159,7 @@ static int open_output(const char *path, enum output_kind kind, unsigned flags)
         return open(path, how | O_WRONLY);
     int fd = make_output(path, how, kind);
     if (fd < 0 && errno == EEXIST)
-        fd = open(path, how | O_RDWR | O_CREAT, is_private(kind) ? 0600 : 0666); /* it may be a link to where nothing is */
+        fd = open(path, how | O_RDWR | O_CREAT, kind->is_report ? 0666 : 0600); /* it may be a link to where nothing is */
     if (fd >= 0 || errno != EACCES)
         return fd;
     fd = open(path, how | O_WRONLY);
@@ -175,7 +169,7 @@ static int open_output(const char *path, enum output_kind kind, unsigned flags)
 }
 
 /* See that what was opened may be written, and make a regular file ours. */
-static bool take_output(int fd, const char *path, enum output_kind kind, unsigned flags, char **why)
+static bool take_output(int fd, const char *path, const struct output_kind *kind, unsigned flags, char **why)
 {
     struct stat status;
     if (fstat(fd, &status) != 0)
@@ -191,7 +185,7 @@ static bool take_output(int fd, const char *path, enum output_kind kind, unsigne
     return add_use(&status, fd, path);
 }
 
-FILE *output_file_open(const char *path, enum output_kind kind, unsigned flags, char **why)
+FILE *output_file_open(const char *path, const struct output_kind *kind, unsigned flags, char **why)
 {
     *why = NULL;
     int fd = open_output(path, kind, flags);
@@ -226,7 +220,7 @@ int output_file_close(FILE *file)
 /* ---- Replace -------------------------------------------------------------------------------------------------------- */
 
 /* May what has that name, if anything does, be replaced? */
-static bool check_replaced(const char *path, enum output_kind kind, unsigned flags, char **why)
+static bool check_replaced(const char *path, const struct output_kind *kind, unsigned flags, char **why)
 {
     struct stat status;
     if (lstat(path, &status) != 0)
@@ -265,8 +259,8 @@ static FILE *make_beside(const char *path, char **name)
     return file;
 }
 
-bool output_file_replace(const char *path, enum output_kind kind, unsigned flags, bool (*write)(void *context, FILE *out),
-                         void *context, char **why)
+bool output_file_replace(const char *path, const struct output_kind *kind, unsigned flags,
+                         bool (*write)(void *context, FILE *out), void *context, char **why)
 {
     char *name = NULL;
     *why = NULL;

@@ -20,7 +20,7 @@ enum output_flag {
 /* Open `path` for writing from its beginning, making it if it is not there. To be called when all inputs are read and valid.
  * `flags`: of enum output_flag. The stream is to be closed by output_file_close().
  * Returns NULL if it did not work; *why is the reason for a message then, to be freed, NULL if memory is short. */
-FILE *output_file_open(const char *path, enum output_kind kind, unsigned flags, char **why);
+FILE *output_file_open(const char *path, const struct output_kind *kind, unsigned flags, char **why);
 
 /* Drop what is in a file opened with OUTPUT_KEEP. Returns false if it did not work; errno says why. */
 bool output_file_empty(FILE *file);
@@ -32,8 +32,8 @@ int output_file_close(FILE *file);
  * (else errno says why not). It is written to a file of its own beside it, of a name that was free; if the process is killed
  * meanwhile that may stay behind. A file that was read may be replaced. Returns false if it did not work: then nothing is
  * changed; *why as above. */
-bool output_file_replace(const char *path, enum output_kind kind, unsigned flags, bool (*write)(void *context, FILE *out),
-                         void *context, char **why);
+bool output_file_replace(const char *path, const struct output_kind *kind, unsigned flags,
+                         bool (*write)(void *context, FILE *out), void *context, char **why);
 
 /* Never write to this file from now on. `path`: "-" for standard input. What is not there and what is no regular file does not
  * count. Returns false if memory is short. */

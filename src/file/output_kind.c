@@ -3,30 +3,23 @@
 
 #include <string.h>
 
-#define BEGINNINGS_MAX 4u
-
-/* A file is of a kind if it begins with one of `begins` and, where `holds` is there, has that text among its first bytes. VCD and
- * JUnit are written by other programs, too, which begin otherwise. */
-static const struct {
-    const char *name;
-    const char *begins[BEGINNINGS_MAX];
-    const char *holds;
-} kinds[OUTPUT_KINDS] = {
-    [OUTPUT_CSV] = {"a CSV trace", {"t_us,source,event,value"}, NULL},
-    [OUTPUT_VCD] = {"a VCD trace", {"$version", "$date", "$comment", "$timescale"}, NULL},
-    [OUTPUT_JSONL] = {"a JSON Lines trace", {"{\"t_us\":"}, NULL},
-    [OUTPUT_WIRE_LOG] = {"a log of the wires", {"# rkm04 wire log "}, NULL},
-    [OUTPUT_PCAPNG] = {"a pcapng file", {"\n\r\r\n"}, NULL},
-    [OUTPUT_RECORDING] = {"a recording", {"{\"rkm04_record\":"}, NULL},
-    [OUTPUT_JUNIT] = {"a JUnit report", {"<?xml ", "<testsuite"}, "<testsuite"},
-    [OUTPUT_COVERAGE] = {"a coverage report", {"protocol     covered"}, NULL},
-    [OUTPUT_COVERAGE_JSON] = {"a coverage report in JSON", {"{\n  \"covered\":", "{\"covered\":"}, NULL},
+const struct output_kind output_recording = {.name = "a recording", .begins = {"{\"rkm04_record\":"}};
+const struct output_kind output_junit = {
+    .name = "a JUnit report",
+    .begins = {"<?xml ", "<testsuite"},
+    .holds = "<testsuite",
+    .is_report = true,
 };
-
-const char *output_kind_name(enum output_kind kind)
-{
-    return kinds[kind].name;
-}
+const struct output_kind output_coverage = {
+    .name = "a coverage report",
+    .begins = {"protocol     covered"},
+    .is_report = true,
+};
+const struct output_kind output_coverage_json = {
+    .name = "a coverage report in JSON",
+    .begins = {"{\n  \"covered\":", "{\"covered\":"},
+    .is_report = true,
+};
 
 static bool holds(const char *bytes, size_t length, const char *text)
 {
@@ -37,13 +30,13 @@ static bool holds(const char *bytes, size_t length, const char *text)
     return false;
 }
 
-bool output_kind_is(enum output_kind kind, const char *bytes, size_t length)
+bool output_kind_is(const struct output_kind *kind, const char *bytes, size_t length)
 {
-    for (size_t i = 0; i < BEGINNINGS_MAX && kinds[kind].begins[i]; i++) {
-        size_t size = strlen(kinds[kind].begins[i]);
+    for (size_t i = 0; i < OUTPUT_BEGINNINGS && kind->begins[i]; i++) {
+        size_t size = strlen(kind->begins[i]);
         bool cut = length < size;
-        if (memcmp(bytes, kinds[kind].begins[i], cut ? length : size) == 0)
-            return cut || !kinds[kind].holds || holds(bytes, length, kinds[kind].holds);
+        if (memcmp(bytes, kind->begins[i], cut ? length : size) == 0)
+            return cut || !kind->holds || holds(bytes, length, kind->holds);
     }
     return false;
 }

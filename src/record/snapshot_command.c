@@ -116,7 +116,7 @@ static json_t *write_file(struct sim_snapshots *store, const char *path, bool fo
     char *why;
     if (gap)
         return refuse(refusal, REFUSED_STATE, "file: cannot write a snapshot: %s", gap);
-    if (output_file_replace(path, OUTPUT_RECORDING, flags, write_journal, store->journal, &why))
+    if (output_file_replace(path, &output_recording, flags, write_journal, store->journal, &why))
         return json_pack("{s:s, s:I}", "file", path, "t_us", (json_int_t)sim_now(store->sim));
     refuse(refusal, REFUSED_STATE, "file: cannot write %.160s: %s", path, why ? why : out_of_memory);
     free(why);

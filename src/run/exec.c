@@ -355,7 +355,7 @@ static int run_traced(struct exec_run *run, const struct options *options, const
     if (strcmp(options->trace, "-") == 0)
         return run_programs(run, options, inputs, stdout);
     enum trace_format format = trace_file_format(options->trace);
-    enum output_kind kind = trace_file_kind(format == TRACE_FORMATS ? TRACE_CSV : format);
+    const struct output_kind *kind = trace_file_kind(format == TRACE_FORMATS ? TRACE_CSV : format);
     char *why;
     FILE *file = output_file_open(options->trace, kind, options->output_flags | OUTPUT_MAY_WAIT, &why);
     if (file == NULL) {

@@ -242,7 +242,7 @@ static int run(struct test_case *tests, const struct options *options)
         return status;
     if (options->junit != NULL) {
         char *why;
-        junit = output_file_open(options->junit, OUTPUT_JUNIT, options->output_flags | OUTPUT_MAY_WAIT, &why);
+        junit = output_file_open(options->junit, &output_junit, options->output_flags | OUTPUT_MAY_WAIT, &why);
         if (junit == NULL) {
             fprintf(stderr, "rkm04 test: cannot write %s: %s\n", options->junit, why != NULL ? why : strerror(ENOMEM));
             free(why);

@@ -149,7 +149,7 @@ static char *record_path(const struct test_case *test, const char *folder, unsig
 /* Returns false if it did not work; *why as output_file_open(). */
 static bool write_record(const char *path, unsigned flags, const char *text, size_t length, char **why)
 {
-    FILE *file = output_file_open(path, OUTPUT_RECORDING, flags | OUTPUT_MAY_WAIT, why);
+    FILE *file = output_file_open(path, &output_recording, flags | OUTPUT_MAY_WAIT, why);
     if (file == NULL)
         return false;
     bool well = fwrite(text, 1, length, file) == length;

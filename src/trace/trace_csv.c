@@ -98,6 +98,7 @@ static void end(struct trace_file *file)
 
 const struct trace_writer trace_csv = {
     .suffix = ".csv",
+    .kind = {.name = "a CSV trace", .begins = {"t_us,source,event,value"}},
     .kinds = WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_COMMAND) |
              WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
              WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION),

@@ -7,12 +7,6 @@
 
 #include "file/file.h"
 
-static const enum output_kind kinds[TRACE_FORMATS] = {
-    [TRACE_CSV] = OUTPUT_CSV,
-    [TRACE_VCD] = OUTPUT_VCD,
-    [TRACE_JSONL] = OUTPUT_JSONL,
-};
-
 static const struct trace_writer *const writers[TRACE_FORMATS] = {
     [TRACE_CSV] = &trace_csv,
     [TRACE_VCD] = &trace_vcd,
@@ -74,9 +68,9 @@ enum trace_format trace_file_format(const char *path)
     return TRACE_FORMATS;
 }
 
-enum output_kind trace_file_kind(enum trace_format format)
+const struct output_kind *trace_file_kind(enum trace_format format)
 {
-    return kinds[format];
+    return &writers[format]->kind;
 }
 
 bool trace_file_named(const char *path)
@@ -129,7 +123,7 @@ struct trace_file *trace_file_begin(struct sim *sim, const char *path, unsigned 
         explain(error, "%s: expected %s", path, TRACE_FILE_EXPECTED);
         return NULL;
     }
-    FILE *out = output_file_open(path, kinds[format], flags, &why);
+    FILE *out = output_file_open(path, &writers[format]->kind, flags, &why);
     if (!out) {
         explain(error, "cannot write %s: %s", path, why ? why : strerror(ENOMEM));
         free(why);

@@ -8,10 +8,7 @@
 
 #include "file/file.h"
 #include "sim/sim.h"
-
-#define TRACE_FILE_EXPECTED "a name that ends with .vcd, .csv or .jsonl"
-
-enum trace_format { TRACE_CSV, TRACE_VCD, TRACE_JSONL, TRACE_FORMATS };
+#include "trace_format.h"
 
 struct trace_file;
 
@@ -22,7 +19,7 @@ bool trace_file_named(const char *path);
 enum trace_format trace_file_format(const char *path);
 
 /* The kind of file that it makes; `format`: not TRACE_FORMATS. */
-enum output_kind trace_file_kind(enum trace_format format);
+const struct output_kind *trace_file_kind(enum trace_format format);
 
 /* Open `path`, "-" is not allowed, with `flags` of output_file_open(), and begin to watch; what there is now is its beginning.
  * Returns NULL if it did not work; *error is what to say then ("cannot write FILE: …"), to be freed; NULL: memory is short. */

@@ -83,4 +83,11 @@ static void end(struct trace_file *file)
     put_edge(file, ",\"kind\":\"end\"}\n");
 }
 
-const struct trace_writer trace_jsonl = {.suffix = ".jsonl", .kinds = WATCH_ALL, .begin = begin, .see = see, .end = end};
+const struct trace_writer trace_jsonl = {
+    .suffix = ".jsonl",
+    .kind = {.name = "a JSON Lines trace", .begins = {"{\"t_us\":"}},
+    .kinds = WATCH_ALL,
+    .begin = begin,
+    .see = see,
+    .end = end,
+};

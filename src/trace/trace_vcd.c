@@ -488,6 +488,7 @@ static void end(struct trace_file *file)
 
 const struct trace_writer trace_vcd = {
     .suffix = ".vcd",
+    .kind = {.name = "a VCD trace", .begins = {"$version", "$date", "$comment", "$timescale"}},
     .kinds = WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_COMMAND) |
              WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
              WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION),

@@ -9,7 +9,8 @@
 #define TRACE_BUFFER 131072u /* characters: more than the longest message makes */
 
 struct trace_writer {
-    const char *suffix;
+    const char *suffix;      /* of the file's name */
+    struct output_kind kind; /* of file */
     uint32_t kinds; /* WATCH_BIT()s of what the format shows */
     size_t state;   /* size of what it remembers, zeroed at the beginning */
     void (*begin)(struct trace_file *file);
@@ -28,8 +29,6 @@ struct trace_file {
     size_t length;
     char buffer[TRACE_BUFFER];
 };
-
-extern const struct trace_writer trace_csv, trace_vcd, trace_jsonl;
 
 /* Write out what is in the buffer. */
 void trace_empty(struct trace_file *file);

@@ -91,7 +91,7 @@ struct wire_file *wire_file_begin(struct sim *sim, const char *path, unsigned fl
     struct wire_file *file = malloc(sizeof *file);
     const struct wire_format *format = format_of(path);
     char *why = NULL;
-    FILE *out = file ? output_file_open(path, format->kind, flags, &why) : NULL;
+    FILE *out = file ? output_file_open(path, &format->kind, flags, &why) : NULL;
     if (!out) {
         if (asprintf(error, "cannot write %s: %s", path, why ? why : strerror(ENOMEM)) < 0)
             *error = NULL;

@@ -13,7 +13,7 @@
 /* Each function appends to `out`, which has WIRE_ENTRY_MAX bytes of room. */
 struct wire_format {
     const char *suffix; /* of the file's name */
-    enum output_kind kind;
+    struct output_kind kind;
     void (*head)(struct wire_text *out, const struct sim *sim);
     void (*message)(struct wire_text *out, const struct sim *sim, const struct wire_message *message);
     /* Something else that explains what is seen on the wires: WATCH_POWER, WATCH_INJECTED. */

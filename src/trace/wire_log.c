@@ -55,4 +55,10 @@ static void log_news(struct wire_text *out, const struct sim *sim, const struct 
     wire_text_put(out, '\n');
 }
 
-const struct wire_format wire_log = {".log", OUTPUT_WIRE_LOG, log_head, log_message, log_news};
+const struct wire_format wire_log = {
+    .suffix = ".log",
+    .kind = {.name = "a log of the wires", .begins = {"# rkm04 wire log "}},
+    .head = log_head,
+    .message = log_message,
+    .news = log_news,
+};

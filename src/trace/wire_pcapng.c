@@ -211,4 +211,10 @@ static void pcapng_news(struct wire_text *out, const struct sim *sim, const stru
     put_packet(out, &packet, &comment);
 }
 
-const struct wire_format wire_pcapng = {".pcapng", OUTPUT_PCAPNG, pcapng_head, pcapng_message, pcapng_news};
+const struct wire_format wire_pcapng = {
+    .suffix = ".pcapng",
+    .kind = {.name = "a pcapng file", .begins = {"\n\r\r\n"}},
+    .head = pcapng_head,
+    .message = pcapng_message,
+    .news = pcapng_news,
+};

@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include "file/output_file.h"
+#include "trace/trace_writer.h"
+#include "trace/wire_format.h"
 
 static char folder[64];
 
@@ -44,7 +46,7 @@ static void holds(const char *path, const char *text)
     ck_assert_str_eq(found, text);
 }
 
-static void refused(const char *path, enum output_kind kind, unsigned flags, const char *expected)
+static void refused(const char *path, const struct output_kind *kind, unsigned flags, const char *expected)
 {
     char *why;
     FILE *file = output_file_open(path, kind, flags, &why);
@@ -53,7 +55,7 @@ static void refused(const char *path, enum output_kind kind, unsigned flags, con
     free(why);
 }
 
-static FILE *opened(const char *path, enum output_kind kind, unsigned flags)
+static FILE *opened(const char *path, const struct output_kind *kind, unsigned flags)
 {
     char *why;
     FILE *file = output_file_open(path, kind, flags, &why);
@@ -61,7 +63,7 @@ static FILE *opened(const char *path, enum output_kind kind, unsigned flags)
     return file;
 }
 
-static void written(const char *path, enum output_kind kind, unsigned flags, const char *text)
+static void written(const char *path, const struct output_kind *kind, unsigned flags, const char *text)
 {
     FILE *file = opened(path, kind, flags);
     ck_assert_int_ge(fputs(text, file), 0);
@@ -72,20 +74,20 @@ static void written(const char *path, enum output_kind kind, unsigned flags, con
 /* ---- Kinds ---- */
 
 static const struct {
-    enum output_kind kind;
+    const struct output_kind *kind;
     const char *text;
 } samples[] = {
-    {OUTPUT_CSV, "t_us,source,event,value\n0,m1,dir,1\n"},
-    {OUTPUT_VCD, "$version rkm04 1.0 $end\n$timescale 1 us $end\n"},
-    {OUTPUT_VCD, "$date today $end\n"},
-    {OUTPUT_JSONL, "{\"t_us\":0,\"kind\":\"begin\",\"units\":[]}\n"},
-    {OUTPUT_WIRE_LOG, "# rkm04 wire log 1: hdlc, 19200 baud, unit 1\n"},
-    {OUTPUT_PCAPNG, "\n\r\r\n...."},
-    {OUTPUT_RECORDING, "{\"rkm04_record\":1,\"program\":\"rkm04 1.0\"}\n"},
-    {OUTPUT_JUNIT, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites tests=\"1\">"},
-    {OUTPUT_JUNIT, "<testsuite name=\"of another program\">"},
-    {OUTPUT_COVERAGE, "protocol     covered      of       %\n"},
-    {OUTPUT_COVERAGE_JSON, "{\n  \"covered\": 5,"},
+    {&trace_csv.kind, "t_us,source,event,value\n0,m1,dir,1\n"},
+    {&trace_vcd.kind, "$version rkm04 1.0 $end\n$timescale 1 us $end\n"},
+    {&trace_vcd.kind, "$date today $end\n"},
+    {&trace_jsonl.kind, "{\"t_us\":0,\"kind\":\"begin\",\"units\":[]}\n"},
+    {&wire_log.kind, "# rkm04 wire log 1: hdlc, 19200 baud, unit 1\n"},
+    {&wire_pcapng.kind, "\n\r\r\n...."},
+    {&output_recording, "{\"rkm04_record\":1,\"program\":\"rkm04 1.0\"}\n"},
+    {&output_junit, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites tests=\"1\">"},
+    {&output_junit, "<testsuite name=\"of another program\">"},
+    {&output_coverage, "protocol     covered      of       %\n"},
+    {&output_coverage_json, "{\n  \"covered\": 5,"},
 };
 #define SAMPLES (sizeof samples / sizeof samples[0])
 
@@ -97,19 +99,19 @@ static const char *const others[] = {
 START_TEST(a_kind_is_recognised_and_no_other)
 {
     for (size_t i = 0; i < SAMPLES; i++)
-        for (enum output_kind kind = 0; kind < OUTPUT_KINDS; kind++)
-            ck_assert_msg(output_kind_is(kind, samples[i].text, strlen(samples[i].text)) == (kind == samples[i].kind),
-                          "is `%s' %s?", samples[i].text, output_kind_name(kind));
+        for (size_t k = 0; k < SAMPLES; k++)
+            ck_assert_msg(output_kind_is(samples[k].kind, samples[i].text, strlen(samples[i].text)) ==
+                              (samples[k].kind == samples[i].kind), "is `%s' %s?", samples[i].text, samples[k].kind->name);
 }
 END_TEST
 
 START_TEST(other_files_are_of_no_kind)
 {
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-        for (enum output_kind kind = 0; kind < OUTPUT_KINDS; kind++)
-            if (kind != OUTPUT_PCAPNG || others[i][0] != '\n') /* a pcapng file that was cut after its first byte */
-                ck_assert_msg(!output_kind_is(kind, others[i], strlen(others[i])), "is `%s' %s?", others[i],
-                              output_kind_name(kind));
+        for (size_t k = 0; k < SAMPLES; k++)
+            if (samples[k].kind != &wire_pcapng.kind || others[i][0] != '\n') /* a pcapng file, cut after its first byte */
+                ck_assert_msg(!output_kind_is(samples[k].kind, others[i], strlen(others[i])), "is `%s' %s?", others[i],
+                              samples[k].kind->name);
 }
 END_TEST
 
@@ -127,7 +129,7 @@ START_TEST(a_file_is_written_over_one_of_its_kind_alone)
         put("file", samples[i].text);
         written("file", samples[i].kind, 0, "next");
         refused("file", samples[i].kind, 0, "it exists and is not ");
-        refused("file", samples[i].kind, 0, output_kind_name(samples[i].kind));
+        refused("file", samples[i].kind, 0, samples[i].kind->name);
         refused("file", samples[i].kind, 0, "overwrite it with --force");
         refused("file", samples[i].kind, OUTPUT_REQUESTED, "overwrite it with `force': true");
         holds("file", "next");
@@ -146,12 +148,12 @@ START_TEST(what_is_read_is_never_written_by_any_name)
     ck_assert(output_file_spare("program"));
     ck_assert(output_file_spare("nowhere"));
     ck_assert(output_file_spare("/dev/null"));
-    refused("program", OUTPUT_CSV, OUTPUT_FORCE, "it is read, too: choose another name");
-    refused("./program", OUTPUT_CSV, OUTPUT_FORCE, "it is the same file as program, which is read: choose another name");
-    refused("hard", OUTPUT_CSV, OUTPUT_FORCE, "it is the same file as program, which is read");
-    refused("soft", OUTPUT_CSV, OUTPUT_FORCE, "it is the same file as program, which is read");
-    written("other", OUTPUT_CSV, 0, "t_us");
-    output_file_close(opened("/dev/null", OUTPUT_CSV, 0));
+    refused("program", &trace_csv.kind, OUTPUT_FORCE, "it is read, too: choose another name");
+    refused("./program", &trace_csv.kind, OUTPUT_FORCE, "it is the same file as program, which is read: choose another name");
+    refused("hard", &trace_csv.kind, OUTPUT_FORCE, "it is the same file as program, which is read");
+    refused("soft", &trace_csv.kind, OUTPUT_FORCE, "it is the same file as program, which is read");
+    written("other", &trace_csv.kind, 0, "t_us");
+    output_file_close(opened("/dev/null", &trace_csv.kind, 0));
 }
 END_TEST
 
@@ -161,22 +163,22 @@ START_TEST(a_file_that_has_the_number_of_one_that_is_gone_is_another)
     ck_assert(output_file_spare("plant"));
     ck_assert_int_eq(rename("plant", "trace"), 0); /* the same inode by another name, as after an editor has replaced the plant */
     put("plant", "new");
-    written("trace", OUTPUT_CSV, OUTPUT_FORCE, "t_us");
+    written("trace", &trace_csv.kind, OUTPUT_FORCE, "t_us");
     ck_assert(output_file_spare("plant"));
-    refused("plant", OUTPUT_CSV, OUTPUT_FORCE, "it is read");
+    refused("plant", &trace_csv.kind, OUTPUT_FORCE, "it is read");
 }
 END_TEST
 
 START_TEST(what_is_written_is_not_written_otherwise_until_it_is_closed)
 {
-    FILE *first = opened("a", OUTPUT_CSV, 0);
+    FILE *first = opened("a", &trace_csv.kind, 0);
     ck_assert_int_eq(symlink("a", "soft"), 0);
-    refused("a", OUTPUT_CSV, 0, "it is being written already");
-    refused("./a", OUTPUT_CSV, 0, "it is the same file as a, which is written");
-    refused("soft", OUTPUT_VCD, OUTPUT_FORCE, "it is the same file as a, which is written");
-    FILE *second = opened("b", OUTPUT_CSV, 0);
+    refused("a", &trace_csv.kind, 0, "it is being written already");
+    refused("./a", &trace_csv.kind, 0, "it is the same file as a, which is written");
+    refused("soft", &trace_vcd.kind, OUTPUT_FORCE, "it is the same file as a, which is written");
+    FILE *second = opened("b", &trace_csv.kind, 0);
     output_file_close(first);
-    written("soft", OUTPUT_CSV, 0, "t_us,");
+    written("soft", &trace_csv.kind, 0, "t_us,");
     output_file_close(second);
 }
 END_TEST
@@ -190,7 +192,7 @@ START_TEST(a_claimed_file_is_written_by_its_owner_alone)
     ck_assert(!output_file_claim(again, "./image", &why));
     ck_assert_str_eq(why, "it is the same file as image, which is written: choose another name");
     free(why);
-    refused("image", OUTPUT_CSV, OUTPUT_FORCE, "it is being written already");
+    refused("image", &trace_csv.kind, OUTPUT_FORCE, "it is being written already");
     holds("image", "bytes");
     output_file_release(fd);
     ck_assert(output_file_claim(again, "image", &why));
@@ -204,21 +206,21 @@ START_TEST(pipes_and_folders_are_no_outputs_unless_one_may_wait)
 {
     ck_assert_int_eq(mkfifo("pipe", 0600), 0);
     int reader = open("pipe", O_RDONLY | O_NONBLOCK);
-    refused("pipe", OUTPUT_CSV, OUTPUT_FORCE, "it is not a regular file");
-    output_file_close(opened("pipe", OUTPUT_CSV, OUTPUT_MAY_WAIT));
+    refused("pipe", &trace_csv.kind, OUTPUT_FORCE, "it is not a regular file");
+    output_file_close(opened("pipe", &trace_csv.kind, OUTPUT_MAY_WAIT));
     close(reader);
-    refused("pipe", OUTPUT_CSV, 0, strerror(ENXIO)); /* nobody reads: no waiting */
-    refused(".", OUTPUT_CSV, OUTPUT_FORCE, strerror(EISDIR));
-    refused("no/folder", OUTPUT_CSV, OUTPUT_FORCE, strerror(ENOENT));
+    refused("pipe", &trace_csv.kind, 0, strerror(ENXIO)); /* nobody reads: no waiting */
+    refused(".", &trace_csv.kind, OUTPUT_FORCE, strerror(EISDIR));
+    refused("no/folder", &trace_csv.kind, OUTPUT_FORCE, strerror(ENOENT));
 }
 END_TEST
 
 START_TEST(what_is_kept_stays_until_it_is_emptied)
 {
     put("report", "protocol     covered");
-    output_file_close(opened("report", OUTPUT_COVERAGE, OUTPUT_KEEP));
+    output_file_close(opened("report", &output_coverage, OUTPUT_KEEP));
     holds("report", "protocol     covered");
-    FILE *file = opened("report", OUTPUT_COVERAGE, OUTPUT_KEEP);
+    FILE *file = opened("report", &output_coverage, OUTPUT_KEEP);
     ck_assert(output_file_empty(file));
     holds("report", "");
     output_file_close(file);
@@ -236,7 +238,7 @@ static bool write_text(void *context, FILE *out)
 static void replace_refused(const char *path, unsigned flags, const char *expected)
 {
     char *why, text[] = "new";
-    ck_assert_msg(!output_file_replace(path, OUTPUT_RECORDING, flags, write_text, text, &why), "%s was replaced", path);
+    ck_assert_msg(!output_file_replace(path, &output_recording, flags, write_text, text, &why), "%s was replaced", path);
     ck_assert_msg(why != NULL && strstr(why, expected) != NULL, "%s: `%s' does not say `%s'", path, why, expected);
     free(why);
 }
@@ -257,12 +259,12 @@ START_TEST(only_regular_files_are_replaced)
     replace_refused("target", OUTPUT_REQUESTED, "it exists and is not a recording");
     ck_assert(lstat("pipe", &status) == 0 && S_ISFIFO(status.st_mode));
     holds("target", "precious");
-    ck_assert(output_file_replace("target", OUTPUT_RECORDING, OUTPUT_FORCE, write_text, text, &why));
+    ck_assert(output_file_replace("target", &output_recording, OUTPUT_FORCE, write_text, text, &why));
     holds("target", text);
     ck_assert(output_file_spare("target"));
-    ck_assert(output_file_replace("target", OUTPUT_RECORDING, 0, write_text, shorter, &why)); /* what was restored */
+    ck_assert(output_file_replace("target", &output_recording, 0, write_text, shorter, &why)); /* what was restored */
     holds("target", shorter);
-    FILE *file = opened("open", OUTPUT_RECORDING, 0);
+    FILE *file = opened("open", &output_recording, 0);
     replace_refused("./open", OUTPUT_FORCE, "it is the same file as open, which is written");
     output_file_close(file);
 }
@@ -273,7 +275,7 @@ START_TEST(a_replacement_that_fails_changes_nothing)
     char *why;
     put("target", "{\"rkm04_record\":1}");
     put("target.new", "precious");
-    ck_assert(!output_file_replace("target", OUTPUT_RECORDING, 0, write_text, NULL, &why));
+    ck_assert(!output_file_replace("target", &output_recording, 0, write_text, NULL, &why));
     ck_assert_str_eq(why, strerror(EIO));
     free(why);
     replace_refused("no/folder", 0, strerror(ENOENT));
