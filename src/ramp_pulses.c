@@ -125,7 +125,7 @@ static struct motion_state settled(struct motion_state now, struct motion_state 
 /* The interval before and the change it had are a guess, which is corrected to the tick. */
 static size_t single_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room)
 {
-    const int64_t slope = ramp->slope, noise = 2;
+    const int64_t slope = ramp->slope;
     struct motion_state now = {ramp->y, ramp->w};
     int64_t interval = ramp->interval, change = ramp->change;
     uint64_t at = ramp->at;
@@ -144,7 +144,7 @@ static size_t single_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *t
         } else if (next.y.whole < 0 || next.y.whole >= next.w.whole - slope) {
             next = settled(now, next, slope, &ticks);
         }
-        change = ticks - interval <= noise && interval - ticks <= noise ? 0 : ticks - interval;
+        change = ticks - interval;
         interval = ticks;
         now = next;
         at += (uint64_t)ticks;
@@ -269,18 +269,18 @@ static size_t block_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *ti
     size_t n = ramp->block - ramp->sent, fit = (span < UINT32_MAX ? (uint32_t)span : UINT32_MAX) / (uint32_t)ramp->interval + 1;
     n = n < room ? n : room;
     n = n < fit ? n : fit;
-    const uint64_t *const end = tick + n;
+    size_t i = 0;
     do {
-        *tick++ = next;
+        tick[i++] = next;
         next = from + (due >> 32);
         if ((uint32_t)due < 2 * RAMP_NEAR)
-            next = ramp_exact_tick(ramp, next, ramp->sent + n - (size_t)(end - tick));
+            next = ramp_exact_tick(ramp, next, ramp->sent + i);
         due += due1;
         due1 += due2;
         due2 += due3;
-    } while (tick < end);
-    for (; n > 1 && tick[-1] > limit; n--) {
-        next = *--tick;
+    } while (i < n);
+    for (; n > 1 && tick[n - 1] > limit; n--) {
+        next = tick[n - 1];
         due2 -= due3;
         due1 -= due2;
         due -= due1;
@@ -288,7 +288,7 @@ static size_t block_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *ti
     ramp->due = due;
     ramp->due1 = due1;
     ramp->due2 = due2;
-    ramp->interval = next > tick[-1] ? (int32_t)(next - tick[-1]) : 1;
+    ramp->interval = next > tick[n - 1] ? (int32_t)(next - tick[n - 1]) : 1;
     ramp->next = next;
     ramp->left -= (uint32_t)n;
     ramp->sent = (uint8_t)(ramp->sent + n);

@@ -7,6 +7,7 @@ void report_single_steps(const struct rkm04_unit *unit, const struct rkm04_motor
     void *context = unit->context;
     uint32_t position = (uint32_t)motor->position, way = motor->motion.forward ? 1 : UINT32_MAX;
     unsigned number = motor_number(unit, motor);
-    for (const uint64_t *end = tick + count; tick < end; tick++)
-        step(context, *tick, number, (int32_t)(position += way));
+    const uint64_t *const end = tick + count;
+    for (ptrdiff_t i = -(ptrdiff_t)count; i != 0; i++) /* up to 0: no comparison a pulse */
+        step(context, end[i], number, (int32_t)(position += way));
 }

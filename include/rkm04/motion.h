@@ -69,7 +69,7 @@ struct rkm04_ramp {
     struct rkm04_instant end; /* when the present leg ends; RKM04_NEVER: it does not */
     uint32_t left;            /* pulses left in the present leg */
     int32_t interval;         /* ticks between two pulses, about */
-    int32_t change;           /* by how much it changes from pulse to pulse; 0: hardly */
+    int32_t change;           /* by how much it changes from pulse to pulse, about */
     int32_t slope;            /* of the present leg */
     uint32_t level;           /* speed of a level leg in whole steps/s; 0: it slopes, or its speed is no whole number */
     uint32_t phase;           /* on a level leg: y / (2 * rate), rounded down */

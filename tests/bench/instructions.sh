@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 # instructions.sh: instructions of the core, counted by callgrind: the same on every run, whatever the machine does besides.
-# One JSON object a line. Needs valgrind. CC and CFLAGS may be set; CFLAGS are those of a release build otherwise, without
-# -fcf-protection, which adds an instruction a call: the peers in docs/DESIGN.md were measured without.
+# One JSON object a line. Needs valgrind. CC and CFLAGS may be set; CFLAGS are those of a release build otherwise
+# (cmake/Hardening.cmake).
 #
 # Counted is what is spent inside rkm04_advance, the sink included, which stores one time stamp a pulse: once with pulses in
 # blocks (port.steps), once one by one (port.step, "single").
@@ -13,6 +13,7 @@ folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 
 release="-O3 -DNDEBUG -fPIE -fstack-protector-strong -fstack-clash-protection -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3"
+[[ $(uname -m) != x86_64 ]] || release+=" -fcf-protection=full"
 read -ra flags <<<"${CFLAGS:-$release}"
 "${CC:-gcc}" -std=c11 -D_GNU_SOURCE -g "${flags[@]}" -Iinclude src/*.c tests/bench/bench.c -o "$folder/bench" || exit 1
 
