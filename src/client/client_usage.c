@@ -12,10 +12,13 @@
 
 enum exit_status client_usage(const char *format, ...)
 {
+    char text[2048];
     va_list arguments;
     va_start(arguments, format);
-    vwarnx(format, arguments);
+    vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    invisible_note(text, sizeof text);
+    warnx("%s", text);
     fprintf(stderr, "Try `%s --help' or `%s --usage' for more information.\n", program_invocation_short_name,
             program_invocation_short_name);
     return STATUS_USAGE;

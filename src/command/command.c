@@ -66,6 +66,7 @@ json_t *refuse(struct refusal *refusal, int code, const char *format, ...)
     refusal->code = code;
     vsnprintf(refusal->text, sizeof refusal->text, format, list);
     va_end(list);
+    invisible_note(refusal->text, sizeof refusal->text);
     return NULL;
 }
 

@@ -6,6 +6,7 @@
 
 #include "record_line.h"
 #include "replay_inside.h"
+#include "text/text.h"
 
 /* ---- What is wrong -------------------------------------------------------------------------------------------------- */
 
@@ -52,6 +53,7 @@ static void say_wrong(struct replay *replay, size_t column, const char *format, 
     int length = snprintf(replay->text, sizeof replay->text, "%.200s:%" PRIu64 ":%zu: ", replay->name, line, column);
     if (length > 0 && (size_t)length < sizeof replay->text)
         vsnprintf(replay->text + length, sizeof replay->text - (size_t)length, format, list);
+    invisible_note(replay->text, sizeof replay->text);
     replay->note[0] = '\0';
     finish(replay, REPLAY_WRONG);
 }

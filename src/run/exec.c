@@ -279,6 +279,23 @@ static bool is_running(const struct rkm04_unit *unit)
     return running;
 }
 
+/* What repeats from slot to slot are motions: a program takes more than one for a turn. */
+static void say_endless(const struct rkm04_unit *unit, uint64_t period)
+{
+    fputs("rkm04 exec: it never ends: ", stderr);
+    for (unsigned i = 0; period == RKM04_SLOT_TICKS && i < RKM04_MOTORS; i++) {
+        const struct rkm04_motion *motion = &unit->motor[i].motion;
+        if (motion->kind == RKM04_MOTION_ENDLESS)
+            fprintf(stderr, "motor %u is in an endless motion; ", i + 1u);
+        if (motion->kind == RKM04_MOTION_LIMIT)
+            fprintf(stderr, "motor %u moves until input %02u is 1, which no stimulus sets; ", i + 1u, motion->input + 0u);
+    }
+    if (period != RKM04_SLOT_TICKS)
+        fprintf(stderr, "what happens repeats every %" PRIu64 ".%06" PRIu64 " s; ", period / RKM04_TICKS_PER_SECOND,
+                period % RKM04_TICKS_PER_SECOND);
+    fputs("--until stops it at a time\n", stderr);
+}
+
 static int exit_status(struct exec_run *run, const struct options *options, enum exec_end end, bool written)
 {
     const struct rkm04_unit *unit = exec_run_unit(run);
@@ -291,8 +308,7 @@ static int exit_status(struct exec_run *run, const struct options *options, enum
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
     if (end == EXEC_ENDLESS) {
-        fprintf(stderr, "rkm04 exec: it never ends: what happens repeats every %" PRIu64 ".%06" PRIu64
-                " s; --until stops it at a time\n", run->period / RKM04_TICKS_PER_SECOND, run->period % RKM04_TICKS_PER_SECOND);
+        say_endless(unit, run->period);
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
     if (end == EXEC_INTERRUPTED)

@@ -367,5 +367,5 @@ int serve_main(int argc, char **argv)
     enum exit_status status = run(&serve);
     log_start_thread();
     log_flush(LOG_WAIT_MS);
-    return status;
+    return (int)status;
 }

@@ -7,12 +7,14 @@
 #include <string.h>
 #include <yaml.h>
 
+#include "invisible.h"
 #include "number.h"
 #include "time_value.h"
 
 #define DEPTH_MAX 32u /* lists and maps within one another; what we read needs less than ten */
 #define NODES_MAX 65536u /* values, lists and maps of a text: some 20 MB of memory */
 #define KEYS_MAX 256u /* of a map: each new one is compared with all before it */
+#define MESSAGE_SIZE 2048u /* of an error message; longer ones are cut */
 #define FOUND_SIZE 44u /* of what an error message repeats of a text */
 
 struct config_node {
@@ -49,9 +51,10 @@ struct reader {
 
 static bool report(const struct config_tree *tree, size_t line, size_t column, const char *format, va_list arguments)
 {
-    fprintf(tree->errors, "%s:%zu:%zu: error: ", tree->name, line, column);
-    vfprintf(tree->errors, format, arguments);
-    fputc('\n', tree->errors);
+    char text[MESSAGE_SIZE];
+    vsnprintf(text, sizeof text, format, arguments);
+    invisible_note(text, sizeof text);
+    fprintf(tree->errors, "%s:%zu:%zu: error: %s\n", tree->name, line, column, text);
     return false;
 }
 
@@ -449,7 +452,10 @@ bool config_keys(const struct config_node *node, const char *const *names)
         well = false;
         fprintf(errors, "%s:%zu:%zu: error: expected ", node->tree->name, node->item[i]->key_line, node->item[i]->key_column);
         list_names(errors, names);
-        fprintf(errors, ", found \"%s\"\n", node->key[i]);
+        char found[MESSAGE_SIZE];
+        snprintf(found, sizeof found, "found \"%s\"", node->key[i]);
+        invisible_note(found, sizeof found);
+        fprintf(errors, ", %s\n", found);
     }
     return well;
 }

@@ -8,6 +8,8 @@
 
 #include <rkm04/text.h>
 
+#include "invisible.h"
+
 /* ---- Characters and places ---------------------------------------------------------------------------------------- */
 
 /* Bytes of the UTF-8 character at `at`; 1 for what is none: texts in the code pages of old are taken, too. */
@@ -57,36 +59,6 @@ static void print_ranges(const struct rkm04_range *ranges, int count, FILE *out)
 static bool is_digit(char character)
 {
     return '0' <= character && character <= '9';
-}
-
-/* The name of a character that looks like nothing or like a blank; NULL: it can be seen. `bytes`: its length in UTF-8. */
-static const char *invisible_name(const char *text, size_t bytes)
-{
-    static const struct {
-        const char *bytes, *name;
-    } invisible[] = {
-        {"\xC2\xA0", "a no-break space (U+00A0)"},
-        {"\xC2\xAD", "a soft hyphen (U+00AD)"},
-        {"\xE2\x80\x83", "an em space (U+2003)"},
-        {"\xE2\x80\x82", "an en space (U+2002)"},
-        {"\xE2\x80\x87", "a figure space (U+2007)"},
-        {"\xE2\x80\x89", "a thin space (U+2009)"},
-        {"\xE2\x80\x8B", "a zero-width space (U+200B)"},
-        {"\xE2\x80\x8C", "a zero-width non-joiner (U+200C)"},
-        {"\xE2\x80\x8D", "a zero-width joiner (U+200D)"},
-        {"\xE2\x80\x8E", "a left-to-right mark (U+200E)"},
-        {"\xE2\x80\x8F", "a right-to-left mark (U+200F)"},
-        {"\xE2\x80\xA8", "a line separator (U+2028)"},
-        {"\xE2\x80\xA9", "a paragraph separator (U+2029)"},
-        {"\xE2\x80\xAF", "a narrow no-break space (U+202F)"},
-        {"\xE2\x81\xA0", "a word joiner (U+2060)"},
-        {"\xE3\x80\x80", "an ideographic space (U+3000)"},
-        {"\xEF\xBB\xBF", "a byte order mark (U+FEFF)"},
-    };
-    for (size_t i = 0; i < sizeof invisible / sizeof invisible[0]; i++)
-        if (strlen(invisible[i].bytes) == bytes && memcmp(invisible[i].bytes, text, bytes) == 0)
-            return invisible[i].name;
-    return NULL;
 }
 
 /* "99999", "'x'", "the end of the text": what stands where something else was expected. */

@@ -9,6 +9,7 @@
 #include "diagnose.h"
 #include "digits.h"
 #include "exit_status.h"
+#include "invisible.h"
 #include "number.h"
 #include "program_text.h"
 #include "readings.h"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """report.py: what came of the cases, as text for people and as JUnit for machines."""
 import collections
+import os
 import time
 from xml.sax.saxutils import escape, quoteattr
 
@@ -41,6 +42,25 @@ def summary(results):
 def clean(text):
     """XML knows no control characters."""
     return "".join(c if c in "\n\t" or " " <= c else "." for c in text)
+
+
+def why_not_junit(path, inputs, force):
+    """Why the report must not go there; None: it may. Never over a file that is read; over one of another kind if forced."""
+    if not os.path.exists(path):
+        folder = os.path.dirname(path) or "."
+        return None if os.path.isdir(folder) else f"{path}: there is no folder {folder}"
+    for read in inputs:
+        if read and os.path.exists(read) and os.path.samefile(path, read):
+            return f"{path} is also read: expected a file of its own"
+    if os.path.isdir(path):
+        return f"{path} is a folder"
+    if force or not os.path.isfile(path):
+        return None
+    with open(path, "rb") as file:
+        begin = file.read(1000)
+    if not begin or (begin.startswith((b"<?xml ", b"<testsuite")) and b"<testsuite" in begin):
+        return None
+    return f"{path} exists and is no JUnit report: --force replaces it"
 
 
 def junit(path, results, about):

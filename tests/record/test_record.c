@@ -11,7 +11,7 @@
 #include "record/snapshot.h"
 
 static struct session session;
-static char path[64];
+static char folder[32], path[64];
 
 /* Records of the session, to be freed. */
 struct taken {
@@ -353,12 +353,15 @@ END_TEST
 
 static void setup(void)
 {
-    snprintf(path, sizeof path, "record-%d.record", (int)getpid());
+    strcpy(folder, "/tmp/test_record-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.record", folder);
 }
 
 static void teardown(void)
 {
     remove(path);
+    rmdir(folder);
 }
 
 static Suite *make_suite(void)

@@ -286,11 +286,13 @@ END_TEST
 
 /* ---- Files ---------------------------------------------------------------------------------------------------------- */
 
-static char path[64], params[100];
+static char folder[32], path[64], params[100];
 
 static void file_setup(void)
 {
-    snprintf(path, sizeof path, "snapshot-%d.record", (int)getpid());
+    strcpy(folder, "/tmp/test_snapshot-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.record", folder);
     snprintf(params, sizeof params, "{\"file\": \"%s\"}", path);
 }
 
@@ -298,6 +300,7 @@ static void file_teardown(void)
 {
     session_end(&here);
     remove(path);
+    rmdir(folder);
 }
 
 /* Write a snapshot, live on, come back in a new line, and live on there. */

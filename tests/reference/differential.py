@@ -2,6 +2,7 @@
 """differential.py: the core against the reference interpreter, on random stories (docs/TESTING.md)."""
 
 import argparse
+import os
 import sys
 import time
 from collections import Counter
@@ -12,6 +13,9 @@ import story as stories
 from compare import Comparison, Subject, reference
 from readings import Readings
 from story import Send, Story
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "conformance"))
+from command_line import Parser  # noqa: E402
 
 
 def difference(subject, story):
@@ -79,7 +83,7 @@ def report(story, found):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="tools/differential", description=(
+    parser = Parser(prog="tools/differential", description=(
         "Runs random programs on the core and on an independent reference interpreter and compares every pulse, "
         "motion, command, output, variable, fault, LED and answer."))
     parser.add_argument("--count", type=int, default=2000, metavar="N", help="stories (2000)")

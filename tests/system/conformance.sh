@@ -104,6 +104,22 @@ test_what_differs_is_told_with_clause_expectation_and_observation() {
     holds "$(<"$folder/report.xml")" "expected: 30 31" "the report"
 }
 
+test_the_report_replaces_reports_only() {
+    printf 'steps: []\n' >"$folder/scenario.yaml"
+    cp "$folder/scenario.yaml" "$folder/kept"
+    cat >"$folder/unit" <<<'not run'
+    ln -s unit "$folder/link"
+    conforms 2 --junit "$folder/scenario.yaml"
+    holds "$complained" "scenario.yaml exists and is no JUnit report: --force replaces it" "a file of another kind"
+    exits 2 "$python" "$kit" --port "in:$folder/unit" --junit "$folder/link" --force
+    holds "$complained" "link is also read" "the unit's program"
+    cmp -s "$folder/scenario.yaml" "$folder/kept" || fail "the scenario has changed"
+    serve bus --clock stepped
+    conforms 0 --has control --only M5.3.1 --junit "$folder/scenario.yaml" --force
+    conforms 0 --has control --only M5.3.1 --junit "$folder/scenario.yaml"
+    holds "$(<"$folder/scenario.yaml")" "<testsuite" "the report"
+}
+
 # A unit that goes wrong in one place is found by the cases of that place: every answer of one kind is damaged.
 test_wrong_frames_and_silence_are_told() {
     serve bus

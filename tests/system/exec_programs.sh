@@ -80,6 +80,12 @@ test_an_endless_motion_is_recognised_at_its_speed() {
     run 124 --json --trace run.csv run.rks
     holds "$said" '"end":"endless"' "the end"
     (($(grep -c ,m1,step, run.csv) >= 247)) || fail "it has not come to its speed"
+    holds "$complained" "it never ends: motor 1 is in an endless motion; --until stops it at a time" "stderr"
+    text 1.rks ')02'
+    text 2.rks 'G-'
+    run 124 1=1.rks 2=2.rks
+    holds "$complained" "motor 1 moves until input 02 is 1, which no stimulus sets; motor 2 is in an endless motion; --until" \
+        "stderr"
 }
 
 test_motors_that_repeat_together_are_recognised() {

@@ -152,6 +152,25 @@ test_a_mistyped_command_is_answered_with_all_there_are_and_the_nearest() {
     holds "$complained" "did you mean \`wait'?" "the nearest of an emulator"
 }
 
+test_a_character_that_cannot_be_seen_is_named() {
+    local space=$'\xc2\xa0' none=$'\xe2\x80\x8b'
+    local name='a no-break space (U+00A0)' other='a zero-width space (U+200B)'
+    printf 'steps:\n  - wait: {motor%s: 1}\n' "$space" >"$folder/condition.yaml"
+    printf '%ssteps:\n  - advance: 1s\n' "$none" >"$folder/steps.yaml"
+    printf '{"t":0,%s"in":"7e"}\n' "$space" >"$folder/bad.record"
+    "$RKM04" test --no-records "$folder/condition.yaml" >"$folder/said" 2>&1
+    holds "$(<"$folder/said")" "$name" "a condition in YAML"
+    "$RKM04" test --no-records "$folder/steps.yaml" >"$folder/said" 2>&1
+    holds "$(<"$folder/said")" "$other" "YAML"
+    "$RKM04" replay "$folder/bad.record" >"$folder/said" 2>&1
+    holds "$(<"$folder/said")" "$name" "a recording"
+    serve bus
+    "$RKMCTL" --control "$folder/bus.control" wait "m1.position>=${space}5" >"$folder/said" 2>&1
+    holds "$(<"$folder/said")" "$name" "a condition"
+    "$RKMCTL" --control "$folder/bus.control" call di.set "{\"mask\":${space}1}" >"$folder/said" 2>&1
+    holds "$(<"$folder/said")" "$name" "JSON"
+}
+
 test_state_tells_what_is_in_flash_now() {
     serve bus --clock stepped --flash "$folder/flash"
     exits 0 ctl bus set 'W5'

@@ -107,6 +107,16 @@ test_what_cannot_be_printed_is_a_failure() {
     done
 }
 
+test_tools_whose_help_cannot_be_written_fail() {
+    local tool tools
+    tools=$(cd "$(dirname "$0")/../../tools" && pwd)
+    for tool in conformance coverage differential digest-all fuzz mutate port-figures run soak test; do
+        exits 0 "$tools/$tool" --help
+        holds "${said,,}" "usage: " "$tool --help"
+        exits 1 to_full "$tools/$tool" --help
+    done
+}
+
 to_full() { "$@" >/dev/full; }
 
 run_cases "$@"

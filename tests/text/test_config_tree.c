@@ -286,6 +286,20 @@ START_TEST(a_text_with_too_many_values_is_refused_where_they_begin)
 }
 END_TEST
 
+START_TEST(characters_that_cannot_be_seen_are_named)
+{
+    static const char *const names[] = {"name", "steps", NULL};
+    struct config_tree *tree = read_well("name: x\n\xC2\xA0steps: 1\n");
+    ck_assert(!config_keys(config_root(tree), names));
+    config_free(tree);
+    fflush(errors);
+    ck_assert_ptr_nonnull(strstr(said, "found \"\xC2\xA0steps\"; there is a no-break space (U+00A0) in it\n"));
+    ck_assert_ptr_null(read_text("a: 1\n\xE2\x80\x8B" "a: 2\n\xE2\x80\x8B" "a: 3\n"));
+    fflush(errors);
+    ck_assert_ptr_nonnull(strstr(said, "(first in line 2); there is a zero-width space (U+200B) in it\n"));
+}
+END_TEST
+
 static Suite *config_tree_suite(void)
 {
     Suite *suite = suite_create("config_tree");
@@ -309,6 +323,7 @@ static Suite *config_tree_suite(void)
     tcase_add_checked_fixture(refusing, setup, teardown);
     tcase_add_loop_test(refusing, what_cannot_be_read_is_refused_with_its_place, 0, COUNT(refusals));
     tcase_add_test(refusing, text_that_is_not_UTF_8_is_refused);
+    tcase_add_test(refusing, characters_that_cannot_be_seen_are_named);
     tcase_add_test(refusing, lists_within_lists_end_somewhere);
     tcase_add_test(refusing, maps_have_a_limit);
     tcase_add_test(refusing, texts_with_one_character_changed_are_read_or_refused_with_a_message);
