@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* bus.h: one line with its units and the ways in for clients, driven by the event loop.
+/* bus.h: one bus with its units and the ways in for clients, driven by the event loop; the face of the room.
  *
  *     bus_ports --take--> sim (units, two wires, virtual time) --out--> bus_ports
  *     bus_time  --advance--> sim

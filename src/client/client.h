@@ -1,5 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* client.h: the face of the room for `rkmctl`: requests over a port, and methods of a control socket. */
+/* client.h: `rkmctl`; the face of the room.
+ *
+ *     client_request, client_send, client_answer    requests to a unit over a port, and its answers
+ *     client_port, client_link                      the port: pty, device or TCP; one client at a time
+ *     client_control*, client_rpc                   methods of a control socket
+ *     client_watch, client_panel                    the front panel in a terminal
+ *     client_job, client_usage                      one command line, and what is wrong with it
+ *
+ * Knows text formats and the public headers of the core, and nothing of the emulator. */
 #ifndef RKM04_CLIENT_H
 #define RKM04_CLIENT_H
 

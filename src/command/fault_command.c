@@ -298,13 +298,6 @@ static json_t *command_fault_clear(struct sim *sim, const json_t *params, struct
     return json_pack("{s:i}", "cleared", (int)cleared);
 }
 
-const struct command_method fault_methods[] = {
-    {"fault.inject", command_fault_inject, true},
-    {"fault.clear", command_fault_clear, true},
-    {"fault.list", command_fault_list, false},
-    {NULL, NULL, false},
-};
-
 /* ---- fault.list: what faults there are, and how often each has acted ---------------------------------------------------- */
 
 static void put(json_t *object, const char *name, json_t *value)
@@ -396,7 +389,7 @@ static json_t *show(const struct sim *sim, const struct fault *fault)
     return object;
 }
 
-json_t *command_fault_list(struct sim *sim, const json_t *params, struct refusal *refusal)
+static json_t *command_fault_list(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {NULL};
     if (!params_known(params, names, refusal))
@@ -406,3 +399,10 @@ json_t *command_fault_list(struct sim *sim, const json_t *params, struct refusal
         json_array_append_new(list, show(sim, &sim->faults.fault[i]));
     return json_pack("{s:o}", "faults", list);
 }
+
+const struct command_method fault_methods[] = {
+    {"fault.inject", command_fault_inject, true},
+    {"fault.clear", command_fault_clear, true},
+    {"fault.list", command_fault_list, false},
+    {NULL, NULL, false},
+};

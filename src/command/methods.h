@@ -9,7 +9,4 @@ extern const struct command_method unit_methods[];  /* command_unit.c */
 extern const struct command_method plant_methods[]; /* plant_command.c */
 extern const struct command_method fault_methods[]; /* fault_command.c */
 
-/* fault_list.c */
-command_function command_fault_list;
-
 #endif

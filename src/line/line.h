@@ -1,5 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* line.h: the emulator's end of the serial line: a pty of its own (line_pty.c) or a device that is there (line_serial.c). */
+/* line.h: the ways in and out of the process; the face of the room.
+ *
+ *     line (here)                  the serial end: a pty of its own (line_pty.c) or a device (line_serial.c)
+ *     line_settings                what a client has set, and how bytes of another speed are heard
+ *     net_port, rfc2217            TCP, raw or with the settings of a port
+ *     link_path, lock_file         the link to the pty, and who owns it
+ *     flash_file                   the flash of a unit in a file
+ *     log, delivery                the log of the program, and the thread that writes it to a slow reader
+ *
+ * Knows bytes, descriptors and paths; nothing of units and virtual time but the tick of a byte. */
 #ifndef RKM04_LINE_H
 #define RKM04_LINE_H
 

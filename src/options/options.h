@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* options.h: the face of the room for the command line: options that several programs share, numbers that fit, addresses,
- * names that are near. */
+/* options.h: what the command lines of all programs share; the face of the room.
+ *
+ *     arguments        reading a command line, with --help and --version
+ *     nearest          the known name next to a wrong one, for messages
+ *     process          what a program must not inherit from whoever starts it
+ *     readings_option  --readings
+ *     socket_address   the address of a Unix socket
+ *
+ * Who has an option that only one program knows reads it in that program's room. */
 #ifndef RKM04_OPTIONS_H
 #define RKM04_OPTIONS_H
 

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* run.h: the face of the room for `rkm04 exec`, `test` and `replay`: runs in virtual time, from the options to the exit status.
+/* run.h: `rkm04 exec`, `test` and `replay`: runs in virtual time, from the options to the exit status; the face of the room.
+ *
+ *     exec, exec_*, stimulus    programs of a unit and what is done to its inputs meanwhile
+ *     test, test_*              scenarios, under one or several sets of readings; reports
+ *     replay_main               a recording again, compared with what was recorded
  *
  * argv[0] is the name for messages ("rkm04 exec"), the rest the command's own arguments. Each returns the exit status
  * (text/exit_status.h), or ends the program with it. */

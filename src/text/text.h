@@ -1,7 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* text.h: the face of the room for reading and writing text: YAML with places (config_tree), times, numbers, digits, bytes and
- * words for people, program
- * texts with their mistakes, option texts. Knows nothing of buses and units but the public headers of the core. */
+/* text.h: reading and writing text; the face of the room.
+ *
+ *     config_tree    YAML and JSON files as a tree whose nodes know their line and column
+ *     number, digits, time_value    numbers and times as people write them: "1.5s", "20ms"
+ *     program_text, diagnose        program texts of a unit, and what a unit would refuse in them
+ *     readings       names and values of the readings of the manual
+ *     wire_text      text of limited length, put together piece by piece
+ *     exit_status    exit statuses of all programs
+ *
+ * Knows nothing of buses and units but the public headers of the core. */
 #ifndef RKM04_TEXT_ROOM_H
 #define RKM04_TEXT_ROOM_H
 

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* trace.h: the face of the room for files about what happens on a bus: CSV, VCD, JSON lines; the log of the wires and pcapng;
- * events as JSON. */
+/* trace.h: files about what happens on a bus; the face of the room.
+ *
+ *     trace_file    CSV, VCD, JSON Lines: pulses, inputs, outputs, states (--trace); one trace_NAME.c a format
+ *     wire_file     messages on the wires: a log for people, pcapng for Wireshark (--wire)
+ *     event_json    one event as JSON, for JSON Lines and for clients of the control socket
+ *
+ * A file watches a sim from its beginning to its end and changes nothing in it. docs/TRACES.md describes the formats. */
 #ifndef RKM04_TRACE_H
 #define RKM04_TRACE_H
 

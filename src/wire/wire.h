@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* wire.h: the face of the room for the two wires of a bus in virtual time: levels, bytes, units, collisions; and a monitor
- * that finds the messages in the bytes, and their description in words. No file, no clock. */
+/* wire.h: the two wires of a bus in virtual time; the face of the room.
+ *
+ *     levels        one wire: a 0 wins over a 1, and a receiver looks at the middle of each bit
+ *     segment       host and units on two wires: bytes, turnaround, collisions
+ *     wire_monitor  finds the messages in the bytes
+ *     wire_message  one message that has passed
+ *     wire_words    the same in words, for logs and people
+ *
+ * No file, no clock: ticks and bytes come in as arguments. */
 #ifndef RKM04_WIRE_H
 #define RKM04_WIRE_H
 
