@@ -160,6 +160,22 @@ START_TEST(R1_blocks_of_pulses_are_right_to_less_than_what_is_looked_at_anew)
 }
 END_TEST
 
+/* The bound of docs/DESIGN.md is kept, and no more than what rounding takes is given away. */
+START_TEST(R1_blocks_begin_at_the_speed_from_which_they_are_right)
+{
+    static const uint32_t slopes[] = {1, 2, 3, 5, 100, 1023, 1024, 9000, 20000, 60000, 1000000};
+    for (uint32_t rate = 1000000; rate <= 16000000; rate *= 2) {
+        for (unsigned i = 0; i < sizeof slopes / sizeof *slopes; i++) {
+            const double bound = pow(1280 * pow(slopes[i], 3) * pow(8, 4) * pow(2.0 * rate * rate, 4), 1.0 / 7);
+            const double from = (double)ramp_fast_from(slopes[i], rate) / bound;
+            motion_check(from >= 1 && from < 1.18, "rate %u, slope %u: %g of the bound", rate, slopes[i], from);
+        }
+        ck_assert_uint_eq(ramp_fast_from(0, rate), ramp_fast_from(1, rate)); /* a speed that is no whole number */
+        ck_assert_uint_eq(ramp_fast_from(9000, rate * 2 - 1), ramp_fast_from(9000, rate * 2)); /* of the next power of two */
+    }
+}
+END_TEST
+
 int main(void)
 {
     ref_use_blocks();
@@ -172,6 +188,7 @@ int main(void)
     suite_add_tcase(suite, rate);
     TCase *block = tcase_create("blocks");
     tcase_set_timeout(block, 200);
+    tcase_add_test(block, R1_blocks_begin_at_the_speed_from_which_they_are_right);
     tcase_add_loop_test(block, R1_blocks_of_pulses_are_right_to_less_than_what_is_looked_at_anew, 0, RATES);
     suite_add_tcase(suite, block);
     SRunner *runner = srunner_create(suite);
