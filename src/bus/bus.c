@@ -32,7 +32,7 @@ static void tell_injected(struct bus *bus, const struct watch_event *event)
     if (++bus->injected <= INJECTED_TOLD)
         bus_log_at(&bus->log, event->tick, "fault %d: %s", (int)event->value, event->text);
     if (bus->injected == INJECTED_TOLD)
-        bus_log_at(&bus->log, event->tick, "faults act often: from now on they are no longer told here; fault.list counts them");
+        bus_log_at(&bus->log, event->tick, "injected faults act often: further ones are not logged; fault.list counts them");
 }
 
 static void on_news(void *context, const struct watch_event *event)

@@ -99,7 +99,7 @@ static void send_now(struct bus_ports *ports, const uint8_t *bytes, size_t lengt
     if (line->raised)
         bus_rts_lower_after(&ports->rts, length);
     if (dropped > 0 && line->clients > 0 && ports->told == line->dropped - dropped) {
-        bus_log(ports->log, "the client does not read: bytes are being dropped");
+        bus_log(ports->log, "the client does not read: bytes are dropped");
         ports->told = line->dropped;
     }
 }
@@ -141,23 +141,23 @@ static void on_news(void *context, enum line_news news)
     uint64_t dropped = ports->line.dropped - ports->told;
     switch (news) {
     case LINE_DETACHED:
-        bus_log_detail(ports->log, "the client has closed the line");
+        bus_log_detail(ports->log, "the client has closed the bus");
         break;
     case LINE_ATTACHED:
         if (dropped > 0)
-            bus_log(ports->log, "a client has opened the line; %" PRIu64 " bytes for nobody were dropped before", dropped);
+            bus_log(ports->log, "a client has opened the bus; %" PRIu64 " bytes were dropped before, without a client", dropped);
         else
-            bus_log_detail(ports->log, "a client has opened the line");
+            bus_log_detail(ports->log, "a client has opened the bus");
         ports->told = ports->line.dropped;
         ports->known = line_settings_unit;
         break;
     case LINE_SHARED:
-        bus_log(ports->log, "one more client has opened the line: they will take each other's answers (%u now)",
+        bus_log(ports->log, "another client has opened the bus (%u now): each gets only a part of the answers",
                 ports->line.clients);
         break;
     case LINE_FAILED:
         if (!ports->lost)
-            bus_log(ports->log, "a client has locked the pty %s for good and gone: another pty takes its place",
+            bus_log(ports->log, "a client has locked the pty %s and has closed it: a new pty replaces it",
                     ports->line.path);
         ports->lost = true;
         uv_timer_start(&ports->again, on_again, 0, 0);
@@ -202,7 +202,7 @@ static void on_readable(uv_poll_t *handle, int status, int events)
     if (!ports->reading)
         return; /* there is no room any more, or the adapter has been unplugged */
     if (!read_line(ports)) {
-        bus_log(ports->log, "%s is gone: %s; start again when it is back",
+        bus_log(ports->log, "%s has disappeared: %s; start again when it is back",
                 ports->options->port ? ports->options->port : line->path, errno ? strerror(errno) : "hung up");
         ports->calls->failed(ports->context);
         return;
@@ -276,9 +276,9 @@ static uint64_t take_unheard(struct bus_ports *ports)
 static void tell_refused(struct bus_ports *ports, const char *peer)
 {
     if (++ports->refused <= REFUSED_TOLD)
-        bus_log(ports->log, "the client %s was sent away: another one has the line", peer);
+        bus_log(ports->log, "the client %s was refused: another client uses the bus", peer);
     if (ports->refused == REFUSED_TOLD)
-        bus_log(ports->log, "many were sent away: no more of it is told until the line has another client");
+        bus_log(ports->log, "many clients were refused: further ones are not logged until another client opens the bus");
 }
 
 static void net_told(void *context, enum net_news news, const char *peer)
@@ -287,13 +287,13 @@ static void net_told(void *context, enum net_news news, const char *peer)
     uint64_t unheard = take_unheard(ports);
     switch (news) {
     case NET_DETACHED:
-        bus_log_detail(ports->log, "the client %s has closed the line", peer);
+        bus_log_detail(ports->log, "the client %s has closed the bus", peer);
         if (unheard > 0)
-            bus_log(ports->log, "it gives way to another client: %" PRIu64 " bytes that it had sent were dropped", unheard);
+            bus_log(ports->log, "another client replaces it: %" PRIu64 " bytes that it had sent were dropped", unheard);
         break;
     case NET_ATTACHED:
         ports->refused = 0;
-        bus_log_detail(ports->log, "the client %s has opened the line", peer);
+        bus_log_detail(ports->log, "the client %s has opened the bus", peer);
         ports->known = ports->net = line_settings_unit;
         break;
     case NET_REFUSED:
@@ -344,7 +344,7 @@ static struct net_port *open_net(struct bus_ports *ports, uv_loop_t *loop, const
     if (!port)
         log_error("out of memory");
     else if (!name_address(address, ports->log->number, own, sizeof own))
-        log_error("%s: there is no port for line %u: expected one up to 65535 less the number of lines", address,
+        log_error("%s: no TCP port for bus %u: expected a port of at most 65535 minus the number of buses", address,
                   ports->log->number);
     else if (net_port_open(port, loop, own, kind, &net_calls, ports))
         return port;
@@ -361,7 +361,7 @@ static bool poll_line(struct bus_ports *ports, uv_loop_t *loop)
     if (error == 0)
         error = uv_poll_start(&ports->readable, UV_READABLE, on_readable);
     if (error != 0)
-        log_error("cannot watch the line: %s", uv_strerror(error));
+        log_error("cannot watch the bus: %s", uv_strerror(error));
     return error == 0;
 }
 
@@ -480,10 +480,10 @@ static void pull_out(struct bus_ports *ports)
     ports->out = true;
     if (ports->options->pty) {
         if (!ports->lost)
-            bus_log(ports->log, "the adapter is unplugged: %s and its link are gone", ports->line.path);
+            bus_log(ports->log, "the adapter is unplugged: %s and its link are removed", ports->line.path);
         drop_pty(ports);
     } else {
-        bus_log(ports->log, "the adapter is unplugged%s", ports->options->port ? ": the device stays, and is silent" : "");
+        bus_log(ports->log, "the adapter is unplugged%s", ports->options->port ? ": the device stays open, but is silent" : "");
     }
     plug_network(ports, false);
     ports->calls->presence(ports->context);
@@ -497,9 +497,9 @@ static void keep_access(const struct bus_ports *ports)
     if (ports->mode == 0 || stat(path, &found) != 0)
         return;
     if (found.st_gid != ports->group && chown(path, (uid_t)-1, ports->group) != 0)
-        log_error("cannot give %s the group %u of the pty before: %s", path, (unsigned)ports->group, strerror(errno));
+        log_error("cannot set the group of %s to %u, as before: %s", path, (unsigned)ports->group, strerror(errno));
     else if ((found.st_mode & 0777) != ports->mode && chmod(path, ports->mode) != 0)
-        log_error("cannot give %s the mode %03o of the pty before: %s", path, (unsigned)ports->mode, strerror(errno));
+        log_error("cannot set the mode of %s to %03o, as before: %s", path, (unsigned)ports->mode, strerror(errno));
 }
 
 static bool make_pty(struct bus_ports *ports)
@@ -525,7 +525,7 @@ static void put_in(struct bus_ports *ports)
 {
     if (ports->options->pty && !make_pty(ports)) {
         if (!ports->rest_told)
-            bus_log(ports->log, "the adapter cannot be plugged in again: trying every second");
+            bus_log(ports->log, "cannot plug the adapter in again: trying every second");
         ports->resting = ports->rest_told = true;
         uv_timer_start(&ports->again, on_again, AGAIN_MS, 0);
         return;

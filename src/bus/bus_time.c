@@ -156,7 +156,7 @@ static void report_cuts(struct bus_time *time)
     struct segment_counters counters = segment_counters(&time->sim->segment);
     if (counters.cuts > time->cuts && time->cuts < CUTS_TOLD)
         bus_log(time->log, "units have answered one another more than %u times without a request, for %" PRIu64 ".%06" PRIu64
-                     " s in all: cut off; have two units the same address?", SEGMENT_UNASKED_MAX,
+                     " s in all: stopped; do two units have the same address?", SEGMENT_UNASKED_MAX,
                 counters.cut_ticks / RKM04_TICKS_PER_SECOND, counters.cut_ticks % RKM04_TICKS_PER_SECOND);
     time->cuts = counters.cuts;
 }
@@ -228,7 +228,7 @@ static void look_if_late(struct bus_time *time, uint64_t now)
         virtual_clock_skip(&time->clock, late);
     bus_log(time->log, "late by %" PRIu64 ".%03" PRIu64 " s: was the process stopped? %s", late / NS_PER_SECOND,
             late % NS_PER_SECOND / NS_PER_MS,
-            time->options->late_skips ? "the units' time has not gone on meanwhile (--late skip)"
+            time->options->late_skips ? "the units' clock was paused meanwhile (--late skip)"
                                      : "the units catch up (--late catch-up)");
 }
 
@@ -238,7 +238,7 @@ static void note_behind(struct bus_time *time, uint64_t now, bool behind)
     if (!behind || time->behind == 0)
         time->behind = behind ? now : 0;
     if (behind && !time->behind_told && !bus_time_is_stepped(time) && now - time->behind > LONG_BEHIND) {
-        bus_log(time->log, "behind clock %s for a second: the units go as fast as this machine can", time->clock_text);
+        bus_log(time->log, "too slow for clock %s for a second: the units run as fast as this machine can", time->clock_text);
         time->behind_told = true;
     }
 }
@@ -247,7 +247,7 @@ static void note_end_of_time(struct bus_time *time)
 {
     if (time->over_told || !sim_time_is_over(time->sim))
         return;
-    bus_log(time->log, "virtual time has come to its end, %" PRIu64 " s: the units' time does not go on, and they "
+    bus_log(time->log, "virtual time has reached its end, %" PRIu64 " s: the units' time does not go on, and they "
             "answer no more. Start again", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND);
     time->over_told = true;
 }
@@ -362,7 +362,7 @@ bool bus_time_set_clock(struct bus_time *time, const char *text, struct refusal 
         return false;
     }
     if (time->advancing) {
-        refuse(refusal, REFUSED_STATE, "the clock is being advanced: change it when that has ended");
+        refuse(refusal, REFUSED_STATE, "a client is advancing the clock: change it when that has ended");
         return false;
     }
     bus_time_follow(time);

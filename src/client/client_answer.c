@@ -19,7 +19,7 @@ enum { HEAD = 2 /* message number and motor, or length */, TEXT_MAX = 16384 };
 /* The answer is not what the manual says. */
 static enum exit_status strange(const struct client_answer *answer)
 {
-    fprintf(stderr, "%s: the unit's answer has not the form expected:", program_invocation_short_name);
+    fprintf(stderr, "%s: the unit's answer is malformed:", program_invocation_short_name);
     for (size_t i = 0; i < answer->length && i < 32; i++)
         fprintf(stderr, " %02x", answer->bytes[i]);
     fprintf(stderr, "%s\n", answer->length > 32 ? " ..." : "");

@@ -41,7 +41,7 @@ enum exit_status client_job_outcome(const struct client_job *job, enum client_rp
     case CLIENT_RPC_RESULT:
         return STATUS_SUCCESS;
     case CLIENT_RPC_REFUSED:
-        warnx("%s", message != NULL ? message : "the emulator refuses that");
+        warnx("%s", message != NULL ? message : "the emulator refuses the request");
         return json_integer_value(json_object_get(json, "code")) == WRONG_PARAMS ? STATUS_USAGE : STATUS_FAILURE;
     case CLIENT_RPC_NOTHING:
         warnx("no answer from %s in time", job->rpc.path);
@@ -170,7 +170,7 @@ static enum exit_status set_switch(struct client_job *job)
     if (!number_read(job->words[0], 1, 16, &node))
         return client_usage("switch: expected an address 1 to 16, found '%s'", job->words[0]);
     if (and_reset && strcmp(job->words[1], "reset") != 0)
-        return client_usage("switch: expected reset behind the address, found '%s'", job->words[1]);
+        return client_usage("switch: expected reset after the address, found '%s'", job->words[1]);
     json_t *params = json_pack("{s:i}", "node", (int)node);
     if (and_reset)
         json_object_set_new(params, "reset", json_true());
@@ -288,7 +288,7 @@ static const struct command {
     {"restore", 1, 1, "NAME or file=PATH", 0, restore},
     {"reset", 0, 0, "nothing", TAKES_UNIT, reset},
     {"power", 1, 1, "on or off", TAKES_UNIT, power},
-    {"switch", 1, 2, "an address, and reset if it is to be read at once", TAKES_UNIT, set_switch},
+    {"switch", 1, 2, "an address, and optionally reset", TAKES_UNIT, set_switch},
     {"fault", 0, SIZE_MAX, "inject KIND NAME=VALUE..., clear [ID], or nothing to list them", TAKES_UNIT, client_control_fault},
     {"plant", 0, 4, "set FILE, none, motor=N..., or nothing to show it", TAKES_UNIT, client_control_plant},
     {"clock", 0, 1, "real, xN, max, stepped, or nothing to show it", 0, clock_of_line},
@@ -319,7 +319,7 @@ enum exit_status client_control(struct client_job *job, const char *name)
     if (job->count > command->most)
         return client_usage("%s: expected %s, found '%s'", name, command->words, job->words[command->most]);
     if (job->unit != NULL && !(command->options & TAKES_UNIT))
-        return client_usage("%s concerns the whole line: --unit has no meaning there", name);
+        return client_usage("%s is about the whole bus: use it without --unit", name);
     if (job->limit != NULL && !(command->options & TAKES_LIMIT))
         return client_usage("--limit is for wait, advance and events");
     if (job->once && !(command->options & TAKES_ONCE))

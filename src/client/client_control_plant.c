@@ -75,7 +75,7 @@ enum exit_status client_control_plant(struct client_job *job)
     if ((set && job->count != 2) || (none && job->count != 1))
         return client_usage(set ? "plant set: expected one FILE" : "plant none takes no argument");
     if ((set || none) && job->unit != NULL)
-        return client_usage("plant %s concerns all units: --unit has no meaning there", job->words[0]);
+        return client_usage("plant %s is about all units: use it without --unit", job->words[0]);
     params = set ? read_plant(job->words[1]) : none ? json_pack("{s:n}", "plant") : read_hand(job);
     if (params == NULL)
         return set ? STATUS_FAILURE : STATUS_USAGE;

@@ -161,7 +161,8 @@ static void warn_overridden(const json_t *result)
     size_t i;
     json_t *input;
     json_array_foreach(json_object_get(result, "overridden"), i, input)
-        warnx("input %02d stands otherwise: a plant drives it, or a fault holds it", (int)json_integer_value(input));
+        warnx("input %02d is unchanged: the plant or an injected fault holds it at %d", (int)json_integer_value(input),
+              (int)(integer_of(result, "di") >> (json_integer_value(input) - 1) & 1));
 }
 
 enum exit_status client_control_di(struct client_job *job)

@@ -101,7 +101,7 @@ static enum exit_status look_at_clock(struct client_job *job, bool *stopped)
 
 static void note_stopped(void)
 {
-    warnx("note: time is stopped (clock stepped): it goes on when a client advances it, as rkmctl advance and wait --advance do");
+    warnx("note: time is stopped (clock stepped) until a client advances it, for example with rkmctl advance or wait --advance");
 }
 
 /* Does the condition hold already? Otherwise say that time is stopped. Returns the exit status. */
@@ -141,7 +141,7 @@ enum exit_status client_control_advance(struct client_job *job)
     if (job->count > 1)
         return client_usage("advance: expected one time, as in 10ms, found '%s' behind it", job->words[1]);
     if (job->limit != NULL || job->unit != NULL)
-        return client_usage("advance: --limit and --unit go with a condition, found the time %s", job->words[0]);
+        return client_usage("advance: --limit and --unit need a condition, found the time %s", job->words[0]);
     return wait_by(job, "advance", json_pack("{s:o}", "ticks", read_time(job->words[0])));
 }
 
@@ -180,7 +180,7 @@ static void on_event(void *context, const char *method, const json_t *params)
     if (l->left == 0)
         return;
     if (lost)
-        warnx("%" JSON_INTEGER_FORMAT " events were lost here: they came faster than they were read",
+        warnx("%" JSON_INTEGER_FORMAT " events were dropped here: they came faster than they were read",
               json_integer_value(json_object_get(params, "events")));
     else
         l->left--;

@@ -101,7 +101,7 @@ static enum client_outcome lost(struct client *client)
         warnx("%s: refused: %s", client->port, reason);
         return CLIENT_LOST;
     }
-    warnx("%s: the line was closed at its other end (%s)", client->port, errno != 0 ? strerror(errno) : "end of file");
+    warnx("%s: the connection was closed at its other end (%s)", client->port, errno != 0 ? strerror(errno) : "end of file");
     return CLIENT_LOST;
 }
 
@@ -131,7 +131,7 @@ static enum client_outcome send_frame(const struct dialogue *d)
             return lost(client);
         } else {
             if (!wait_for(d, POLLOUT | POLLIN)) {
-                warnx("%s takes no bytes: is the program or the device at its other end stuck?", client->port);
+                warnx("%s accepts no bytes: is the program or the device at its other end stuck?", client->port);
                 return CLIENT_SILENT;
             }
             if (!forget(client)) /* no answer yet; but who sends us something must not wait for us to read it */
@@ -246,11 +246,11 @@ static void advise(const struct dialogue *d)
     if (tell_causes(d))
         return;
     fprintf(stderr,
-            "  - nothing at all was heard.\n"
-            "  - has the unit power, and is its line (A, B) connected to %s?\n"
-            "  - is its address %u (switch S1; rkm04 serve --node %u)? Another one is chosen with -n.\n"
+            "  - nothing was received.\n"
+            "  - does the unit have power, and is its bus (A, B) connected to %s?\n"
+            "  - is its address %u (switch S1; rkm04 serve --node %u)? Select another one with -n.\n"
             "  - does it use the framing %s? The other one is --framing %s.\n"
-            "  - is it slow, or the line long? --timeout MS waits longer.\n",
+            "  - is it slow? --timeout MS waits longer.\n",
             client->port, client->node, client->node, client->framing->name, other_framing(client)->name);
 }
 

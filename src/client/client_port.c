@@ -40,10 +40,10 @@ static const char *open_advice(int error)
     case ENOENT:
         return "; is the adapter plugged in, or the emulator running?";
     case EBUSY:
-        return "; another program keeps it for itself";
+        return "; another program has locked it";
     case EIO:
     case ENXIO:
-        return "; the program at its other end has gone";
+        return "; the program at its other end has ended";
     default:
         return "";
     }
@@ -81,7 +81,7 @@ static bool set_up_terminal(int fd, const char *path, unsigned timeout_ms)
         return false;
     }
     if (!lock(fd, timeout_ms)) {
-        warnx("%s is in use by another program: end that one, or wait for it with a longer --timeout", path);
+        warnx("%s is in use by another program: end that program, or wait for it with a longer --timeout", path);
         return false;
     }
     if (!make_raw(fd)) {

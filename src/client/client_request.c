@@ -111,7 +111,7 @@ static enum exit_status check(struct asking *a)
         return client_usage("--port: expected tcp:HOST:PORT, PORT 1 to 65535, like tcp:localhost:4001, found '%s'",
                             request->port);
     if (a->command->motors == ONE_MOTOR && request->motor == 0)
-        return client_usage("%s can be asked of one motor only: -m 1 to 4", a->command->name);
+        return client_usage("%s works with one motor only: -m 1 to 4", a->command->name);
     return STATUS_SUCCESS;
 }
 
@@ -139,7 +139,7 @@ static enum exit_status ask(const struct asking *a, struct client *client, char 
         return show(a, client, motor);
     case CLIENT_SENT:
         if (command->show != client_show_store && !raw)
-            warnx("note: no unit answers what is sent to all of them");
+            warnx("note: no unit answers a request to all units");
         return a->request->json ? client_print_json(json_pack("{s:b}", "broadcast", 1)) : STATUS_SUCCESS;
     case CLIENT_SILENT:
         return STATUS_NO_ANSWER;

@@ -73,7 +73,7 @@ static const char *advice(const char *path, int error)
 {
     struct stat found;
     if (stat(path, &found) == 0 && !S_ISSOCK(found.st_mode))
-        return "; expected the control socket of `rkm04 serve', by default its link with .control behind";
+        return "; expected the control socket of `rkm04 serve', by default LINK.control";
     switch (error) {
     case ENOENT:
         return "; is `rkm04 serve' running? --control PATH names another socket";
@@ -82,7 +82,7 @@ static const char *advice(const char *path, int error)
     case EACCES:
         return "; it belongs to another user";
     case ENAMETOOLONG:
-        return "; the name of a socket, behind the last /, has at most 80 characters";
+        return "; the name of a socket, after the last /, has at most 80 characters";
     default:
         return "";
     }
@@ -122,7 +122,7 @@ bool client_rpc_open(struct client_rpc *rpc, const char *path)
     if (connected && ((chosen != NULL && chosen[0] != '\0') || !is_foreign(rpc)))
         return true;
     if (connected)
-        warnx("%s: the emulator there is not yours; if it is the one that is meant, name it: --control PATH", rpc->path);
+        warnx("%s: it belongs to another user's emulator; to use it, name it: --control PATH", rpc->path);
     else
         warnx("cannot connect to %s: %s%s", rpc->path, strerror(error), advice(rpc->path, error));
     if (rpc->fd >= 0)
@@ -144,7 +144,7 @@ static bool write_all(struct client_rpc *rpc, const char *bytes, size_t length)
         if (done < 0 && errno == EINTR)
             continue;
         if (done < 0) {
-            report(rpc, "the emulator at %s has gone: %s", rpc->path, strerror(errno));
+            report(rpc, "lost the connection to the emulator at %s: %s", rpc->path, strerror(errno));
             return false;
         }
         bytes += done;
@@ -209,7 +209,7 @@ static enum client_rpc_outcome fill(struct client_rpc *rpc, int timeout_ms)
     if (count == 0 || (count < 0 && errno == EINTR))
         return CLIENT_RPC_NOTHING;
     if (!make_room(rpc)) {
-        report(rpc, "%s sends no JSON-RPC: expected the control socket of `rkm04 serve'", rpc->path);
+        report(rpc, "%s does not speak JSON-RPC: expected the control socket of `rkm04 serve'", rpc->path);
         return CLIENT_RPC_LOST;
     }
     ssize_t length = read(rpc->fd, rpc->buffer + rpc->length, rpc->room - rpc->length);
@@ -243,7 +243,7 @@ static bool take_line(struct client_rpc *rpc, const char *line, enum client_rpc_
     bool ours = json_is_integer(id) ? json_integer_value(id) == rpc->id : json_is_null(id) && error != NULL;
     const char *lacking = object == NULL ? wrong.text : json_is_object(object) ? lacks(object, ours) : "expected an object";
     if (lacking != NULL) {
-        report(rpc, "%s sends no JSON-RPC: %s", rpc->path, lacking);
+        report(rpc, "%s does not speak JSON-RPC: %s", rpc->path, lacking);
         *outcome = CLIENT_RPC_LOST;
         ours = true;
     } else if (method != NULL) {

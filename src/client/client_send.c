@@ -110,7 +110,7 @@ static bool take_answer(struct sending *s)
 {
     const struct client *client = s->send->client;
     if (client->length != HEAD + 2 || client->answer[0] != SET_COMMAND || client->answer[HEAD] > FLAG_OVERFLOW) {
-        warnx("the unit's answer has not the form expected: message %u of %zu bytes", client->answer[0], client->length);
+        warnx("the unit's answer is malformed: message %u of %zu bytes", client->answer[0], client->length);
         return false;
     }
     int flag = client->answer[HEAD];
@@ -125,7 +125,7 @@ static bool take_answer(struct sending *s)
 static void explain_rest(const struct sending *s)
 {
     if (s->piece > 0)
-        warnx("%zu of %zu messages have arrived; they wait behind a [ and do not run. Reset the motor (set '\\') before you send "
+        warnx("%zu of %zu messages have arrived; they wait after a [ and do not run. Reset the motor (set '\\') before you send "
               "again", s->piece, s->cut.pieces);
 }
 
@@ -153,7 +153,7 @@ static enum exit_status print_result(const struct sending *s)
     } else if (overflow) {
         warnx("%s: the program memory of 700 commands has overflowed (flag 3): the oldest commands are overwritten or, "
               "with T40, the newest are lost%s", failed ? "error" : "warning",
-              failed ? "; if that is meant, --allow-overflow" : "");
+              failed ? "; to allow this, use --allow-overflow" : "");
     }
     if (s->send->json) {
         enum exit_status printed = print_json_result(s);
@@ -166,7 +166,7 @@ static enum exit_status print_result(const struct sending *s)
         printf("%zu command%s sent in %zu message%s\n", s->cut.commands, s->cut.commands == 1 ? "" : "s", s->cut.pieces,
                s->cut.pieces == 1 ? "" : "s");
     else
-        puts("all right");
+        puts("ok");
     return status;
 }
 
@@ -215,16 +215,17 @@ static void report_cut(const struct sending *s, enum client_cut_result result)
     text_place_move(&place, s->cut.wrong);
     switch (result) {
     case CLIENT_CUT_TOO_MANY:
-        fprintf(stderr, "%s: error: %zu commands: a program that does not fit one message may have %zu, for the brackets around "
-                "it are stored as well\n", s->name, s->cut.program, RKM04_PROGRAM_MAX - (s->cut.places - s->cut.program));
+        fprintf(stderr, "%s: error: %zu commands: a program longer than one message can have at most %zu, because "
+                "the brackets around it are stored, too\n",
+                s->name, s->cut.program, RKM04_PROGRAM_MAX - (s->cut.places - s->cut.program));
         break;
     case CLIENT_CUT_LONG_COMMAND:
         fprintf(stderr, "%s:%zu:%zu: error: this command alone is longer than a message of %zu bytes\n", s->name, place.line,
                 place.column, s->send->message_max);
         break;
     case CLIENT_CUT_OPEN_BLOCK:
-        fprintf(stderr, "%s:%zu:%zu: error: behind this [, which is never closed, stands more than fits one message: send that "
-                "part as a file of its own\n", s->name, place.line, place.column);
+        fprintf(stderr, "%s:%zu:%zu: error: this [ is never closed, and the text after it does not fit into one message: send "
+                "that part as a separate file\n", s->name, place.line, place.column);
         break;
     default:
         warnx("%s: %s", s->name, strerror(ENOMEM));
@@ -243,7 +244,7 @@ enum exit_status client_send_text(const struct client_send *send, const char *te
     enum exit_status status = STATUS_FAILURE;
     s.length = piece.length = program_text_map(piece.text, strlen(piece.text));
     if (piece.length > send->message_max - HEAD)
-        warnx("the text has %zu bytes, a message takes %zu: write it to a file and use send", piece.length,
+        warnx("the text has %zu bytes, a message holds %zu: write it to a file and use send", piece.length,
               send->message_max - HEAD);
     else
         status = send_pieces(&s);

@@ -17,7 +17,7 @@ bool client_terminal_fits(void)
         del_curterm(cur_term);
     }
     if (!fits)
-        warnx("watch: the terminal `%s' is not known here, or of a kind without a screen: set TERM, or use --once",
+        warnx("watch: the terminal `%s' is unknown, or cannot show a panel: set TERM, or use --once",
               name != NULL ? name : "");
     return fits;
 }

@@ -67,7 +67,7 @@ static enum exit_status find_units(struct watching *w)
         if (name != NULL && strcmp(name, w->job->unit) == 0)
             return STATUS_SUCCESS;
     }
-    return client_usage("there is no unit %s on the line: `rkmctl call units' names them", w->job->unit);
+    return client_usage("unknown unit %s: `rkmctl call units' lists the units", w->job->unit);
 }
 
 static json_t *state_params(const struct watching *w)

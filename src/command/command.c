@@ -173,7 +173,7 @@ bool params_known(const json_t *params, const char *const *names, struct refusal
             i++;
         if (names[i])
             continue;
-        refuse(refusal, REFUSED_PARAMS, "`%.60s' is no parameter of this method: expected %s", key, *list ? list : "none");
+        refuse(refusal, REFUSED_PARAMS, "unknown parameter `%.60s': expected %s", key, *list ? list : "none");
         return false;
     }
     return true;

@@ -34,7 +34,7 @@ static json_t *command_state(struct sim *sim, const json_t *params, struct refus
     if (number == 0)
         return NULL;
     json_t *state = unit_state(sim, number);
-    return state ? state : refuse(refusal, REFUSED_MEMORY, "memory is short");
+    return state ? state : refuse(refusal, REFUSED_MEMORY, "out of memory");
 }
 
 /* ---- Inputs --------------------------------------------------------------------------------------------------------- */
@@ -48,7 +48,7 @@ static bool read_inputs(const json_t *di, uint8_t *given, uint8_t *levels, struc
         unsigned input = input_named(name);
         int level = level_of(value);
         if (input == 0) {
-            refuse(refusal, REFUSED_PARAMS, "di: `%.40s' is no input: expected 1 to %u", name, RKM04_INPUTS);
+            refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': expected 1 to %u", name, RKM04_INPUTS);
             return false;
         }
         uint8_t bit = (uint8_t)(1u << (input - 1));

@@ -230,9 +230,9 @@ static bool read_spell(const json_t *params, unsigned takes, struct fault *fault
     if (given && fault->ticks == 0)
         wrong = "duration: expected a time of at least 1us";
     else if (fault->kind == FAULT_BREAK && !given && fault->until == RKM04_NEVER)
-        wrong = "duration: missing: how long the line is to be held at 0, as in \"20ms\"";
+        wrong = "duration: missing: how long the bus is held at 0, as in \"20ms\"";
     else if (fault->every > 0 && (!given || fault->ticks >= fault->every))
-        wrong = "every: expected a duration, and a longer time than that";
+        wrong = "every: expected a duration, too, and a time longer than the duration";
     else if (json_object_get(params, "every") && fault->every < EVERY_MIN)
         wrong = "every: expected a time of at least 1ms";
     if (wrong)
@@ -282,7 +282,7 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
         return refuse(refusal, REFUSED_STATE, "wrong_fcs: framing `%s' has no check value", sim->config.unit.framing->name);
     uint32_t id = faults_add(&sim->faults, &fault);
     if (id == 0)
-        return refuse(refusal, REFUSED_STATE, "there are %u faults already that may still act: clear some", FAULTS_MAX);
+        return refuse(refusal, REFUSED_STATE, "too many faults: %u can still act; clear some of them first", FAULTS_MAX);
     return json_pack("{s:I}", "id", (json_int_t)id);
 }
 

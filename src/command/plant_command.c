@@ -30,7 +30,7 @@ static json_t *report(struct sim *sim, unsigned number, struct refusal *refusal)
     if (result && add_counters(sim, number, json_object_get(plant, "motors")))
         return result;
     json_decref(result);
-    return refuse(refusal, REFUSED_MEMORY, "memory is short");
+    return refuse(refusal, REFUSED_MEMORY, "out of memory");
 }
 
 static json_t *command_plant_get(struct sim *sim, const json_t *params, struct refusal *refusal)
@@ -62,7 +62,7 @@ static json_t *configure_text(struct sim *sim, const char *text, bool object, st
     if (!well && told)
         refuse_plant(refusal, errors, object);
     else if (!result)
-        refuse(refusal, REFUSED_MEMORY, "memory is short");
+        refuse(refusal, REFUSED_MEMORY, "out of memory");
     free(errors);
     return result;
 }
@@ -76,7 +76,7 @@ static json_t *configure(struct sim *sim, const json_t *plant, struct refusal *r
     if (!json_is_object(plant))
         return refuse(refusal, REFUSED_PARAMS, "plant: expected an object, the text of a plant file, or null");
     char *text = json_dumps(plant, JSON_COMPACT);
-    json_t *result = text ? configure_text(sim, text, true, refusal) : refuse(refusal, REFUSED_MEMORY, "memory is short");
+    json_t *result = text ? configure_text(sim, text, true, refusal) : refuse(refusal, REFUSED_MEMORY, "out of memory");
     free(text);
     return result;
 }
@@ -87,7 +87,7 @@ static json_t *place(struct sim *sim, struct sim_unit *unit, unsigned motor, int
 {
     struct plant_change change;
     if (!plant_place(unit->plant, sim_now(sim), motor, position))
-        return refuse(refusal, REFUSED_PARAMS, "position: expected one between the end stops of motor %u", motor);
+        return refuse(refusal, REFUSED_PARAMS, "position: expected a position between the end stops of motor %u", motor);
     while (plant_take_change(unit->plant, sim_now(sim) + 1u, &change)) {
         /* it counts from now on */
     }
@@ -105,7 +105,7 @@ static json_t *handle(struct sim *sim, unsigned number, const json_t *params, st
         return NULL;
     unsigned which = (unsigned)motor;
     if (!unit->plant || !plant_position(unit->plant, which, &position))
-        return refuse(refusal, REFUSED_STATE, "motor %u has no plant: configure one with plant.set and plant", which);
+        return refuse(refusal, REFUSED_STATE, "motor %u is not in the plant: configure it with plant.set and plant", which);
     bool placed = json_object_get(params, "position");
     if (!placed && !held && !taken)
         return refuse(refusal, REFUSED_PARAMS, "expected position, jammed or missing_lead");

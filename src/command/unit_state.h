@@ -7,7 +7,7 @@
 
 struct sim;
 
-/* Of unit `number`, at the present tick. Returns a new reference, or NULL if memory is short. */
+/* Of unit `number`, at the present tick. Returns a new reference, or NULL if out of memory. */
 json_t *unit_state(struct sim *sim, unsigned number);
 
 #endif

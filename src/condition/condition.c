@@ -286,7 +286,7 @@ static void print_message(FILE *out, const struct term_message *message, struct 
     if (message->motor >= 0)
         fprintf(out, " for motor %c", message->motor);
     if (message->from == 0)
-        fputs(" from the master", out);
+        fputs(" from the host", out);
     else if (message->from == TERM_ANY_UNIT)
         fputs(" from a unit", out);
     else if (message->from > 0)

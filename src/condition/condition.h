@@ -39,7 +39,7 @@ bool condition_step(struct condition *condition, uint64_t limit);
 bool condition_run(struct condition *condition, uint64_t limit);
 
 /* What it says and what there is instead, for messages: "motor 1 position >= 5000 (is 1200)". Returns a string to be freed;
- * NULL: memory is short. */
+ * NULL: out of memory. */
 char *condition_text(struct condition *condition);
 
 /* The same in two: "motor 1 position >= 5000", "motor 1 position 1200". */

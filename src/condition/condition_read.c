@@ -56,10 +56,10 @@ void term_clear(struct term *term)
 static bool add(struct reader *r, struct term *group, const struct term *term)
 {
     if (r->terms++ == TERMS_MAX)
-        return REFUSE("condition: expected at most %d things to wait for in all", TERMS_MAX);
+        return REFUSE("condition: expected at most %d conditions in all", TERMS_MAX);
     struct term *sub = realloc(group->sub, (group->subs + 1) * sizeof *sub);
     if (sub == NULL) {
-        refuse(r->refusal, REFUSED_MEMORY, "memory is short");
+        refuse(r->refusal, REFUSED_MEMORY, "out of memory");
         return false;
     }
     group->sub = sub;
@@ -115,7 +115,7 @@ static bool read_number(struct reader *r, struct term *group, struct term term, 
         if (!term_relation_named(name, &relation))
             return REFUSE("%s: expected one of ==, !=, <, <=, >, >=, found \"%.20s\"", key, name);
         if (!is_whole(bound, &term, &term.value))
-            return REFUSE("%s: expected %s behind \"%s\"", key, what, name);
+            return REFUSE("%s: expected %s after \"%s\"", key, what, name);
         term.relation = (uint8_t)relation;
         if (!add(r, group, &term))
             return false;
@@ -242,7 +242,7 @@ static bool read_message(struct reader *r, struct term *group, struct term term,
         return REFUSE("message: dropped: expected true or false");
     term.message.dropped = flag != 0;
     if (term.message.dropped && (number >= 0 || motor >= 0))
-        return REFUSE("message: a dropped one has no number and no motor");
+        return REFUSE("message: a dropped message has no number and no motor");
     r->messages = true;
     return add(r, group, &term);
 }
@@ -258,7 +258,7 @@ static bool read_list(struct reader *r, struct term *group, struct term term, co
     if (!json_is_array(json) || json_array_size(json) == 0)
         return REFUSE("%s: expected a list of conditions", key);
     if (r->depth >= DEPTH_MAX)
-        return REFUSE("%s: more than %d inside one another", key, DEPTH_MAX);
+        return REFUSE("%s: nested deeper than %d levels", key, DEPTH_MAX);
     r->depth++;
     term = (struct term){.kind = term.kind};
     json_array_foreach((json_t *)json, index, item) {
@@ -341,7 +341,7 @@ static bool read_object(struct reader *r, struct term *group, const json_t *json
             return false;
     }
     if (group->subs == 0)
-        return REFUSE("condition: nothing to wait for: expected something as in {\"motor\": 1, \"position\": 5000}");
+        return REFUSE("condition: nothing to wait for: expected a condition, as in {\"motor\": 1, \"position\": 5000}");
     return true;
 }
 
@@ -350,7 +350,7 @@ struct condition *condition_read(struct sim *sim, const json_t *json, struct ref
     struct reader reader = {.sim = sim, .refusal = refusal};
     struct condition *condition = calloc(1, sizeof *condition);
     if (condition == NULL) {
-        refuse(refusal, REFUSED_MEMORY, "memory is short");
+        refuse(refusal, REFUSED_MEMORY, "out of memory");
         return NULL;
     }
     condition->sim = sim;

@@ -10,8 +10,8 @@
 #include "control_socket.h"
 
 #define CONTROL_CLIENTS 64u
-#define CONTROL_WAITS 64u        /* of a client at a time */
-#define CONTROL_SUBSCRIPTIONS 16u /* of a client at a time */
+#define CONTROL_WAITS 64u        /* per client */
+#define CONTROL_SUBSCRIPTIONS 16u /* per client */
 #define CONTROL_TRACES 16u       /* at a time */
 
 struct control_call;

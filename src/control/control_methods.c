@@ -62,7 +62,7 @@ static bool set_clocks(const struct control_context *context, const char *text, 
     unsigned first = context->request->line, end = context->request->line_given ? first + 1 : control->lines;
     for (unsigned line = first; line < end; line++) {
         if (control_time_is_moved(control, control->buses[line])) {
-            refuse(refusal, REFUSED_STATE, "the clock is being advanced: change it when that has ended");
+            refuse(refusal, REFUSED_STATE, "a client is advancing the clock: change it when that has ended");
             return false;
         }
     }
@@ -143,14 +143,14 @@ static void explain_denied(const struct control *control, struct refusal *refusa
     if (control->buses[0]->options->no_sandbox || length < tail || strcmp(refusal->text + length - tail, denied) != 0)
         return;
     snprintf(refusal->text + length, sizeof refusal->text - length,
-             "; below other folders than those of its files the emulator reaches what --allow-folder names at its start");
+             "; to use files in other folders, start the emulator with --allow-folder");
 }
 
 bool control_obey(struct control_client *client, const char *line, size_t length)
 {
     struct control *control = client->control;
     struct rpc_request request;
-    struct refusal refusal = {.code = REFUSED_MEMORY, .text = "memory is short"};
+    struct refusal refusal = {.code = REFUSED_MEMORY, .text = "out of memory"};
     struct control_context context = {.client = client, .request = &request};
     json_t *result = NULL;
     bool well = rpc_read(&request, line, length, control->lines, &refusal);

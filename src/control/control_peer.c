@@ -20,7 +20,7 @@ static size_t held(const struct bytes *bytes)
     return bytes->length - bytes->at;
 }
 
-/* Make room for `more` bytes behind those there are. Returns false if memory is short. */
+/* Make room for `more` bytes behind those there are. Returns false if out of memory. */
 static bool make_room(struct bytes *bytes, size_t more)
 {
     if (bytes->room - bytes->length >= more)
@@ -246,7 +246,7 @@ static void look_at_part(struct peer *peer)
         peer->calls->refuse(peer, RPC_NO_REQUEST, TOO_LONG);
         consume(peer, held(&peer->in));
     } else if (peer->leaving && held(&peer->in) > 0) {
-        peer->calls->refuse(peer, RPC_NO_JSON, "the last line has no newline: it was not obeyed");
+        peer->calls->refuse(peer, RPC_NO_JSON, "the last line has no newline: it was ignored");
         consume(peer, held(&peer->in));
     }
 }

@@ -6,7 +6,7 @@
 
 /* ---- Requests ------------------------------------------------------------------------------------------------------- */
 
-/* How deep are lists and objects inside one another? Looked at beforehand: reading them takes stack. */
+/* How deep are nested lists and objects? Looked at beforehand: reading them takes stack. */
 static unsigned depth_of(const char *line, size_t length)
 {
     unsigned depth = 0, deepest = 0;
@@ -33,16 +33,16 @@ static bool parse(struct rpc_request *request, const char *line, size_t length, 
 {
     json_error_t error;
     if (depth_of(line, length) > RPC_DEPTH) {
-        refuse(refusal, RPC_NO_REQUEST, "too deep: expected at most %u lists and objects inside one another", RPC_DEPTH);
+        refuse(refusal, RPC_NO_REQUEST, "too deep: expected at most %u nested lists and objects", RPC_DEPTH);
         return false;
     }
     request->json = json_loadb(line, length, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &error);
     if (request->json)
         return true;
     if (json_error_code(&error) == json_error_out_of_memory)
-        refuse(refusal, REFUSED_MEMORY, "memory is short");
+        refuse(refusal, REFUSED_MEMORY, "out of memory");
     else
-        refuse(refusal, RPC_NO_JSON, "no JSON, at character %d: %.200s", error.column > 0 ? error.column : 1, error.text);
+        refuse(refusal, RPC_NO_JSON, "invalid JSON at character %d: %.200s", error.column > 0 ? error.column : 1, error.text);
     return false;
 }
 
@@ -81,7 +81,7 @@ static bool read_params(struct rpc_request *request, unsigned lines, struct refu
         request->params = json_object();
         if (json_object_set_new(request->json, "params", request->params) != 0) {
             request->params = NULL;
-            refuse(refusal, REFUSED_MEMORY, "memory is short");
+            refuse(refusal, REFUSED_MEMORY, "out of memory");
             return false;
         }
     }
@@ -98,7 +98,7 @@ bool rpc_read(struct rpc_request *request, const char *line, size_t length, unsi
     if (!parse(request, line, length, refusal))
         return false;
     if (!json_is_object(request->json)) {
-        refuse(refusal, RPC_NO_REQUEST, json_is_array(request->json) ? "batches are not taken: expected one object a line"
+        refuse(refusal, RPC_NO_REQUEST, json_is_array(request->json) ? "batches are not supported: expected one object per line"
                                                                      : "expected an object");
         return false;
     }

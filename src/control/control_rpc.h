@@ -9,7 +9,7 @@
 
 #include "command/command.h"
 
-#define RPC_DEPTH 64u /* lists and objects inside one another */
+#define RPC_DEPTH 64u /* nested lists and objects */
 
 /* Codes of JSON-RPC beside those of command.h. */
 enum rpc_code { RPC_NO_JSON = -32700, RPC_NO_REQUEST = -32600 };

@@ -52,7 +52,7 @@ static bool clear_stale(const struct control_socket *control, const struct socka
     if (sscanf(record, RECORD, &pid, &device, &inode) == 3 && is_socket(control->path, device, inode) && is_dead(address) &&
         unlink(control->path) == 0)
         return true;
-    log_error("%s is there already and is not a control socket that an emulator left behind: remove it, or choose another "
+    log_error("%s exists and is not the control socket of an emulator: remove it, or choose another "
               "--control", control->path);
     return false;
 }
@@ -65,10 +65,10 @@ static bool claim(struct control_socket *control, const struct sockaddr_un *addr
     control->lock = lock_file_take(control->lock_path, record);
     if (control->lock < 0) {
         if (errno == EWOULDBLOCK)
-            log_error("another emulator (%s) holds the control socket %s: end it, or choose another --control",
+            log_error("another emulator (%s) uses the control socket %s: end it, or choose another --control",
                       record[0] ? record : "about to start", control->path);
         else
-            log_error("cannot lock %s: %s; choose a --control in a folder that is there and that you may write to",
+            log_error("cannot lock %s: %s; choose a --control in an existing folder that you can write to",
                       control->lock_path, lock_file_reason(errno));
         return false;
     }
@@ -123,8 +123,8 @@ bool control_socket_open(struct control_socket *control, const char *path)
     if (well)
         well = make(control, &address);
     else
-        log_error("--control: cannot use %.100s: expected the path of a socket, its name (behind the last /) at most %u "
-                  "characters long, in a folder that is there", path[0] ? path : "an empty path", SOCKET_NAME_SURE);
+        log_error("--control: cannot use %.100s: expected the path of a socket, its name (after the last /) at most %u "
+                  "characters long, in an existing folder", path[0] ? path : "an empty path", SOCKET_NAME_SURE);
     if (folder >= 0)
         close(folder);
     return well;

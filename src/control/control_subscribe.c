@@ -59,7 +59,7 @@ static bool read_kinds(const json_t *kinds, uint32_t *chosen, struct refusal *re
             for (unsigned k = 0; k < WATCH_KINDS; k++)
                 snprintf(list + strlen(list), sizeof list - strlen(list), k > 0 ? ", %s" : "%s",
                          watch_kind_name((enum watch_kind)k));
-            refuse(refusal, REFUSED_PARAMS, "kinds: `%.40s' is none: expected some of %s",
+            refuse(refusal, REFUSED_PARAMS, "kinds: unknown event kind `%.40s'; kinds are: %s",
                    json_is_string(kind) ? json_string_value(kind) : "?", list);
             return false;
         }
@@ -125,7 +125,7 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     for (const struct subscription *other = client->subscriptions; other; other = other->next)
         count++;
     if (count == CONTROL_SUBSCRIPTIONS)
-        return refuse(refusal, REFUSED_STATE, "too many subscriptions: expected at most %u of a client at a time",
+        return refuse(refusal, REFUSED_STATE, "too many subscriptions: expected at most %u per client",
                       CONTROL_SUBSCRIPTIONS);
     struct subscription *subscription = malloc(sizeof *subscription);
     if (!subscription)

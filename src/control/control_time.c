@@ -169,7 +169,7 @@ json_t *control_wait(struct control_context *context, struct refusal *refusal)
         (json_object_get(params, "limit") && !param_time(params, "limit", 0, &limit, refusal)))
         return NULL;
     if (context->client->waits == CONTROL_WAITS)
-        return refuse(refusal, REFUSED_STATE, "too many waits: expected at most %u of a client at a time", CONTROL_WAITS);
+        return refuse(refusal, REFUSED_STATE, "too many waits: expected at most %u per client", CONTROL_WAITS);
     struct condition *condition = read_until(context, refusal);
     struct control_call *call = condition ? new_call(context, condition, limit, false) : NULL;
     if (!call) {
@@ -214,7 +214,7 @@ json_t *control_advance(struct control_context *context, struct refusal *refusal
     struct condition *condition = NULL;
     uint64_t ticks;
     if (!bus_is_stepped(context->bus))
-        return refuse(refusal, REFUSED_STATE, "the clock goes by itself (%s): set it to stepped with clock, or wait",
+        return refuse(refusal, REFUSED_STATE, "the clock runs by itself (%s): set it to stepped with clock, or use wait",
                       context->bus->time.clock_text);
     context->again = control_time_is_moved(context->client->control, context->bus);
     if (context->again || !read_advance(context, &condition, &ticks, refusal))

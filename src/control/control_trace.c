@@ -105,7 +105,7 @@ static struct control_trace *find(struct control *control, const json_t *params,
         return found;
     if (number != 0)
         return refuse(refusal, REFUSED_PARAMS, "trace: there is no trace %lld", (long long)number), NULL;
-    return refuse(refusal, REFUSED_PARAMS, count == 0 ? "there is no trace" : "trace: missing: there are several"), NULL;
+    return refuse(refusal, REFUSED_PARAMS, count == 0 ? "there is no trace" : "trace: missing: several traces are running"), NULL;
 }
 
 json_t *control_trace_stop(struct control_context *context, struct refusal *refusal)

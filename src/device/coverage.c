@@ -166,7 +166,7 @@ static void add_commands(struct coverage *coverage)
 
 void coverage_begin(struct coverage *coverage, const struct rkm04_readings *readings)
 {
-    static const char *const meaning[FLAGS] = {"all right", "bad value", "unknown command", "memory overflowed"};
+    static const char *const meaning[FLAGS] = {"ok", "bad value", "unknown command", "memory overflowed"};
     coverage->items = 0;
     add_messages(coverage);
     for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)

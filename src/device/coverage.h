@@ -75,7 +75,7 @@ const char *coverage_group_name(enum coverage_group group);
 void coverage_print(const struct coverage *coverage, FILE *out);
 
 /* The report as an object: covered, total, percent, and groups, a list of {group, covered, total, items}; items is a list of
- * {name, count}. Returns a new reference, or NULL if memory is short. */
+ * {name, count}. Returns a new reference, or NULL if out of memory. */
 json_t *coverage_json(const struct coverage *coverage);
 
 /* The files of a report. */

@@ -150,7 +150,7 @@ struct device_kind {
     const char *(*fault_name)(unsigned fault);
     const char *(*led_name)(unsigned led);
 
-    /* JSON (docs/CONTROL.md, `state`), new references, NULL if memory is short. state: {t_us, motors: [{motor, position, state,
+    /* JSON (docs/CONTROL.md, `state`), new references, NULL if out of memory. state: {t_us, motors: [{motor, position, state,
      * index, led, fault}], di, do, var}. describe: that, `true_position` null for each axis, `node`, and what else there is. */
     json_t *(*state)(const struct device_unit *unit, uint64_t t_us);
     json_t *(*describe)(const struct device_unit *unit, uint64_t t_us);

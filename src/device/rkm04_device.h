@@ -30,7 +30,7 @@ json_t *rkm04_json_state(const struct rkm04_unit *unit, uint64_t tick);
 json_t *rkm04_json_describe(const struct rkm04_unit *unit, uint64_t tick);
 
 /* What motor 1..4 of `unit` waits for, in words. Returns a new reference: a string, or JSON null if it waits for nothing; NULL:
- * memory is short. */
+ * out of memory. */
 json_t *rkm04_waits_json(const struct rkm04_unit *unit, unsigned motor);
 
 /* The label 1..80 that a jump or call of a motor waits for (C7); 0: it does not. */

@@ -58,12 +58,12 @@ static json_t *held(const struct rkm04_unit *unit, const struct rkm04_motor *mot
 {
     const char *others = unit->config.readings.hold_exit == RKM04_HOLD_EXIT_LATCH ? "" : ", or new commands";
     if (motor->held == RKM04_MOVING)
-        return json_sprintf("C75 to go on with the motion (%" PRIu32 " steps done)%s", motor->motion.done, others);
+        return json_sprintf("C75 to resume the motion (%" PRIu32 " steps done)%s", motor->motion.done, others);
     if (motor->held == RKM04_DWELL)
-        return json_sprintf("C75 to go on with the %s (%" PRIu64 " ms left)%s",
+        return json_sprintf("C75 to resume the %s (%" PRIu64 " ms left)%s",
                             motor->command.op == 'W' ? "dwell" : "planning of its motion",
                             (motor->due + TICKS_PER_MS - 1) / TICKS_PER_MS, others);
-    return json_sprintf("C75 to go on%s", others);
+    return json_sprintf("C75 to resume%s", others);
 }
 
 /* O, Z, or a jump or call whose label has not arrived. */

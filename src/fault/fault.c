@@ -123,7 +123,7 @@ static void report_begin(const struct faults *faults, const struct fault *fault)
     else if (fault->kind == FAULT_CABLE)
         fault_report(faults, fault, fault->unit, fault->unit > 0 ? "the cable of the unit is cut" : "the cable is cut");
     else
-        fault_report(faults, fault, 0, fault->kind == FAULT_BREAK ? "the line is held at 0" : "the adapter is unplugged");
+        fault_report(faults, fault, 0, fault->kind == FAULT_BREAK ? "the bus is held at 0" : "the adapter is unplugged");
 }
 
 /* Begin and end the spells of a fault that are due by now. */

@@ -36,7 +36,7 @@ static bool is_done(struct faults *faults, unsigned unit, enum fault_operation o
         uint64_t now = segment_now(faults->segment);
         fault->ends = fault->ticks < RKM04_NEVER - now ? now + fault->ticks : RKM04_NEVER;
         faults->dying |= UINT32_C(1) << unit;
-        fault_report(faults, fault, unit, "the power goes during %s of block %u", name_of(operation), block);
+        fault_report(faults, fault, unit, "power is lost during %s of block %u", name_of(operation), block);
         tear(faults, unit, block, offset, data, length);
         return false;
     }

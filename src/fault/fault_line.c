@@ -13,10 +13,10 @@ struct name {
     char text[16];
 };
 
-/* "the master", "unit 3". */
+/* "the host", "unit 3". */
 static struct name name_of(const struct faults *faults, unsigned station)
 {
-    struct name name = {"the master"};
+    struct name name = {"the host"};
     if (station > 0)
         snprintf(name.text, sizeof name.text, "unit %s", faults->calls->unit_name(faults->context, station));
     return name;
@@ -108,7 +108,7 @@ static size_t on_send(void *context, unsigned station, uint8_t byte, uint8_t *by
     if (!is_connected(faults, station))
         return 0;
     if ((fault = fault_apply(faults, FAULT_DROP, station, direction, 0))) {
-        fault_report(faults, fault, station, "%02X of %s is lost", byte, name_of(faults, station).text);
+        fault_report(faults, fault, station, "%02X of %s is dropped", byte, name_of(faults, station).text);
         return 0;
     }
     if ((fault = fault_apply(faults, FAULT_FLIP, station, direction, 0))) {
@@ -142,7 +142,7 @@ static bool on_echoes(void *context, uint8_t byte)
     struct faults *faults = context;
     const struct fault *fault = fault_apply(faults, FAULT_ECHO, 0, 0, 0);
     if (fault)
-        fault_report(faults, fault, 0, "the master hears its own %02X", byte);
+        fault_report(faults, fault, 0, "the host receives its own %02X", byte);
     return fault != NULL;
 }
 

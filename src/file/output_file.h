@@ -19,7 +19,7 @@ enum output_flag {
 
 /* Open `path` for writing from its beginning, making it if it is not there. To be called when all inputs are read and valid.
  * `flags`: of enum output_flag. The stream is to be closed by output_file_close().
- * Returns NULL if it did not work; *why is the reason for a message then, to be freed, NULL if memory is short. */
+ * Returns NULL if it did not work; *why is the reason for a message then, to be freed, NULL if out of memory. */
 FILE *output_file_open(const char *path, const struct output_kind *kind, unsigned flags, char **why);
 
 /* Drop what is in a file opened with OUTPUT_KEEP. Returns false if it did not work; errno says why. */
@@ -36,7 +36,7 @@ bool output_file_replace(const char *path, const struct output_kind *kind, unsig
                          bool (*write)(void *context, FILE *out), void *context, char **why);
 
 /* Never write to this file from now on. `path`: "-" for standard input. What is not there and what is no regular file does not
- * count. Returns false if memory is short. */
+ * count. Returns false if out of memory. */
 bool output_file_spare(const char *path);
 
 /* The regular file open at `fd` is written by its owner: as output_file_open() without the kind. output_file_release() comes

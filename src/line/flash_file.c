@@ -45,7 +45,7 @@ static bool make_image(struct flash_file *flash)
     bool full = written >= 0 && written < (ssize_t)sizeof bytes;
     log_error("cannot write the flash image %s: %s", flash->path, full ? "the disk is full" : strerror(errno));
     if (ftruncate(flash->fd, 0) != 0)
-        log_error("%s is not whole: remove it", flash->path);
+        log_error("%s is incomplete: remove it", flash->path);
     return false;
 }
 
@@ -76,7 +76,7 @@ static bool check_image(struct flash_file *flash)
     struct stat found;
     char *why;
     if (fstat(flash->fd, &found) != 0 || !S_ISREG(found.st_mode)) {
-        log_error("--flash: %s is not a file: expected a flash image of %d bytes, or a name that is free", flash->path,
+        log_error("--flash: %s is not a file: expected a flash image of %d bytes, or a new name", flash->path,
                   FLASH_FILE_SIZE);
         return false;
     }
@@ -94,7 +94,7 @@ static bool check_image(struct flash_file *flash)
         return make_image(flash);
     if (found.st_size == FLASH_FILE_SIZE)
         return settle(flash);
-    log_error("--flash: %s has %lld bytes and is no flash image: expected %d bytes, or a name that is free", flash->path,
+    log_error("--flash: %s has %lld bytes and is no flash image: expected %d bytes, or a new name", flash->path,
               (long long)found.st_size, FLASH_FILE_SIZE);
     return false;
 }

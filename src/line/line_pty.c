@@ -73,11 +73,11 @@ bool line_watch_open(struct line_watch *watch)
         return true;
     int why = errno;
     if (watch->fd >= 0 && begin_to_look(watch)) {
-        log_error("no inotify: %s (fs.inotify.max_user_instances?); looking every %d ms who uses the line", strerror(why),
+        log_error("cannot use inotify: %s (fs.inotify.max_user_instances?); checking every %d ms for clients", strerror(why),
                   LOOK_MS);
         return true;
     }
-    log_error("cannot watch who opens the line: %s", strerror(errno));
+    log_error("cannot watch for clients of the bus: %s", strerror(errno));
     return false;
 }
 
@@ -103,7 +103,7 @@ static bool begin_to_watch(struct line_watch *watch, struct line *line)
     if (watch->notices >= 0)
         line->mark = inotify_add_watch(watch->notices, line->path, IN_OPEN | IN_CLOSE);
     if (line->mark < 0 && watch->notices >= 0 && watch->timer < 0)
-        log_error("inotify does not watch %s: %s; looking every %d ms who uses the line", line->path,
+        log_error("inotify cannot watch %s: %s; checking every %d ms for clients", line->path,
                   errno == ENOSPC ? "too many watches in use (fs.inotify.max_user_watches)" : strerror(errno), LOOK_MS);
     return line->mark >= 0 || begin_to_look(watch);
 }

@@ -54,8 +54,8 @@ static bool set_rts(struct line *line, const char *path, enum line_rts rts)
         return line->toggles;
     }
     if (line->is_wire && !set_driver(line))
-        log_at(0, "the driver of %s has no RS485 mode: its adapter has to turn the line round; if it wants RTS for that, give "
-                  "--rts toggles", path);
+        log_at(0, "the driver of %s has no RS485 mode: the adapter has to switch between sending and receiving; if it needs "
+                  "RTS for that, give --rts toggles", path);
     return true;
 }
 
@@ -93,7 +93,7 @@ bool line_serial_open(struct line *line, const char *path, enum line_rts rts)
         return false;
     }
     if (isatty(fd) && flock(fd, LOCK_EX | LOCK_NB) != 0) {
-        log_error("%s is in use by another program: end that one, or choose another --port", path);
+        log_error("%s is in use by another program: end that program, or choose another --port", path);
         close(fd);
         return false;
     }

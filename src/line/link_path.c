@@ -46,7 +46,7 @@ static bool default_folder(char folder[PATH_MAX])
     if (private_folder(folder))
         return true;
     log_error("cannot use the folder %s: %s; give --link PATH or --control PATH", folder,
-              errno == EPERM ? "it is not a folder of yours" : strerror(errno));
+              errno == EPERM ? "it is not a folder that you own" : strerror(errno));
     return false;
 }
 
@@ -90,7 +90,7 @@ static bool clear_stale(const struct link_path *link, const char *target)
         return true;
     if (target[0] && leads_to(link->path, target) && unlink(link->path) == 0)
         return true;
-    log_error("%s is there already and is not a link that an emulator left behind: remove it, or choose another --link",
+    log_error("%s exists and is not the link of an emulator: remove it, or choose another --link",
               link->path);
     return false;
 }
@@ -113,10 +113,10 @@ bool link_path_claim(struct link_path *link, const char *path, unsigned number)
     link->lock = lock_file_take(link->lock_path, record);
     if (link->lock < 0) {
         if (errno == EWOULDBLOCK)
-            log_error("another emulator (%s) holds the link %s: end it, or choose another --link",
+            log_error("another emulator (%s) uses the link %s: end it, or choose another --link",
                       record[0] ? record : "about to start", link->path);
         else
-            log_error("cannot lock %s: %s; choose a --link in a folder that is there and that you may write to",
+            log_error("cannot lock %s: %s; choose a --link in an existing folder that you can write to",
                       link->lock_path, lock_file_reason(errno));
         return false;
     }

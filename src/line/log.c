@@ -60,7 +60,7 @@ static size_t next_piece(char *lines)
     size_t length = take_lines(lines);
     if (length == 0) {
         length = (size_t)snprintf(lines, LINE_SIZE, "rkm04 serve: %" PRIu64
-                                  " lines of the log were dropped here: nobody read it\n", queue.dropped);
+                                  " lines of the log were dropped here: nothing read them\n", queue.dropped);
         queue.dropped = 0;
     }
     queue.writing = true;

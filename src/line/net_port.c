@@ -408,7 +408,7 @@ static void attach(struct net_port *port, struct net_peer *peer)
 static void refuse(struct net_port *port, struct net_peer *peer, const char *owner)
 {
     peer->state = PEER_REFUSED;
-    int length = snprintf((char *)peer->wire, NET_WIRE, "rkm04: refused: the line is in use by %.200s\r\n", owner);
+    int length = snprintf((char *)peer->wire, NET_WIRE, "rkm04: refused: the bus is in use by %.200s\r\n", owner);
     uv_buf_t text = uv_buf_init((char *)peer->wire, (unsigned)length);
     if (uv_try_write((uv_stream_t *)&peer->tcp, &text, 1) != length ||
         uv_shutdown(&peer->shutdown, (uv_stream_t *)&peer->tcp, NULL) != 0 ||

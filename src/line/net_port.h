@@ -28,7 +28,7 @@ enum net_kind {
 };
 
 enum net_news {
-    NET_DETACHED, /* the client has closed the line */
+    NET_DETACHED, /* the client has closed the bus */
     NET_ATTACHED, /* a client has opened it */
     NET_REFUSED   /* a further client came and was sent away */
 };

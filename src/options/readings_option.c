@@ -19,7 +19,7 @@ void readings_option_latency(struct rkm04_readings *readings, readings_set *name
 {
     char error[READINGS_ERROR_SIZE], *pair = NULL;
     if (asprintf(&pair, "speed-change=%s", text) < 0)
-        argp_failure(state, 1, 0, "memory is short");
+        argp_failure(state, 1, 0, "out of memory");
     else if (strchr(text, ',') != NULL || !readings_read(readings, named, pair, error))
         argp_error(state, "--speed-change-latency: %s", strchr(text, ',') != NULL ? "expected whole ms from 0 to 2000" : error);
     free(pair);

@@ -90,10 +90,10 @@ bool plant_place(struct plant *plant, uint64_t tick, unsigned motor, int64_t pos
 bool plant_jam(struct plant *plant, unsigned motor, bool jammed);
 bool plant_take_lead(struct plant *plant, unsigned motor, bool missing);
 
-/* The plant as it stands, for `state` and plant.get. New reference; NULL: memory is short. No plant (NULL): null. */
+/* The plant as it stands, for `state` and plant.get. New reference; NULL: out of memory. No plant (NULL): null. */
 json_t *plant_json(const struct plant *plant);
 
-/* A copy with all times `shift` ticks later, for snapshots. NULL: memory is short. */
+/* A copy with all times `shift` ticks later, for snapshots. NULL: out of memory. */
 struct plant *plant_copy(const struct plant *plant, uint64_t shift);
 
 #endif

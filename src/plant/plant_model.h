@@ -90,7 +90,7 @@ struct plant {
 /* Set a switch to where its motor stands, without bouncing. */
 void plant_switch_begin(const struct plant *plant, struct plant_switch *contact);
 
-/* A new plant without motors. NULL: memory is short. */
+/* A new plant without motors. NULL: out of memory. */
 struct plant *plant_new(void);
 
 /* All inputs as its switches have them. */

@@ -214,7 +214,7 @@ static bool read_hysteresis(const struct config_node *node, const struct plant_m
         return config_error(node, "expected a hysteresis of 0 or more steps");
     int64_t width = motor->turn > 0 ? (to->high - to->low + motor->turn) % motor->turn + 1 : 0;
     return motor->turn == 0 || width + 2 * to->hysteresis < motor->turn ||
-           config_error(node, "expected a switch that lets go again: with its hysteresis it is actuated all around");
+           config_error(node, "expected a smaller hysteresis: with this one the switch is always actuated");
 }
 
 static bool read_switch(const struct config_node *node, const struct plant_device *device, const struct plant *plant,
@@ -235,7 +235,7 @@ static bool read_switch(const struct config_node *node, const struct plant_devic
     to->input = (uint8_t)in;
     to->motor = (uint8_t)number;
     if (!read_zone(node, moves, to) || !read_hysteresis(node, moves, to) ||
-        !read_time(node, "bounce", "the time that it bounces", &to->bounce) ||
+        !read_time(node, "bounce", "the bounce time", &to->bounce) ||
         !read_flag(node, "normally_closed", "whether it opens when it is actuated", &to->normally_closed))
         return false;
     return to->bounce <= BOUNCE_MAX || config_error(node, "expected a switch that bounces for at most 1s");
@@ -281,7 +281,7 @@ struct plant *plant_read(const struct config_node *node, const struct plant_devi
         return NULL;
     plant = plant_new();
     if (!plant) {
-        config_error(node, "memory is short");
+        config_error(node, "out of memory");
         return NULL;
     }
     plant->now = now;

@@ -255,9 +255,10 @@ bool journal_turn(struct journal *journal, struct journal_page *page, const char
 const char *journal_gap(const struct journal *journal)
 {
     if (journal->too_long)
-        return "more has come in since power-up than a snapshot file may hold (16 MiB): take a named snapshot instead, or "
+        return "a snapshot file holds at most 16 MiB of inputs since power-up: take a named snapshot instead, or "
                "restore an earlier one first";
-    return journal->page ? NULL : "memory was short when the past was to be kept: restore a snapshot from a file, or begin anew";
+    return journal->page ? NULL : "the inputs since power-up could not be kept (out of memory): restore a snapshot from a file, "
+                                  "or restart";
 }
 
 static bool write_pages(const struct journal_page *last, FILE *out)

@@ -12,7 +12,7 @@
 struct record;
 
 /* Begin to take down what comes in and goes out, on `out`, which stays the caller's. To be called at tick 0, when the plant is
- * there and before anything has come in. Every line is flushed as it is written. Returns NULL if memory is short or a flash image
+ * there and before anything has come in. Every line is flushed as it is written. Returns NULL if out of memory or a flash image
  * cannot be read. */
 struct record *record_begin(struct sim *sim, FILE *out);
 
@@ -37,7 +37,7 @@ enum replay_end {
 struct replay_difference {
     unsigned unit, motor; /* 0: see `what`; the unit */
     char name[NODE_NAME_SIZE]; /* of the unit */
-    const char *what;     /* "the master": bytes that reach it, "the wires", "the control", "unit", "motor" */
+    const char *what;     /* "the host": bytes that reach it, "the wires", "the control", "unit", "motor" */
     uint64_t from, until; /* ticks: where it may lie, both included */
     char recorded[200], came[200];
 };
@@ -50,7 +50,7 @@ struct replay_counts {
     bool whole;                   /* the record has been brought to its end */
 };
 
-/* Read the head of a record and power up a sim like the one recorded. NULL: memory is short; otherwise replay_sim() is NULL if
+/* Read the head of a record and power up a sim like the one recorded. NULL: out of memory; otherwise replay_sim() is NULL if
  * the file is wrong. `name` is for messages; it and `in` must stay until replay_free(). */
 struct replay *replay_open(const char *name, FILE *in);
 struct sim *replay_sim(struct replay *replay);

@@ -21,7 +21,7 @@ void record_line_purge(FILE *out, uint64_t now);
 void record_line_break(FILE *out, uint64_t now, bool on);
 void record_line_timed(FILE *out, uint64_t now, bool timed);
 
-/* A command that was obeyed. Returns false if memory is short. */
+/* A command that was obeyed. Returns false if out of memory. */
 bool record_line_command(FILE *out, uint64_t now, const char *method, const json_t *params);
 
 /* "hex":"…" without the name. */

@@ -143,7 +143,7 @@ static bool do_embedded(struct replay *replay)
         !replay_number(replay, "embedded", 1, RECORD_EMBEDDED_MAX, RKM04_NEVER, &lines))
         return false;
     if (replay->depth == REPLAY_DEPTH_MAX)
-        return replay_wrong(replay, "embedded", "expected no more than %u records within one another", REPLAY_DEPTH_MAX);
+        return replay_wrong(replay, "embedded", "expected at most %u nested recordings", REPLAY_DEPTH_MAX);
     return replay_read_embedded(replay, lines);
 }
 
@@ -152,7 +152,7 @@ static bool refused(struct replay *replay, const char *method, const struct refu
     struct replay_difference difference = {.what = "the control", .from = sim_now(replay->sim), .until = sim_now(replay->sim)};
     if (refusal->code == REFUSED_MEMORY)
         return replay_no_memory(replay);
-    snprintf(difference.recorded, sizeof difference.recorded, "that `%.60s' was obeyed", method);
+    snprintf(difference.recorded, sizeof difference.recorded, "success of `%.60s'", method);
     snprintf(difference.came, sizeof difference.came, "a refusal: %.170s", refusal->text);
     return replay_differs(replay, &difference);
 }
@@ -161,7 +161,7 @@ static bool refused(struct replay *replay, const char *method, const struct refu
 static json_t *restore_embedded(struct replay *replay, struct refusal *refusal)
 {
     if (!replay->inner)
-        replay->inner = restore_open(replay->sim, "the embedded record", replay->embedded, replay->embedded_length,
+        replay->inner = restore_open(replay->sim, "the embedded recording", replay->embedded, replay->embedded_length,
                                      replay->depth + 1u, refusal);
     if (!replay->inner)
         return NULL;
@@ -243,7 +243,7 @@ static bool do_outputs(struct replay *replay)
 
 static bool wants_outputs(struct replay *replay, const char *key)
 {
-    return replay->outputs || replay_wrong(replay, key, "expected none of what went out: the record says that there is none");
+    return replay->outputs || replay_wrong(replay, key, "expected no outputs: the recording says that it has none");
 }
 
 static bool do_out(struct replay *replay)
@@ -398,7 +398,7 @@ enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *cont
     if (!replay->ended) {
         replay->end = REPLAY_SAME;
         if (!replay->counts.whole && replay->note[0] == '\0')
-            snprintf(replay->note, sizeof replay->note, "there is no \"end\": what recorded it was killed, or is still at work");
+            snprintf(replay->note, sizeof replay->note, "no \"end\" line: the recording process was killed or is still running");
     }
     replay->ended = true;
     if (replay->end == REPLAY_SAME)

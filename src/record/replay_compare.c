@@ -10,7 +10,7 @@
 
 /* ---- What goes out, kept until the record comes to it ----------------------------------------------------------------- */
 
-/* Make room for one more item behind `count`, after what has been compared (`at`) is dropped. Returns NULL: memory is short. */
+/* Make room for one more item behind `count`, after what has been compared (`at`) is dropped. Returns NULL: out of memory. */
 static void *room_for(void *list, size_t *at, size_t *count, size_t *room, size_t size)
 {
     if (*at == *count)
@@ -162,7 +162,7 @@ static bool more_bytes(struct replay *replay, uint64_t tick)
 {
     const struct tally_byte *first = &replay->bytes[replay->bytes_at];
     struct replay_difference difference = {
-        .what = "the master",
+        .what = "the host",
         .from = first->tick,
         .until = first->tick,
         .recorded = "nothing",
@@ -194,7 +194,7 @@ bool replay_compare_bytes(struct replay *replay, uint64_t from, uint64_t until, 
                     (i > 0 || replay->bytes[at].tick == from) && (i + 1u < length || replay->bytes[at].tick == until);
         if (same)
             continue;
-        struct replay_difference difference = {.what = "the master", .from = from, .until = until};
+        struct replay_difference difference = {.what = "the host", .from = from, .until = until};
         bool late = at < replay->bytes_count && replay->bytes[at].byte == bytes[i];
         snprintf(difference.recorded, sizeof difference.recorded, "as byte %zu of ", i + 1u);
         size_t used = strlen(difference.recorded);

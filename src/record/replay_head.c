@@ -135,9 +135,9 @@ static bool read_head(struct replay *replay, struct sim_config *config, char **p
                                        "plant_hex", "outputs", NULL};
     uint64_t version;
     if (!replay_next_line(replay))
-        return replay->ended || replay_wrong(replay, NULL, "expected a record, which begins with {\"rkm04_record\":1,");
+        return replay->ended || replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
     if (!json_object_get(replay->json, "rkm04_record"))
-        return replay_wrong(replay, NULL, "expected a record, which begins with {\"rkm04_record\":1,");
+        return replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
     if (!replay_number(replay, "rkm04_record", RECORD_VERSION, RECORD_VERSION, RKM04_NEVER, &version) ||
         !replay_keys(replay, keys) || !replay_text_of(replay, "program", TEXT_MAX, &replay->program) ||
         !read_settings(replay, config))

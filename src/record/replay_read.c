@@ -108,7 +108,7 @@ static bool read_line(struct replay *replay)
     replay->counts.lines++;
     while ((c = getc_unlocked(replay->in)) != EOF && c != '\n') {
         if (replay->length == RECORD_LINE_MAX)
-            return wrong_at(replay, RECORD_LINE_MAX, "expected the end of the line: it may have %u bytes", RECORD_LINE_MAX);
+            return wrong_at(replay, RECORD_LINE_MAX, "expected a line of at most %u bytes", RECORD_LINE_MAX);
         if (!make_room(replay))
             return false;
         replay->line[replay->length++] = (char)c;
@@ -116,9 +116,10 @@ static bool read_line(struct replay *replay)
     if (c == '\n')
         return true;
     if (ferror(replay->in))
-        return wrong_at(replay, replay->length + 1u, "cannot read on");
+        return wrong_at(replay, replay->length + 1u, "cannot continue reading");
     if (replay->length > 0)
-        snprintf(replay->note, sizeof replay->note, "line %" PRIu64 ", the last one, is incomplete: all before it was replayed",
+        snprintf(replay->note, sizeof replay->note, "line %" PRIu64 ", the last one, is incomplete: the lines before it were "
+                     "replayed",
                  replay->counts.lines);
     replay->counts.lines--;
     return false;
@@ -148,7 +149,7 @@ static bool append_line(struct replay *replay, char **text, size_t *length, size
 {
     size_t more = replay->length + 1u;
     if (more > RECORD_EMBEDDED_MAX - *length)
-        return wrong_at(replay, 1, "expected the end of the embedded file: it may have %u bytes", RECORD_EMBEDDED_MAX);
+        return wrong_at(replay, 1, "expected an embedded file of at most %u bytes", RECORD_EMBEDDED_MAX);
     if (more > *room - *length) {
         char *grown = realloc(*text, 2 * *room + more);
         if (!grown)
@@ -170,7 +171,8 @@ bool replay_read_embedded(struct replay *replay, uint64_t lines)
         if (read_line(replay) && append_line(replay, &text, &length, &room))
             continue;
         if (!replay->ended)
-            snprintf(replay->note, sizeof replay->note, "the embedded file at its end is incomplete: all before it was replayed");
+            snprintf(replay->note, sizeof replay->note, "the embedded file at the end is incomplete: the lines before it were "
+                 "replayed");
         free(text);
         return false;
     }
@@ -276,7 +278,7 @@ bool replay_keys(struct replay *replay, const char *const *names)
         while (names[i] && strcmp(names[i], key) != 0)
             i++;
         if (!names[i])
-            return replay_wrong(replay, key, "\"%.60s\" has no place in this line: expected %s", key, list);
+            return replay_wrong(replay, key, "unexpected \"%.60s\" in this line: expected %s", key, list);
     }
     return true;
 }

@@ -51,7 +51,7 @@ static bool fits(const struct restore *restore, struct refusal *refusal)
     if (!recorded)
         refuse(refusal, REFUSED_STATE, "file: %s", replay_text(restore->replay));
     else if (unlike)
-        refuse(refusal, REFUSED_STATE, "the snapshot is of another line: %s is different", unlike);
+        refuse(refusal, REFUSED_STATE, "the snapshot does not fit this bus: %s is different", unlike);
     return recorded && !unlike;
 }
 
@@ -59,7 +59,7 @@ struct restore *restore_open(struct sim *sim, const char *name, const char *text
                              struct refusal *refusal)
 {
     if (length == 0) {
-        refuse(refusal, REFUSED_STATE, "%.160s is empty: expected a record", name);
+        refuse(refusal, REFUSED_STATE, "%.160s is empty: expected a recording", name);
         return NULL;
     }
     struct restore *restore = calloc(1, sizeof *restore);
@@ -111,8 +111,9 @@ static json_t *put(const struct restore *restore, struct refusal *refusal)
 {
     struct sim_snapshots *store = snapshots_of(restore->sim);
     if (restore->late)
-        return refuse(refusal, REFUSED_STATE, "file: after %" PRIu64 ".%03" PRIu64 " s of real time its replay is at %" PRIu64
-                      " us only: give it a longer timeout", restore->timeout / SECOND, restore->timeout % SECOND / 1000u,
+        return refuse(refusal, REFUSED_STATE, "file: after %" PRIu64 ".%03" PRIu64 " s of real time the replay has only "
+                      "reached %" PRIu64 " us: give a longer timeout",
+                      restore->timeout / SECOND, restore->timeout % SECOND / 1000u,
                       sim_now(replay_sim(restore->replay)));
     if (restore->end != REPLAY_SAME && restore->end != REPLAY_NO_MEMORY)
         return refuse(refusal, REFUSED_STATE, "file: %s", replay_text(restore->replay));
@@ -137,7 +138,7 @@ static bool read_file(struct restore *restore, struct refusal *refusal)
     struct stat status;
     const char *path = restore->name;
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
-        refuse(refusal, REFUSED_STATE, "file: %.160s is no regular file: expected one written by `snapshot', or a record", path);
+        refuse(refusal, REFUSED_STATE, "file: %.160s is not a regular file: expected a recording or a snapshot", path);
         return false;
     }
     FILE *in = fopen(path, "re");

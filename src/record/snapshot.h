@@ -11,15 +11,15 @@
 
 struct snapshot;
 
-/* Returns NULL if memory is short, or a flash image cannot be read. */
+/* Returns NULL if out of memory, or a flash image cannot be read. */
 struct snapshot *snapshot_take(struct sim *sim);
 
-/* Make `sim` as it was. It must be like the one it was taken of (snapshot_misfit()). Returns false if memory is short or a flash
+/* Make `sim` as it was. It must be like the one it was taken of (snapshot_misfit()). Returns false if out of memory or a flash
  * image cannot be written: then nothing is changed but what flash shows. */
 bool snapshot_put(struct sim *sim, const struct snapshot *snapshot);
 
 /* Move everything that has a time along by `ticks`: the line's time leaps ahead, and nothing happens meanwhile. Returns false if
- * memory is short. */
+ * out of memory. */
 bool snapshot_move(struct sim *sim, uint64_t ticks);
 
 /* In what is `sim` unlike another, but for what a command may change: "the framing", …; NULL: in nothing that matters. */
@@ -65,7 +65,7 @@ void restore_cancel(struct restore *restore);
 bool snapshots_attach(struct sim *sim);
 
 /* Keep in memory all that comes in, so that commands can write snapshots to files. To be called at tick 0, when the plant is
- * there and before anything has come in. Returns false if memory is short. */
+ * there and before anything has come in. Returns false if out of memory. */
 bool snapshots_keep_journal(struct sim *sim);
 
 #endif

@@ -87,7 +87,7 @@ static json_t *take_named(struct sim_snapshots *store, const char *name, struct 
 {
     struct named_snapshot *named = find(store, name), made = {0};
     if (!named && store->count == SNAPSHOTS_MAX)
-        return refuse(refusal, REFUSED_STATE, "there are %u snapshots already: use one of their names again", SNAPSHOTS_MAX);
+        return refuse(refusal, REFUSED_STATE, "too many snapshots (%u): replace one by using its name", SNAPSHOTS_MAX);
     made.name = strdup(name);
     made.snapshot = snapshot_take(store->sim);
     if (!made.name || !made.snapshot) {
@@ -111,7 +111,7 @@ static bool write_journal(void *context, FILE *out)
 
 static json_t *write_file(struct sim_snapshots *store, const char *path, bool force, struct refusal *refusal)
 {
-    const char *gap = store->journal ? journal_gap(store->journal) : "what has come in was not kept: use `name'";
+    const char *gap = store->journal ? journal_gap(store->journal) : "the inputs since power-up were not kept: use `name'";
     unsigned flags = OUTPUT_REQUESTED | (force ? OUTPUT_FORCE : 0u);
     char *why;
     if (gap)
@@ -150,7 +150,7 @@ json_t *snapshots_put(struct sim_snapshots *store, const struct snapshot *snapsh
 {
     const char *misfit = snapshot_misfit(store->sim, snapshot);
     if (misfit)
-        return refuse(refusal, REFUSED_STATE, "the snapshot is of another line: %s is different", misfit);
+        return refuse(refusal, REFUSED_STATE, "the snapshot does not fit this bus: %s is different", misfit);
     if (!snapshot_put(store->sim, snapshot))
         return refuse(refusal, REFUSED_MEMORY, "out of memory, or the flash image of a unit cannot be written");
     uint64_t now = sim_now(store->sim), taken = snapshot_tick(snapshot);

@@ -25,7 +25,7 @@ struct sim_snapshots {
     size_t length;
 };
 
-/* The snapshots of a sim. NULL: memory is short. */
+/* The snapshots of a sim. NULL: out of memory. */
 struct sim_snapshots *snapshots_of(struct sim *sim);
 
 /* Keep the text, from malloc(), as the file of the present restore; NULL: there is none. */

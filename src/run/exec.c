@@ -134,7 +134,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         if (options->arguments == 0 && options->stimulus == NULL)
             argp_error(state, "no program given");
         if (options->json && options->trace != NULL && strcmp(options->trace, "-") == 0)
-            argp_error(state, "--json and --trace - both want standard output");
+            argp_error(state, "--json and --trace - cannot both use standard output");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -255,7 +255,7 @@ static void store_programs(struct exec_run *run, const struct inputs *inputs)
         const struct program *program = &inputs->program[i];
         const struct exec_file *file = &program->file;
         if (exec_run_set(run, program->motor, file->text.text, file->text.length) == 3)
-            fprintf(stderr, "%s: warning: more commands than the %d a motor has room for\n", file->name, RKM04_PROGRAM_MAX);
+            fprintf(stderr, "%s: warning: more than the %d commands that a motor can hold\n", file->name, RKM04_PROGRAM_MAX);
     }
 }
 
@@ -282,7 +282,7 @@ static bool is_running(const struct rkm04_unit *unit)
 /* What repeats from slot to slot are motions: a program takes more than one for a turn. */
 static void say_endless(const struct rkm04_unit *unit, uint64_t period)
 {
-    fputs("rkm04 exec: it never ends: ", stderr);
+    fputs("rkm04 exec: the program never ends: ", stderr);
     for (unsigned i = 0; period == RKM04_SLOT_TICKS && i < RKM04_MOTORS; i++) {
         const struct rkm04_motion *motion = &unit->motor[i].motion;
         if (motion->kind == RKM04_MOTION_ENDLESS)
@@ -291,9 +291,9 @@ static void say_endless(const struct rkm04_unit *unit, uint64_t period)
             fprintf(stderr, "motor %u moves until input %02u is 1, which no stimulus sets; ", i + 1u, motion->input + 0u);
     }
     if (period != RKM04_SLOT_TICKS)
-        fprintf(stderr, "what happens repeats every %" PRIu64 ".%06" PRIu64 " s; ", period / RKM04_TICKS_PER_SECOND,
+        fprintf(stderr, "its state repeats every %" PRIu64 ".%06" PRIu64 " s; ", period / RKM04_TICKS_PER_SECOND,
                 period % RKM04_TICKS_PER_SECOND);
-    fputs("--until stops it at a time\n", stderr);
+    fputs("set an end with --until\n", stderr);
 }
 
 static int exit_status(struct exec_run *run, const struct options *options, enum exec_end end, bool written)
@@ -302,7 +302,7 @@ static int exit_status(struct exec_run *run, const struct options *options, enum
     bool fault = report_faults(unit);
     if (end == EXEC_UNTIL && is_running(unit)) {
         if (options->until_text == NULL)
-            fprintf(stderr, "rkm04 exec: virtual time has come to its end with a motor still running\n");
+            fprintf(stderr, "rkm04 exec: virtual time has reached its end with a motor still running\n");
         else
             fprintf(stderr, "rkm04 exec: --until %s reached with a motor still running\n", options->until_text);
         return written ? STATUS_UNTIL : STATUS_FAILURE;
@@ -324,7 +324,7 @@ static bool tell_trace(const struct options *options, int wrong)
     return wrong == 0;
 }
 
-/* A trace on `out`, or none. Returns false if memory is short. */
+/* A trace on `out`, or none. Returns false if out of memory. */
 static bool begin_trace(struct exec_run *run, const struct options *options, FILE *out, struct trace_file **trace)
 {
     *trace = NULL;

@@ -25,7 +25,7 @@ void report_begin(struct report *report, bool json)
     report->answers = json ? json_array() : NULL;
 }
 
-/* The bytes in hexadecimal. Returns a string to be freed, or NULL if memory is short. */
+/* The bytes in hexadecimal. Returns a string to be freed, or NULL if out of memory. */
 static char *hex_text(const uint8_t *bytes, size_t length)
 {
     static const char digits[] = "0123456789ABCDEF";
@@ -72,7 +72,7 @@ static void print_bits(FILE *out, const char *name, unsigned mask, unsigned firs
 static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
 {
     static const char *const ends[] = {
-        [EXEC_DONE] = "nothing more to do",
+        [EXEC_DONE] = "finished",
         [EXEC_UNTIL] = "--until reached",
         [EXEC_ENDLESS] = "the state repeats",
         [EXEC_INTERRUPTED] = "interrupted",
@@ -89,9 +89,9 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
                 (unsigned)state.index, rkm04_led_name(state.led),
                 state.fault == RKM04_FAULT_NONE ? "-" : rkm04_fault_name(state.fault));
     }
-    print_bits(out, "at 1: inputs", rkm04_inputs(unit), 1);
-    print_bits(out, "; outputs", rkm04_outputs(unit), 1);
-    print_bits(out, "; variables", rkm04_variables(unit), RKM04_FIRST_VARIABLE);
+    print_bits(out, "inputs on:", rkm04_inputs(unit), 1);
+    print_bits(out, "; outputs on:", rkm04_outputs(unit), 1);
+    print_bits(out, "; variables on:", rkm04_variables(unit), RKM04_FIRST_VARIABLE);
     fputc('\n', out);
 }
 

@@ -102,7 +102,7 @@ static void deliver(struct exec_run *run, const struct stimulus *s)
         break;
     case STIMULUS_SET:
         if (exec_run_set(run, s->motor, s->data, s->length) == 3)
-            fprintf(stderr, "%s:%zu:%zu: warning: more commands than the %d a motor has room for\n", run->stimulus_name,
+            fprintf(stderr, "%s:%zu:%zu: warning: more than the %d commands that a motor can hold\n", run->stimulus_name,
                     s->line, s->column, RKM04_PROGRAM_MAX);
         break;
     case STIMULUS_MESSAGE:

@@ -39,7 +39,7 @@ struct exec_run {
 };
 
 /* Power up at tick 0 with empty flash. *run must be zero; the members of the first part must be set by exec_run(). Returns false
- * if memory is short; exec_run_end() is due in either case. */
+ * if out of memory; exec_run_end() is due in either case. */
 bool exec_run_begin(struct exec_run *run);
 void exec_run_end(struct exec_run *run);
 

@@ -102,7 +102,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (!options->path)
-            argp_error(state, "no record given");
+            argp_error(state, "no recording given");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -157,7 +157,7 @@ static bool look(void *context)
     double virtual = (double)sim_now(replay_sim(progress->replay)) / RKM04_TICKS_PER_SECOND;
     fprintf(stderr, "\r%.1f s of the line's time, %.0f times real time", virtual, virtual / (now - progress->begin));
     if (progress->size > 0)
-        fprintf(stderr, "; %.0f %% of the record", 100.0 * (double)ftello(progress->in) / (double)progress->size);
+        fprintf(stderr, "; %.0f %% of the recordinging", 100.0 * (double)ftello(progress->in) / (double)progress->size);
     fputs("; Ctrl-C ends it\033[K", stderr);
     return false;
 }
@@ -222,7 +222,7 @@ static bool end_files(struct files *files, const struct options *options)
 static const char *const results[] = {
     [REPLAY_SAME] = "same",
     [REPLAY_DIFFERENT] = "different",
-    [REPLAY_WRONG] = "no record",
+    [REPLAY_WRONG] = "not a recording",
     [REPLAY_INTERRUPTED] = "interrupted",
     [REPLAY_NO_MEMORY] = "out of memory",
 };

@@ -35,7 +35,7 @@ struct stimuli {
 };
 
 /* Read the text of a stimulus file. Wrong lines are reported on `errors` as NAME:LINE:COLUMN: error: expected …, one line
- * an error. Returns the number of errors, or -1 if memory is short; stimuli is to be freed in any case. */
+ * an error. Returns the number of errors, or -1 if out of memory; stimuli is to be freed in any case. */
 int stimuli_read(struct stimuli *stimuli, const char *name, const char *text, size_t length, FILE *errors);
 
 void stimuli_free(struct stimuli *stimuli);

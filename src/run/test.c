@@ -169,7 +169,7 @@ static int read_all(struct test_case *tests, const struct options *options)
     return status;
 }
 
-/* Under other readings, if that is wanted. Returns false if memory is short. */
+/* Under other readings, if that is wanted. Returns false if out of memory. */
 static bool run_under_others(struct test_case *test, const struct options *options, struct test_progress *progress)
 {
     if (options->mode == TEST_READINGS_ONE || test->outcome == TEST_NOT_RUN || test->outcome == TEST_BROKEN)

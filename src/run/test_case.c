@@ -169,7 +169,7 @@ static bool keep_record(struct test_case *test, const char *folder, unsigned fla
         free(path);
         return true;
     }
-    fprintf(stderr, "rkm04 test: cannot write the record %s: %s\n", path != NULL ? path : "",
+    fprintf(stderr, "rkm04 test: cannot write the recording %s: %s\n", path != NULL ? path : "",
             why != NULL ? why : strerror(test->result.record_error != 0 ? test->result.record_error : ENOMEM));
     free(path);
     free(why);

@@ -112,7 +112,7 @@ static void print_case(FILE *out, const struct test_case *test, bool strict)
     if (test->outcome == TEST_FAILED)
         print_failure(out, test);
     else if (test->outcome == TEST_BROKEN)
-        fputs("      <error type=\"memory\" message=\"memory is short\"/>\n", out);
+        fputs("      <error type=\"memory\" message=\"out of memory\"/>\n", out);
     else if (test->outcome == TEST_NOT_RUN)
         fputs("      <skipped message=\"interrupted\"/>\n", out);
     else if (strict && test_readings_depends(test))

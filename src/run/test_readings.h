@@ -21,7 +21,7 @@ enum test_readings_mode {
 };
 
 /* Run a scenario that has been run under `base` under others, too; those in `named`, and those that it names itself, keep
- * their value. test->under has what came of it, NULL: memory is short. */
+ * their value. test->under has what came of it, NULL: out of memory. */
 void test_readings_run(struct test_case *test, const struct rkm04_readings *base, readings_set named,
                        enum test_readings_mode mode, struct test_progress *progress);
 

@@ -59,7 +59,7 @@ static void print_failure(FILE *out, const struct test_case *test, const struct 
     print_plain(out, result->seen);
     fprintf(out, "; at tick %" PRIu64 " (" TIME_FORMAT ")", result->tick, TIME_OF(result->tick));
     if (result == &test->result && test->record != NULL)
-        fprintf(out, "; record %s", test->record);
+        fprintf(out, "; recording %s", test->record);
     fputc('\n', out);
 }
 
@@ -75,7 +75,7 @@ void test_report_line(FILE *out, const struct test_case *test)
     if (test->outcome == TEST_PASSED)
         fprintf(out, " (" TIME_FORMAT ")", TIME_OF(test->result.tick));
     if (test->outcome == TEST_BROKEN)
-        fputs(": memory is short", out);
+        fputs(": out of memory", out);
     fputc('\n', out);
 }
 

@@ -49,7 +49,7 @@ const char *scenario_bytes_read(struct scenario_bytes *bytes, const char *text)
     size_t room = strlen(text) + 1; /* a byte takes a character or two */
     *bytes = (struct scenario_bytes){.byte = malloc(room), .any = malloc(room * sizeof(bool))};
     if (bytes->byte == NULL || bytes->any == NULL)
-        return "less: memory is short";
+        return "less: out of memory";
     while (*text != '\0') {
         size_t taken = *text == ' ' || *text == '\n' ? 1 : read_item(bytes, text);
         if (taken == 0)

@@ -146,7 +146,7 @@ static bool do_call(struct running *running, const struct scenario_step *step)
     json_decref(result);
     if (running->over)
         return false;
-    return well || running_failed(running, step, sim_now(running->sim), running_text("%s to be obeyed", step->method),
+    return well || running_failed(running, step, sim_now(running->sim), running_text("%s to succeed", step->method),
                                   running_text("refused: %s", refusal.text));
 }
 
@@ -177,7 +177,7 @@ bool running_do(struct running *running, const struct scenario_step *step)
     uint64_t now = sim_now(running->sim);
     if (step->at != RKM04_NEVER && step->at < now)
         return running_failed(running, step, now, running_text("to begin at " TIME_FORMAT, TIME_OF(step->at)),
-                              running_text("the step before has ended only now"));
+                              running_text("the step before has just ended"));
     if (step->at != RKM04_NEVER && !go_to(running, step->at))
         return false;
     return act(running, step);

@@ -44,7 +44,7 @@ static unsigned address_of(const struct running *running, unsigned unit)
     return unit == 0 ? 0 : sim_core(running->sim, unit)->config.node;
 }
 
-/* The bytes on the line. Returns them, to be freed, or NULL if memory is short. */
+/* The bytes on the line. Returns them, to be freed, or NULL if out of memory. */
 static uint8_t *frame(const struct running *running, const struct scenario_step *step, size_t *length)
 {
     const struct rkm04_framing *framing = framing_of(running);
@@ -144,7 +144,7 @@ static char *silence_text(const struct running *running, uint64_t since)
 /* `wrong`: what is wrong with the program; NULL: nothing is known of it. */
 static char *flag_text(const uint8_t *answer, const char *wrong)
 {
-    static const char *const meanings[] = {"all right", "bad value", "unknown command", "memory has overflowed"};
+    static const char *const meanings[] = {"ok", "bad value", "unknown command", "memory has overflowed"};
     unsigned flag = answer[2];
     const char *meaning = flag < sizeof meanings / sizeof meanings[0] ? meanings[flag] : "?";
     if (flag != 1 && flag != 2)

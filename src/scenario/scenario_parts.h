@@ -106,7 +106,7 @@ json_t *scenario_condition(struct scenario_reader *reader, const struct config_n
 /* Read a file that the scenario names, beside it. *path, where it is, and the text are to be freed; NULL: reported at `node`. */
 char *scenario_file(struct scenario_reader *reader, const struct config_node *node, char **path, size_t *length);
 
-/* Power up a line as the scenario has it, with its plant. Returns false if memory is short, or the plant is wrong, which is
+/* Power up a line as the scenario has it, with its plant. Returns false if out of memory, or the plant is wrong, which is
  * reported. sim_end() is due in either case. */
 bool scenario_power_up(const struct scenario *scenario, struct sim *sim, FILE *errors);
 

@@ -118,14 +118,14 @@ static char *beside(const char *scenario, const char *name)
 
 char *scenario_file(struct scenario_reader *reader, const struct config_node *node, char **path, size_t *length)
 {
-    const char *why = "there are no files here";
+    const char *why = "files cannot be used here";
     if (config_type(node) != CONFIG_TEXT || config_text(node)[0] == '\0') {
         config_error(node, "expected the name of a file");
         return NULL;
     }
     *path = beside(reader->name, config_text(node));
     if (*path == NULL || reader->files->read == NULL) {
-        config_error(node, "cannot read %s: %s", config_text(node), *path == NULL ? "memory is short" : why);
+        config_error(node, "cannot read %s: %s", config_text(node), *path == NULL ? "out of memory" : why);
         return NULL;
     }
     char *text = reader->files->read(reader->files->context, *path, length, &why);
@@ -148,7 +148,7 @@ static bool read_plant(struct scenario_reader *reader, const struct config_node 
     scenario->plant = json != NULL ? json_dumps(json, 0) : NULL;
     json_decref(json);
     if (scenario->plant == NULL)
-        return config_error(node, "memory is short");
+        return config_error(node, "out of memory");
     scenario->plant_length = strlen(scenario->plant);
     return true;
 }
@@ -195,7 +195,7 @@ static bool read_lists(struct scenario_reader *reader, const struct config_node 
     scenario->step = calloc((size_t)steps, sizeof scenario->step[0]);
     scenario->stimulus = calloc((size_t)stimuli + 1, sizeof scenario->stimulus[0]);
     if (scenario->step == NULL || scenario->stimulus == NULL)
-        return config_error(root, "memory is short");
+        return config_error(root, "out of memory");
     for (size_t i = 0; i < (size_t)steps; i++) {
         well = scenario_step_read(reader, config_at(config_get(root, "steps"), i), &scenario->step[i]) && well;
         scenario->steps = i + 1;
@@ -246,7 +246,7 @@ static bool try_power_up(struct scenario_reader *reader, const struct config_nod
     if (!well && said != NULL) {
         const char *error = strstr(said, "error: ");
         said[strcspn(said, "\n")] = '\0';
-        config_error(config_get(root, "plant"), "%s", error != NULL ? error + strlen("error: ") : "memory is short");
+        config_error(config_get(root, "plant"), "%s", error != NULL ? error + strlen("error: ") : "out of memory");
     }
     free(said);
     return well;
@@ -276,7 +276,7 @@ static bool read_all(struct scenario_reader *reader, const struct config_node *r
         return false;
     reader->sim = calloc(1, sizeof *reader->sim);
     if (reader->sim == NULL)
-        return config_error(root, "memory is short");
+        return config_error(root, "out of memory");
     well = try_power_up(reader, root, errors) && read_inputs(reader, root) && read_lists(reader, root);
     sim_end(reader->sim);
     free(reader->sim);
@@ -289,7 +289,7 @@ struct scenario *scenario_read(const char *name, const char *text, size_t length
     struct scenario *scenario = calloc(1, sizeof *scenario);
     struct scenario_reader reader = {.name = name, .scenario = scenario, .files = files};
     if (scenario == NULL) {
-        fprintf(errors, "%s: error: memory is short\n", name);
+        fprintf(errors, "%s: error: out of memory\n", name);
         return NULL;
     }
     scenario->tree = config_read(name, text, length, errors);

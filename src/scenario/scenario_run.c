@@ -166,9 +166,9 @@ static bool check_all_acted(struct running *running)
         if (state->acted)
             continue;
         char *seen = state->due == RKM04_NEVER ? condition_found(state->when)
-                                               : running_text("the last step was over before its time");
+                                               : running_text("the last step ended before its time");
         return running_failed(running, &running->scenario->stimulus[i].step, now,
-                              running_text("the stimulus to have acted when the last step is over"), seen);
+                              running_text("the stimulus to act before the last step ends"), seen);
     }
     return true;
 }
@@ -197,7 +197,7 @@ bool running_turn(struct running *running, uint64_t limit, struct condition *con
     uint64_t next = now + RKM04_TICKS_PER_SECOND;
     next = earlier(limit, quiet > next ? quiet : next); /* not longer, so that the run can be interrupted */
     if (sim_time_is_over(running->sim))
-        return running_failed(running, running->step, now, running_text("virtual time to go on"),
+        return running_failed(running, running->step, now, running_text("virtual time to continue"),
                               running_text("its end, after %" PRIu64 " s", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND));
     if (condition != NULL)
         next = earlier(next, condition_next(condition));
@@ -249,7 +249,7 @@ static bool run_steps(struct running *running)
     struct refusal refusal = {0};
     running->step = &scenario->step[0];
     if (!scenario_begin_inputs(scenario, running->sim, &refusal))
-        return running_failed(running, running->step, 0, running_text("di to be obeyed"),
+        return running_failed(running, running->step, 0, running_text("di to succeed"),
                               running_text("refused: %s", refusal.text));
     if (!arm_all(running) || !look(running))
         return false;

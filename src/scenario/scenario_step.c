@@ -46,7 +46,7 @@ static const struct {
 
 static bool no_memory(const struct config_node *node)
 {
-    return config_error(node, "memory is short");
+    return config_error(node, "out of memory");
 }
 
 static const char *read_text(const struct config_node *node, const char *what)
@@ -140,7 +140,7 @@ static bool read_answer(const struct config_node *step, enum scenario_answer mis
     else if (node != NULL)
         result->answer = ANSWER_THIS;
     if (result->unit == 0 && result->action == ACTION_MESSAGE && node != NULL && result->answer != ANSWER_NONE)
-        return config_error(node, "expected none: no unit answers what is sent to all");
+        return config_error(node, "expected none: no unit answers a request to all units");
     if (result->answer == ANSWER_NONE && config_get(step, "within") == NULL)
         result->within = SILENCE;
     return result->answer != ANSWER_THIS || read_pattern(node, "answer", &result->wanted);
@@ -201,7 +201,8 @@ static bool take_program(struct scenario_reader *reader, const struct config_nod
     find_wrong(reader, name, step);
     step->flag = (uint8_t)flag;
     step->answer = step->unit == 0 ? ANSWER_UNASKED : ANSWER_THIS;
-    return step->unit != 0 || flag_node == NULL || config_error(flag_node, "expected none: no unit answers what is sent to all");
+    return step->unit != 0 || flag_node == NULL ||
+           config_error(flag_node, "expected none: no unit answers a request to all units");
 }
 
 static bool read_set(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)

@@ -55,9 +55,9 @@ static void tell_manager(const char *state)
         return;
     socklen_t length = read_address(&address, text);
     if (length == 0)
-        log_error("cannot tell the service manager: NOTIFY_SOCKET is `%s': expected a path from / or a name after @", text);
+        log_error("cannot notify the service manager: NOTIFY_SOCKET is `%s': expected a path from / or a name after @", text);
     else if (!send_to(&address, length, state))
-        log_error("cannot tell the service manager at NOTIFY_SOCKET=%s: %s", text, strerror(errno));
+        log_error("cannot notify the service manager at NOTIFY_SOCKET=%s: %s", text, strerror(errno));
 }
 
 /* ---- A file descriptor ---------------------------------------------------------------------------------------------- */

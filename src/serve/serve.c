@@ -65,7 +65,7 @@ static void on_signal(uv_signal_t *handle, int number)
 static void on_idle(uv_timer_t *handle)
 {
     struct serve *serve = handle->data;
-    log_at(bus_present(serve->bus[0]), "ended: nobody has used the line for %u s", serve->options.idle_seconds);
+    log_at(bus_present(serve->bus[0]), "ended: no client has used the bus for %u s", serve->options.idle_seconds);
     uv_stop(&serve->loop);
 }
 
@@ -236,7 +236,7 @@ static bool start_control(struct serve *serve)
         serve->control = control_open(&serve->loop, options->control ? options->control : path, serve->bus, options->lines,
                                       &control_calls);
     if (!serve->control && !options->control)
-        log_error("going on without a control socket; --control PATH names another place for it");
+        log_error("continuing without a control socket; choose another path with --control PATH");
     return serve->control || !options->control;
 }
 

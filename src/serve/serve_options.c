@@ -63,7 +63,7 @@ static const struct argp_option table[] = {
      "Addresses (DNode) of the units on the line, 1 to 16, as in 3 or 1,2,5-8; default 1. The same address may be given twice",
      0},
     {"flash", KEY_FLASH, "FILE", 0,
-     "Flash image of a unit; made if it is not there. %n in it stands for the unit's address, %l for the number of the line. "
+     "Flash image of a unit; made if it is not there. %n in it stands for the unit's address, %l for the number of the bus. "
      "Without it stored programs live as long as the emulator", 0},
     {"version-text", KEY_VERSION_TEXT, "TEXT", 0,
      "What the units answer to Version, up to 255 characters; default " RKM04_VERSION_TEXT, 0},
@@ -72,7 +72,7 @@ static const struct argp_option table[] = {
     {NULL, 0, NULL, 0, "The line:", 2},
     {"link", KEY_LINK, "PATH", 0,
      "Name of the symbolic link to the pty; default $XDG_RUNTIME_DIR/rkm04/bus0, else rkm04-UID/bus0 in the temporary "
-     "directory. %l in it stands for the number of the line", 0},
+     "directory. %l in it stands for the number of the bus", 0},
     {"port", KEY_PORT, "DEVICE", 0, "Use this serial device or pty instead of a pty of our own", 0},
     {"rts", KEY_RTS, "WHO", 0,
      "Who turns the driver of an RS485 device on while units send: driver (default), the kernel's if it can, else the adapter; "
@@ -105,7 +105,7 @@ static const struct argp_option table[] = {
     {"plant", KEY_PLANT, "FILE", 0, "What the motors move: true positions, end stops, switches that drive inputs", 0},
     {"trace", KEY_TRACE, "FILE", 0,
      "Take down pulses, inputs, outputs and all that happens: FILE.vcd for GTKWave and PulseView, FILE.csv, FILE.jsonl; may be "
-     "given up to eight times. %l in it stands for the number of the line", 0},
+     "given up to eight times. %l in it stands for the number of the bus", 0},
     {"wire", KEY_WIRE, "FILE", 0, "Take down what passes on the wires: FILE.log to read, FILE.pcapng for Wireshark; likewise", 0},
     {"record", KEY_RECORD, "FILE", 0, "Record all that comes in, so that `rkm04 replay FILE' does it again", 0},
     {"force", KEY_FORCE, NULL, 0,
@@ -238,7 +238,7 @@ static const char *read_pattern(const char *name, const char *text, struct argp_
 {
     read_path(name, text, state);
     if (!name_pattern_valid(text))
-        argp_error(state, "--%s: `%s' has a %% without meaning: expected %%n (address), %%l (number of the line) or %%%%", name,
+        argp_error(state, "--%s: `%s' has a %% without meaning: expected %%n (address), %%l (number of the bus) or %%%%", name,
                    text);
     return text;
 }
@@ -263,7 +263,7 @@ static void add_folder(struct bus_options *options, const char *text, struct arg
     struct stat found;
     unsigned at = 0;
     if (stat(text, &found) != 0 || !S_ISDIR(found.st_mode))
-        argp_error(state, "--allow-folder: `%s' is wrong: expected a folder that is there", text);
+        argp_error(state, "--allow-folder: `%s' is wrong: expected an existing folder", text);
     while (at < BUS_FOLDERS_MAX && options->folder[at])
         at++;
     if (at < BUS_FOLDERS_MAX)
@@ -287,9 +287,9 @@ static void check_patterns(const struct bus_options *options, struct argp_state 
     for (size_t which = 0; which < sizeof lists / sizeof lists[0]; which++) {
         for (unsigned at = 0; at < (which < 2 ? BUS_FILES_MAX : 1) && lists[which][at]; at++) {
             if (name_pattern_has(lists[which][at], 'n'))
-                argp_error(state, "--%s: %%n names a unit, but the file is about the line: expected %%l", names[which]);
+                argp_error(state, "--%s: %%n names a unit, but the file is about the bus: expected %%l", names[which]);
             if (options->lines > 1 && !name_pattern_has(lists[which][at], 'l'))
-                argp_error(state, "--%s: expected %%l in the name, for the number of the line, with --lines", names[which]);
+                argp_error(state, "--%s: expected %%l in the name, for the number of the bus, with --lines", names[which]);
         }
     }
 }
@@ -301,21 +301,21 @@ static void check_together(struct bus_options *options, struct argp_state *state
     if (options->port && options->link)
         argp_error(state, "--link names the emulator's own pty: expected either --link or --port");
     if (options->port && options->lines > 1)
-        argp_error(state, "--port is one line: expected either --port or --lines");
+        argp_error(state, "--port is one bus: expected either --port or --lines");
     if (options->rts == LINE_RTS_TOGGLES && !options->port)
-        argp_error(state, "--rts is about a serial device: expected --port with it");
+        argp_error(state, "--rts is for a serial device: expected --port, too");
     if (options->link && name_pattern_has(options->link, 'n'))
-        argp_error(state, "--link: %%n names a unit, but a line has one link: expected %%l for the number of the line");
+        argp_error(state, "--link: %%n names a unit, but a bus has one link: expected %%l for the number of the bus");
     if (options->link && options->lines > 1 && !name_pattern_has(options->link, 'l'))
-        argp_error(state, "--link: expected %%l in the name, for the number of the line, with --lines");
+        argp_error(state, "--link: expected %%l in the name, for the number of the bus, with --lines");
     if (options->flash && options->lines > 1 && !name_pattern_has(options->flash, 'l'))
-        argp_error(state, "--flash: expected %%l in the name, for the number of the line, with --lines");
+        argp_error(state, "--flash: expected %%l in the name, for the number of the bus, with --lines");
     if (options->flash && options->nodes.count > 1 && !name_pattern_has(options->flash, 'n'))
         argp_error(state, "--flash: expected %%n in the name, for the address, with several units");
     if (options->baud == 0 && options->strict_line)
-        argp_error(state, "--strict-line is about bytes on a line: expected it without --baud 0");
+        argp_error(state, "--strict-line needs bytes that take time: expected it without --baud 0");
     if (options->baud == 0 && options->turnaround != NO_TURNAROUND)
-        argp_error(state, "--turnaround is a time on the line: expected it without --baud 0");
+        argp_error(state, "--turnaround needs bytes that take time: expected it without --baud 0");
     if (options->turnaround == NO_TURNAROUND)
         options->turnaround = options->baud != 0 ? SEGMENT_TURNAROUND : 0;
     if (options->control && options->no_control)

@@ -54,7 +54,7 @@ static void tell_flash(struct bus *bus)
                 bus_log(&bus->log, "unit %s, motor %u: starts the program of %u commands from flash", name, motor,
                         state.commands);
             else if (state.slot == RKM04_SLOT_UNTRUSTED)
-                bus_log(&bus->log, "unit %s, motor %u: its flash slot holds no whole program and counts as empty", name, motor);
+                bus_log(&bus->log, "unit %s, motor %u: its flash program is incomplete: it starts without a program", name, motor);
         }
     }
 }
@@ -134,8 +134,8 @@ bool serve_report_ready(const struct bus_options *options, struct bus *const *bu
         free(text);
         return false;
     }
-    snprintf(status, sizeof status, "%s on %u line%s", units_text(&options->nodes, units), options->lines,
-             options->lines > 1 ? "s" : "");
+    snprintf(status, sizeof status, "%s on %u bus%s", units_text(&options->nodes, units), options->lines,
+             options->lines > 1 ? "es" : "");
     struct delivery *delivery = delivery_begin(STDOUT_FILENO, line, false);
     int error = delivery ? delivery_wait(delivery, NOTIFY_WAIT_MS) : ENOMEM;
     if (error != 0)

@@ -41,7 +41,7 @@ static void allow_working_directory(struct sandbox *sandbox)
 static void report(const char *what)
 {
     if (errno != ENOSYS && errno != EOPNOTSUPP)
-        log_error("going on without confinement of %s: %s", what, strerror(errno));
+        log_error("continuing without confinement of %s: %s", what, strerror(errno));
     else
         log_at(0, "this kernel does not confine %s", what);
 }

@@ -87,7 +87,7 @@ struct sim {
 
 /* ---- Begin and end ---------------------------------------------------------------------------------------------------- */
 
-/* Power up all units at tick 0. *sim must be zero. Returns false if memory is short. sim_end() is due in either case. */
+/* Power up all units at tick 0. *sim must be zero. Returns false if out of memory. sim_end() is due in either case. */
 bool sim_begin(struct sim *sim, const struct sim_config *config);
 void sim_end(struct sim *sim);
 

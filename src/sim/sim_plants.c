@@ -61,7 +61,7 @@ static bool read_plants(struct sim *sim, const struct config_node *root, struct 
     if (!config_keys(root, names))
         return false;
     if (sim_units(sim) != 1)
-        return config_error(root, "expected units: there are %u on the line", sim_units(sim));
+        return config_error(root, "expected units: there are %u on the bus", sim_units(sim));
     plants->of[0] = read_plant(sim, root, 1);
     return plants->of[0] != NULL;
 }
@@ -76,7 +76,7 @@ bool sim_configure_plants(struct sim *sim, const char *name, const char *text, s
         config_free(tree);
         copy = well ? strndup(text, length) : NULL;
         if (well && !copy)
-            fprintf(errors, "%s: error: memory is short\n", name);
+            fprintf(errors, "%s: error: out of memory\n", name);
         if (!copy) {
             free_plants(&plants);
             return false;

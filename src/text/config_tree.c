@@ -88,7 +88,7 @@ __attribute__((format(printf, 3, 4))) static bool error_at(const struct config_t
 
 static bool short_of_memory(const struct config_tree *tree)
 {
-    fprintf(tree->errors, "%s: error: memory is short\n", tree->name);
+    fprintf(tree->errors, "%s: error: out of memory\n", tree->name);
     return false;
 }
 
@@ -290,7 +290,7 @@ struct config_tree *config_read(const char *name, const char *text, size_t lengt
     if (tree)
         tree->name = strdup(name);
     if (!tree || !tree->name) {
-        fprintf(errors, "%s: error: memory is short\n", name);
+        fprintf(errors, "%s: error: out of memory\n", name);
         config_free(tree);
         return NULL;
     }

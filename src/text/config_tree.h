@@ -53,7 +53,7 @@ bool config_flag(const struct config_node *node, const char *what, bool *value);
 bool config_keys(const struct config_node *node, const char *const *names);
 
 /* The node as JSON, for parameters of commands: whole numbers, true, false and null become such, everything else strings;
- * quoted scalars always strings. New reference; NULL: memory is short. */
+ * quoted scalars always strings. New reference; NULL: out of memory. */
 json_t *config_json(const struct config_node *node);
 
 #endif

@@ -102,9 +102,9 @@ static void print_jump_if(const struct rkm04_reader *reader, const struct rkm04_
     if (level) {
         fputs("a label ", out);
         print_ranges(ranges + 2, 1, out);
-        fputs(" behind H or L of I", out);
+        fputs(" after H or L of I", out);
     } else if (number) {
-        fputs("H or L behind the input of I", out);
+        fputs("H or L after the input of I", out);
     } else {
         fputs("an input or variable ", out);
         print_ranges(ranges, 2, out);

@@ -56,7 +56,7 @@ static const char *read_all(struct program_text *text, FILE *file)
         if (text->length < room)
             return NULL;
     }
-    return "too large for a program";
+    return "too long for a program";
 }
 
 const char *program_text_read(struct program_text *text, const char *path)

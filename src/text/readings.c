@@ -27,7 +27,7 @@ static const struct reading table[READINGS] = {
     {"fault-exit", {"reset", "new"}, MEMBER(fault_exit), .clause = "C3, E1",
      .about = "commands stored after a fault are executed, and the fault ends when they begin"},
     {"hold-exit", {"new", "latch"}, MEMBER(hold_exit), .clause = "C3",
-     .about = "after K only C75 or \\ goes on: commands stored meanwhile wait behind the rest"},
+     .about = "after K only C75 or \\ resumes: commands stored meanwhile wait after the rest"},
     {"x-after", {"armed", "once"}, MEMBER(x_after), .clause = "C6", .about = "X is used up when it has fired"},
     {"guard-start", {"none", "step"}, MEMBER(guard_start), .clause = "C5",
      .about = "a motion whose M or N holds at its begin begins, and is stopped in the next slot"},
@@ -37,13 +37,13 @@ static const struct reading table[READINGS] = {
     {"reset-t41", {"keep", "clear"}, MEMBER(reset_t41), .clause = "C1", .about = "\\ of any motor also switches T41 off"},
     {"negative-position", {"yes", "no"}, MEMBER(negative_position), .clause = "section 5", .about = "=-n is a bad value"},
     {"speed-change", .most = 2000, MEMBER(speed_change), .tried = {1, 500, 2000}, .clause = "C4",
-     .about = "how long a change of speed takes to be obeyed"},
+     .about = "the time from a command that changes the speed to the change"},
     {"planning", .most = 2000, MEMBER(planning), .tried = {1, 10, 100, 2000}, .clause = "R1",
      .about = "from the slot of a motion's command to that in which it begins"},
     {"input-filter", .most = 100, MEMBER(input_filter), .tried = {1, 10, 100}, .clause = "U2",
-     .about = "an input counts when it has been constant for so long"},
+     .about = "an input counts when it has been constant for this time"},
     {"store-time", .most = 1000, MEMBER(store_time), .tried = {1, 100, 1000}, .clause = "P6",
-     .about = "Store Flash is answered so much later, and no motor executes a command meanwhile"},
+     .about = "Store Flash is answered after this time; no motor executes a command meanwhile"},
 };
 
 /* ---- Values --------------------------------------------------------------------------------------------------------- */

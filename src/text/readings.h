@@ -47,7 +47,7 @@ bool readings_read_map(struct rkm04_readings *readings, readings_set *named, con
 /* Those that are not at their default, in the order of the table: NAME=VALUE,NAME=VALUE, "" if none. Returns `text`. */
 const char *readings_text(const struct rkm04_readings *readings, char text[READINGS_TEXT_SIZE]);
 
-/* The same as an object; times are numbers (ms). New reference; NULL: memory is short. */
+/* The same as an object; times are numbers (ms). New reference; NULL: out of memory. */
 json_t *readings_json(const struct rkm04_readings *readings);
 
 /* Print the table for people: names, values (the default first), clauses, what the other value does. */

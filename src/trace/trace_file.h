@@ -22,10 +22,10 @@ enum trace_format trace_file_format(const char *path);
 const struct output_kind *trace_file_kind(enum trace_format format);
 
 /* Open `path`, "-" is not allowed, with `flags` of output_file_open(), and begin to watch; what there is now is its beginning.
- * Returns NULL if it did not work; *error is what to say then ("cannot write FILE: …"), to be freed; NULL: memory is short. */
+ * Returns NULL if it did not work; *error is what to say then ("cannot write FILE: …"), to be freed; NULL: out of memory. */
 struct trace_file *trace_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 
-/* The same on a stream, which stays the caller's. Returns NULL if memory is short. */
+/* The same on a stream, which stays the caller's. Returns NULL if out of memory. */
 struct trace_file *trace_file_begin_on(struct sim *sim, FILE *out, enum trace_format format);
 
 /* 0, or the errno with which writing has failed. Nothing is written after the first failure. */

@@ -15,7 +15,7 @@ struct wire_file;
 bool wire_file_named(const char *path);
 
 /* Open `path`, with `flags` of output_file_open(), and begin to watch. Returns NULL if it did not work; *error is what to say
- * then ("cannot write FILE: …"), to be freed, or NULL if memory is short. */
+ * then ("cannot write FILE: …"), to be freed, or NULL if out of memory. */
 struct wire_file *wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);
 
 /* 0, or the errno with which writing has failed. Nothing is written after the first failure. */

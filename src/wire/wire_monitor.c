@@ -57,7 +57,7 @@ static void words_ignored(struct wire_text *out, const struct segment *segment, 
     if (frame->snode >= 1 && frame->snode <= RKM04_NODE_MAX)
         wire_text_string(out, "by its sender's address it is the answer of a unit (L1)");
     else if (frame->dnode == 0 && ear->message[0] != 2 && ear->message[0] != 3)
-        wire_text_string(out, "a question to all is not answered (P10)");
+        wire_text_string(out, "a request to all units is not answered (P10)");
     else
         ignored_for_address(out, segment, frame->dnode);
     if (out->length == 0 && ear->overruns > 0)
@@ -75,7 +75,7 @@ static const uint8_t *append(struct wire_message *message, size_t *used, const v
     return place;
 }
 
-/* A message out of what stands in the ear. Returns NULL if memory is short. */
+/* A message out of what stands in the ear. Returns NULL if out of memory. */
 static struct wire_message *make_message(const struct segment *segment, const struct wire_ear_monitor *ear,
                                          enum wire_fate fate)
 {

@@ -47,7 +47,7 @@ struct wire_monitor {
     struct wire_ear_monitor requests, answers;
 };
 
-/* Find messages in the bytes of `segment`, which may be NULL for a copy that gets none. Returns false if memory is short;
+/* Find messages in the bytes of `segment`, which may be NULL for a copy that gets none. Returns false if out of memory;
  * wire_monitor_end() is due in either case. */
 bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing *framing, const struct segment *segment,
                         struct wire_monitor_calls calls);
@@ -60,7 +60,7 @@ void wire_monitor_copy(struct wire_monitor *to, const struct wire_monitor *from,
 /* A byte has passed: report the message that it completes, if any. */
 void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_byte *byte);
 
-/* What has been heard of a request, or of an answer, that is not complete. Returns NULL if there is nothing (or memory is short),
+/* What has been heard of a request, or of an answer, that is not complete. Returns NULL if there is nothing (or out of memory),
  * otherwise a message to be freed. */
 struct wire_message *wire_monitor_rest(const struct wire_monitor *monitor, bool answer);
 

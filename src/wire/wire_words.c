@@ -204,7 +204,7 @@ void wire_words_refusal(struct wire_text *out, const uint8_t *message, size_t le
     } else if (length >= HEAD && message[0] >= GET_POSITION && message[0] <= GET_PROGRESS &&
                is_error_text(message + HEAD, length - HEAD)) {
         if (!refuse_motor(out, message[1]))
-            wire_text_string(out, "one motor has to be named, 1 to 4");
+            wire_text_string(out, "expected one motor, 1 to 4");
     }
 }
 

@@ -227,7 +227,7 @@ START_TEST(the_text_names_what_is_wanted_and_what_there_is)
     expect_text("{\"any\": [{\"t\": \"2.5s\"}, {\"idle\": false}]}", 
                 "t >= 2.500000 s (is 0.010000 s) or idle == false (is true)");
     expect_text("{\"message\": {\"number\": 2, \"from\": \"master\", \"motor\": 1}}",
-                "a message 2 for motor 1 from the master (none has passed)");
+                "a message 2 for motor 1 from the host (none has passed)");
 }
 END_TEST
 
@@ -285,7 +285,7 @@ START_TEST(a_condition_within_conditions_has_an_end)
     strcat(text, "{\"t\": 1}");
     for (int depth = 0; depth < 100; depth++)
         strcat(text, "]}");
-    expect_refused(text, "inside one another");
+    expect_refused(text, "nested deeper than");
 }
 END_TEST
 
@@ -295,7 +295,7 @@ START_TEST(a_condition_asks_for_256_things_at_most)
     for (unsigned i = 0; i < 127; i++)
         end += sprintf(end, "{\"t\": %u},", i);
     strcpy(end, "{\"t\": 1}]}"); /* 128 lists with one each would be 256, and the outer one is one more */
-    expect_refused(text, "at most 256 things to wait for");
+    expect_refused(text, "at most 256 conditions in all");
     strcpy(end - 1, "]}");
     json_t *json = json_loads(text, 0, NULL);
     struct condition *read = condition_read(sim, json, &refusal);

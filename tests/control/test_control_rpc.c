@@ -74,12 +74,12 @@ static const struct {
     int code;
     const char *text;
 } wrong[] = {
-    {"nonsense", RPC_NO_JSON, "no JSON, at character 8: invalid token near 'nonsense'"},
-    {"{\"a\":1,\"a\":2}", RPC_NO_JSON, "no JSON, at character 10: duplicate object key near '\"a\"'"},
-    {"{} {}", RPC_NO_JSON, "no JSON, at character 4: end of file expected near '{'"},
-    {"\"\\u0000\"", RPC_NO_JSON, "no JSON, at character 8: \\u0000 is not allowed without JSON_ALLOW_NUL near '\"\\u0000\"'"},
+    {"nonsense", RPC_NO_JSON, "invalid JSON at character 8: invalid token near 'nonsense'"},
+    {"{\"a\":1,\"a\":2}", RPC_NO_JSON, "invalid JSON at character 10: duplicate object key near '\"a\"'"},
+    {"{} {}", RPC_NO_JSON, "invalid JSON at character 4: end of file expected near '{'"},
+    {"\"\\u0000\"", RPC_NO_JSON, "invalid JSON at character 8: \\u0000 is not allowed without JSON_ALLOW_NUL near '\"\\u0000\"'"},
     {"17", RPC_NO_REQUEST, "expected an object"},
-    {"[]", RPC_NO_REQUEST, "batches are not taken: expected one object a line"},
+    {"[]", RPC_NO_REQUEST, "batches are not supported: expected one object per line"},
     {"{\"id\":1,\"method\":\"state\"}", RPC_NO_REQUEST, "jsonrpc: expected \"2.0\""},
     {"{\"jsonrpc\":2.0,\"id\":1,\"method\":\"state\"}", RPC_NO_REQUEST, "jsonrpc: expected \"2.0\""},
     {"{\"jsonrpc\":\"1.0\",\"id\":1,\"method\":\"state\"}", RPC_NO_REQUEST, "jsonrpc: expected \"2.0\""},
@@ -136,7 +136,7 @@ START_TEST(what_is_too_deep_is_refused)
     ck_assert_msg(read_line(deepest), "%s", refusal.text);
     ck_assert(!read_line(deeper));
     ck_assert_int_eq(refusal.code, RPC_NO_REQUEST);
-    ck_assert_str_eq(refusal.text, "too deep: expected at most 64 lists and objects inside one another");
+    ck_assert_str_eq(refusal.text, "too deep: expected at most 64 nested lists and objects");
     free(deepest);
     free(deeper);
 }

@@ -55,7 +55,7 @@ START_TEST(count_and_skip_choose_some_out_of_many)
         ck_assert_uint_eq(rig.line.byte[i], i >= 7 && i < 12 ? 'B' : 'A');
     assert_state(0, "spent", 5);
     ck_assert_uint_eq(rig.news, 5);
-    assert_news(0, "1 flip: 41 of the master becomes 42");
+    assert_news(0, "1 flip: 41 of the host becomes 42");
     rig_end();
 }
 END_TEST
@@ -194,7 +194,7 @@ START_TEST(there_is_room_for_many_and_spent_ones_give_way)
         inject("{'kind': 'no_answer'}");
     inject("{'kind': 'drop', 'count': 1, 'direction': 'to_units'}");
     ck_assert_str_eq(refused("fault.inject", "{'kind': 'echo'}"),
-                     "-32000 there are 64 faults already that may still act: clear some");
+                     "-32000 too many faults: 64 can still act; clear some of them first");
     ask(1, VERSION, 1);
     settle();
     ck_assert_uint_eq(inject("{'kind': 'echo'}"), FAULTS_MAX + 1);
@@ -248,9 +248,9 @@ static const struct {
            "break, unplugged, cable, input"},
     {"{'kind': 'dropp'}", "-32602 kind: expected one of drop"},
     {"{'kind': 3}", "-32602 kind: expected one of drop"},
-    {"{'kind': 'drop', 'bytes': 3}", "-32602 `bytes' is no parameter of this method: expected kind, count, skip, probability, "
+    {"{'kind': 'drop', 'bytes': 3}", "-32602 unknown parameter `bytes': expected kind, count, skip, probability, "
                                      "after, for, unit, direction"},
-    {"{'kind': 'echo', 'unit': 1}", "-32602 `unit' is no parameter"},
+    {"{'kind': 'echo', 'unit': 1}", "-32602 unknown parameter `unit'"},
     {"{'kind': 'drop', 'count': 0}", "-32602 count: expected a whole number from 1 to 4294967295"},
     {"{'kind': 'drop', 'count': 'one'}", "-32602 count: expected"},
     {"{'kind': 'drop', 'skip': -1}", "-32602 skip: expected a whole number from 0"},
@@ -268,9 +268,9 @@ static const struct {
     {"{'kind': 'delay'}", "-32602 delay: expected a time"},
     {"{'kind': 'delay', 'delay': '1000001s'}", "-32602 delay: expected a time up to 1000000s"},
     {"{'kind': 'cut'}", "-32602 bytes: expected a whole number from 0 to 65535"},
-    {"{'kind': 'break'}", "-32602 duration: missing: how long the line is to be held at 0"},
+    {"{'kind': 'break'}", "-32602 duration: missing: how long the bus is held at 0"},
     {"{'kind': 'cable', 'duration': 0}", "-32602 duration: expected a time of at least 1us"},
-    {"{'kind': 'cable', 'every': '1s'}", "-32602 every: expected a duration, and a longer time than that"},
+    {"{'kind': 'cable', 'every': '1s'}", "-32602 every: expected a duration, too, and a time longer than the duration"},
     {"{'kind': 'cable', 'every': '1s', 'duration': '1s'}", "-32602 every: expected a duration"},
     {"{'kind': 'cable', 'every': 0, 'duration': '1s'}", "-32602 every: expected a time of at least 1ms"},
     {"{'kind': 'cable', 'every': 999, 'duration': 10}", "-32602 every: expected a time of at least 1ms"},
@@ -291,7 +291,7 @@ START_TEST(a_wrong_fault_is_refused_with_what_was_expected)
         ck_assert_msg(strncmp(text, wrong[i].answer, strlen(wrong[i].answer)) == 0, "%s: %s", wrong[i].params, text);
     }
     ck_assert_str_eq(refused("fault.clear", "{'id': 0}"), "-32602 id: expected a whole number from 1 to 4294967295");
-    ck_assert_str_eq(refused("fault.list", "{'id': 1}"), "-32602 `id' is no parameter of this method: expected none");
+    ck_assert_str_eq(refused("fault.list", "{'id': 1}"), "-32602 unknown parameter `id': expected none");
     ck_assert_ptr_null(listed(0));
     rig_end();
 }

@@ -155,7 +155,7 @@ START_TEST(power_that_goes_may_come_back_by_itself)
     ck_assert(sim_powered(&rig.sim, 1));
     ck_assert_uint_eq(segment_since(&rig.sim.segment, 1), gone + 3000000);
     ck_assert_uint_eq(rig.news, 2);
-    assert_news(0, "1 power: the power goes during a write of block 1");
+    assert_news(0, "1 power: power is lost during a write of block 1");
     assert_news(1, "1 power: the power is back");
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 1);
     rig_end();

@@ -248,7 +248,7 @@ START_TEST(a_break_spoils_the_request_under_way_and_is_one_framing_error)
     ck_assert_uint_eq(rig.lost, 1);
     run(20000);
     ck_assert_uint_eq(rig.news, 2);
-    assert_news(0, "1 break: the line is held at 0");
+    assert_news(0, "1 break: the bus is held at 0");
     assert_news(1, "1 break: over");
     ck_assert_uint_eq(rig.told[0].tick, BEGIN + 1000);
     ck_assert_uint_eq(rig.told[1].tick, BEGIN + 21000);

@@ -90,7 +90,7 @@ START_TEST(a_second_client_is_told_why_and_sent_away)
     int first = attach_client(), second = connect_client();
     send_all(second, "\x01\x02\x03", 3); /* must not get to the units, nor destroy the text */
     ck_assert_uint_gt(receive(second, text, sizeof text - 1), 0);
-    ck_assert(strstr(text, "refused: the line is in use by 127.0.0.1:") && strchr(text, '\n'));
+    ck_assert(strstr(text, "refused: the bus is in use by 127.0.0.1:") && strchr(text, '\n'));
     close(second);
     send_all(first, "x", 1);
     is_heard("x");
@@ -107,7 +107,7 @@ START_TEST(a_client_is_refused_while_somebody_else_has_the_line)
     line.owner = "the pty";
     int fd = connect_client();
     receive(fd, text, sizeof text - 1);
-    ck_assert_str_eq(text, "rkm04: refused: the line is in use by the pty\r\n");
+    ck_assert_str_eq(text, "rkm04: refused: the bus is in use by the pty\r\n");
     close(fd);
     line.owner = NULL;
     fd = attach_client();

@@ -67,7 +67,7 @@ START_TEST(a_hand_puts_the_carriage_somewhere_and_the_switches_follow)
     ck_assert_uint_gt(rig.inputs, 1); /* it has bounced */
     ck_assert_uint_eq(inputs(&rig), 2);
     ck_assert_command("plant.set", "{\"motor\": 1, \"position\": 51}",
-                      "-32602 position: expected one between the end stops of motor 1");
+                      "-32602 position: expected a position between the end stops of motor 1");
     ck_assert_int_eq(true_position(&rig, 1), 0);
 }
 END_TEST
@@ -101,7 +101,7 @@ END_TEST
 static const char *const refused[][2] = {
     {"{}", "-32602 expected plant, or motor and one of position, jammed, missing_lead"},
     {"{\"plant\": 5}", "-32602 plant: expected an object, the text of a plant file, or null"},
-    {"{\"plant\": null, \"motor\": 1}", "-32602 `motor' is no parameter of this method: expected plant"},
+    {"{\"plant\": null, \"motor\": 1}", "-32602 unknown parameter `motor': expected plant"},
     {"{\"plant\": {\"motors\": {\"1\": {\"offset\": true}}}}",
      "-32602 plant: expected the offset, a whole number -1000000000000..1000000000000, found true"},
     {"{\"plant\": \"motors: {1: {ofset: 1}}\\n\"}",
@@ -110,11 +110,11 @@ static const char *const refused[][2] = {
     {"{\"motor\": 1, \"jammed\": 1}", "-32602 jammed: expected true or false"},
     {"{\"motor\": 1, \"jammed\": true, \"position\": 1}", "-32602 expected position alone, without jammed and missing_lead"},
     {"{\"motor\": 1, \"position\": \"1\"}", "-32602 position: expected a whole number from -1000000000000 to 1000000000000"},
-    {"{\"motor\": 2, \"jammed\": true}", "-32000 motor 2 has no plant: configure one with plant.set and plant"},
+    {"{\"motor\": 2, \"jammed\": true}", "-32000 motor 2 is not in the plant: configure it with plant.set and plant"},
     {"{\"motor\": 5, \"jammed\": true}", "-32602 motor: expected a whole number from 1 to 4"},
     {"{\"unit\": 2, \"motor\": 1, \"jammed\": true}", "-32602 unit: there is no such unit: expected one of 1"},
     {"{\"motor\": 1, \"jam\": true}",
-     "-32602 `jam' is no parameter of this method: expected unit, motor, position, jammed, missing_lead"},
+     "-32602 unknown parameter `jam': expected unit, motor, position, jammed, missing_lead"},
 };
 
 START_TEST(what_cannot_be_done_is_refused_with_the_reason)

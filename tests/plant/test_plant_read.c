@@ -37,7 +37,7 @@ END_TEST
 START_TEST(with_several_units_the_file_must_say_which)
 {
     ck_assert(!plant_rig_begin(&rig, "3,5", "motors: {1: }"));
-    ck_assert_str_eq(rig.errors, "plant:1:1: error: expected units: there are 2 on the line\n");
+    ck_assert_str_eq(rig.errors, "plant:1:1: error: expected units: there are 2 on the bus\n");
     ck_assert(!plant_rig_configure(&rig, "units: {4: {motors: {1: }}}"));
     ck_assert_str_eq(rig.errors, "plant:1:9: error: expected 3 or 5, found \"4\"\n");
     ck_assert(!plant_rig_configure(&rig, "units: {3: {motors: {1: }}, 5: {motor: 1}}"));
@@ -125,12 +125,12 @@ static const struct {
     {SWITCH("at_most: 1, hysteresis: -1"), "1:12: error: expected a hysteresis of 0 or more steps"},
     {SWITCH("at_most: 1, bounce: 1000001us"), "1:12: error: expected a switch that bounces for at most 1s"},
     {SWITCH("at_most: 1, bounce: fast"),
-     "1:54: error: expected the time that it bounces, a time with its unit, such as 250us, 1500ms or 2.5s, found fast"},
+     "1:54: error: expected the bounce time, a time with its unit, such as 250us, 1500ms or 2.5s, found fast"},
     {SWITCH("at_most: 1, normally_closed: maybe"),
      "1:63: error: expected whether it opens when it is actuated, true or false, found maybe"},
     {MOTOR("turn: 100") "\n" SWITCH("at_most: 100"), "2:12: error: expected positions of a turntable, 0..99"},
     {MOTOR("turn: 100") "\n" SWITCH("between: [5, 44], hysteresis: 30"),
-     "2:12: error: expected a switch that lets go again: with its hysteresis it is actuated all around"},
+     "2:12: error: expected a smaller hysteresis: with this one the switch is always actuated"},
 };
 
 START_TEST(what_is_wrong_is_said_with_its_place)

@@ -161,10 +161,10 @@ START_TEST(what_is_left_of_a_killed_process_is_replayed)
         const char *said = replayed(taken.text, length);
         bool whole = taken.text[length - 1] == '\n';
         ck_assert_msg(strncmp(said, "same: ", 6) == 0, "%zu bytes: %s", length, said);
-        ck_assert_msg(strstr(said, "incomplete: all before it was replayed") || (whole && strstr(said, "there is no \"end\"")),
+        ck_assert_msg(strstr(said, "incomplete: the lines before it were replayed") || (whole && strstr(said, "no \"end\" line")),
                       "%zu bytes: %s", length, said);
     }
-    expect(taken.text, 20, "wrong: file.record:1:1: expected a record, which begins with {\"rkm04_record\":1,");
+    expect(taken.text, 20, "wrong: file.record:1:1: expected a recording, which begins with {\"rkm04_record\":1,");
     free(taken.text);
 }
 END_TEST
@@ -239,7 +239,7 @@ END_TEST
 START_TEST(an_answer_that_differs_is_named_with_its_bytes)
 {
     expect_changed("\"out\":\"7e0005043", "\"out\":\"7e0005053",
-                   "different: the master, tick 100000: recorded as byte 4 of 7e00050532");
+                   "different: the host, tick 100000: recorded as byte 4 of 7e00050532");
 }
 END_TEST
 
@@ -249,7 +249,7 @@ START_TEST(what_comes_and_was_not_recorded_is_a_difference)
     const char *at = strstr(simple.text, "{\"t\":100000,\"out\""), *end = strchr(at, '\n') + 1;
     memcpy(line, at, (size_t)(end - at));
     line[end - at] = '\0';
-    expect_changed(line, "", "different: the master, tick 100000: recorded nothing; came 7e000504320a");
+    expect_changed(line, "", "different: the host, tick 100000: recorded nothing; came 7e000504320a");
     at = strstr(simple.text, "{\"t\":300000,\"unit\":1,\"motor\":2");
     end = strchr(at, '\n') + 1;
     memcpy(line, at, (size_t)(end - at));
@@ -261,7 +261,7 @@ END_TEST
 START_TEST(what_was_recorded_and_does_not_come_is_a_difference)
 {
     expect_changed("{\"t\":1500000,\"command\"", "{\"t\":1400000,\"out\":\"7e\"}\n{\"t\":1500000,\"command\"",
-                   "different: the master, tick 1400000: recorded as byte 1 of 7e; came nothing");
+                   "different: the host, tick 1400000: recorded as byte 1 of 7e; came nothing");
     expect_changed("{\"t\":1500000,\"command\"",
                    "{\"t\":1400000,\"unit\":1,\"motor\":4,\"events\":1,\"digest\":\"0123456789abcdef\"}\n"
                    "{\"t\":1500000,\"command\"",
@@ -271,10 +271,10 @@ END_TEST
 
 START_TEST(an_input_that_differs_shows_where_it_leads_to_something_else)
 {
-    expect_changed("\"in\":\"7e0500", "\"in\":\"7e0600", "different: the master, tick 0: recorded as byte 1 of 7e");
+    expect_changed("\"in\":\"7e0500", "\"in\":\"7e0600", "different: the host, tick 0: recorded as byte 1 of 7e");
     expect_changed("{\"mask\":3}", "{\"mask\":7}", "different: unit 5, ticks 1500000 to 1599999: recorded ");
     expect_changed("{\"mask\":3}", "{\"mask\":300}",
-                   "different: the control, tick 1500000: recorded that `di.set' was obeyed; came a refusal: mask: expected");
+                   "different: the control, tick 1500000: recorded success of `di.set'; came a refusal: mask: expected");
 }
 END_TEST
 

@@ -40,16 +40,16 @@ START_TEST(a_file_that_is_no_record_is_named_with_line_column_and_what_was_expec
     static const struct {
         const char *text, *expected;
     } cases[] = {
-        {"", "x:1:1: expected a record, which begins with {\"rkm04_record\":1,"},
+        {"", "x:1:1: expected a recording, which begins with {\"rkm04_record\":1,"},
         {"hello\n", "x:1:5: expected a JSON object: "},
         {"[]\n", "x:1:1: expected a JSON object, as in "},
-        {"{}\n", "x:1:1: expected a record, which begins with"},
+        {"{}\n", "x:1:1: expected a recording, which begins with"},
         {"{\"rkm04_record\":2}\n", "x:1:17: expected \"rkm04_record\": 1"},
         {"{\"rkm04_record\":1}\n", "x:1:1: expected \"nodes\", a list of 1 to 16 addresses from 1 to 16"},
         {"{\"rkm04_record\":1,\"nodes\":[17]}\n", "x:1:27: expected \"nodes\""},
         {"{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"x\"}\n", "x:1:41: expected \"framing\", hdlc or plain"},
         {"{\"rkm04_record\":1,\"nodes\":[1],\"farming\":\"x\"}\n",
-         "x:1:41: \"farming\" has no place in this line: expected rkm04_record"},
+         "x:1:41: unexpected \"farming\" in this line: expected rkm04_record"},
         {"{\"rkm04_record\":1,\"nodes\":[1],\"nodes\":[1]}\n", "x:1:37: expected a JSON object: duplicate object key"},
         {"{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"seed\":\"-1\"}\n", "x:1:55: expected \"seed\""},
         {"{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"seed\":\"1\",\"plant\":\"motors: 3\"}\n",
@@ -69,14 +69,14 @@ START_TEST(a_file_that_is_no_record_is_named_with_line_column_and_what_was_expec
         {HEAD "{\"t\":9,\"in\":\"\"}\n", "x:2:13: expected \"in\", 1 to 4096 bytes"},
         {HEAD "{\"t\":9,\"in\":\"0G\"}\n", "x:2:13: expected \"in\", 1 to 4096 bytes"},
         {HEAD "{\"t\":9,\"in\":7}\n", "x:2:13: expected \"in\", 1 to 4096 bytes"},
-        {HEAD "{\"t\":9,\"in\":\"00\",\"x\":{\"in\":1}}\n", "x:2:22: \"x\" has no place in this line: expected t, at, in"},
+        {HEAD "{\"t\":9,\"in\":\"00\",\"x\":{\"in\":1}}\n", "x:2:22: unexpected \"x\" in this line: expected t, at, in"},
         {HEAD "{\"t\":9,\"break\":1}\n", "x:2:16: expected \"break\", true or false"},
         {HEAD "{\"t\":9,\"timed\":\"no\"}\n", "x:2:16: expected \"timed\", true or false"},
         {HEAD "{\"t\":9,\"command\":\"di.set\"}\n", "x:2:1: expected \"params\", an object"},
         {HEAD "{\"t\":9,\"command\":\"shutdown\",\"params\":{}}\n", "x:2:18: expected \"command\", one that rkm04 "},
         {HEAD "{\"t\":9,\"command\":\"restore\",\"params\":{\"file\":\"/etc/passwd\"}}\n",
          "x:2:18: expected the file that was restored before this line"},
-        {HEAD "{\"t\":9,\"out\":\"7e\"}\n", "x:2:14: expected none of what went out: the record says that there is none"},
+        {HEAD "{\"t\":9,\"out\":\"7e\"}\n", "x:2:14: expected no outputs: the recording says that it has none"},
         {HEAD "{\"outputs\":true}\n", "x:2:12: expected \"outputs\": false"},
         {HEAD_OUT "{\"t\":9,\"moved\":1}\n", "x:2:16: expected {\"outputs\":false} before this line"},
         {HEAD_OUT "{\"t\":9,\"to\":8,\"out\":\"7e\"}\n", "x:2:13: expected \"to\", a whole number from 9"},
@@ -100,7 +100,7 @@ START_TEST(a_line_without_end_is_refused_at_2_mebibytes)
     memset(text, ' ', length);
     memcpy(text, HEAD, sizeof HEAD - 1);
     ck_assert_int_eq(replayed(text, length, NULL, NULL), REPLAY_WRONG);
-    ck_assert_str_eq(said, "x:2:2097152: expected the end of the line: it may have 2097152 bytes");
+    ck_assert_str_eq(said, "x:2:2097152: expected a line of at most 2097152 bytes");
     free(text);
 }
 END_TEST
@@ -141,7 +141,7 @@ START_TEST(records_within_one_another_have_an_end)
         enum replay_end end = replayed(text, length, NULL, NULL);
         ck_assert_int_eq(end, depth < 8 ? REPLAY_SAME : REPLAY_DIFFERENT);
     }
-    ck_assert_msg(strstr(said, "recorded that `restore' was obeyed; came a refusal"), "%s", said);
+    ck_assert_msg(strstr(said, "recorded success of `restore'; came a refusal"), "%s", said);
     free(text);
 }
 END_TEST

@@ -233,16 +233,16 @@ START_TEST(what_is_wrong_with_parameters_is_said)
     refused("snapshot", "{\"name\": \"a\", \"file\": \"b\"}", "expected either `name'");
     refused("snapshot", "{\"name\": 7}", "name: expected a string");
     refused("snapshot", "{\"name\": \"\"}", "name: expected 1 to 64 characters");
-    refused("snapshot", "{\"nane\": \"a\"}", "`nane' is no parameter of this method: expected name, file");
+    refused("snapshot", "{\"nane\": \"a\"}", "unknown parameter `nane': expected name, file");
     refused("restore", "{\"name\": \"a\"}",
             "name: there is no snapshot `a': expected one of those taken with `snapshot': none yet");
     session_command(&here, "snapshot", "{\"name\": \"one\"}");
     session_command(&here, "snapshot", "{\"name\": \"two\"}");
     refused("restore", "{\"name\": \"a\"}", "there is no snapshot `a': expected one of one, two");
     refused("snapshot", "{\"file\": \"\"}", "file: expected a path");
-    refused("snapshot", "{\"file\": \"x\"}", "what has come in was not kept");
+    refused("snapshot", "{\"file\": \"x\"}", "the inputs since power-up were not kept");
     refused("restore", "{\"file\": \"/nowhere/at/all\"}", "cannot read /nowhere/at/all: No such file");
-    refused("restore", "{\"file\": \"/dev/zero\"}", "/dev/zero is no regular file");
+    refused("restore", "{\"file\": \"/dev/zero\"}", "/dev/zero is not a regular file");
 }
 END_TEST
 
@@ -254,7 +254,7 @@ START_TEST(there_is_room_for_64_names)
         snprintf(params, sizeof params, "{\"name\": \"%u\"}", i);
         session_command(&here, "snapshot", params);
     }
-    refused("snapshot", "{\"name\": \"64\"}", "there are 64 snapshots already: use one of their names again");
+    refused("snapshot", "{\"name\": \"64\"}", "too many snapshots (64): replace one by using its name");
     session_command(&here, "snapshot", "{\"name\": \"63\"}");
 }
 END_TEST
@@ -264,7 +264,7 @@ START_TEST(a_line_with_another_time_of_bytes_is_refused)
     session_begin(&here, &session_kinds[0]);
     session_command(&here, "snapshot", "{\"name\": \"a\"}");
     sim_set_timed(&here.sim, false);
-    refused("restore", "{\"name\": \"a\"}", "of another line: whether bytes take time (--baud, --clock stepped) is different");
+    refused("restore", "{\"name\": \"a\"}", "does not fit this bus: whether bytes take time (--baud, --clock stepped)");
     sim_set_timed(&here.sim, true);
     session_command(&here, "restore", "{\"name\": \"a\"}");
 }
@@ -390,7 +390,7 @@ START_TEST(too_long_a_past_is_refused_until_it_is_shorter)
         if (i % 50 == 0)
             session_forget(&here);
     }
-    refused("snapshot", params, "more has come in since power-up than a snapshot file may hold (16 MiB)");
+    refused("snapshot", params, "a snapshot file holds at most 16 MiB of inputs since power-up");
     session_command(&here, "snapshot", "{\"name\": \"b\"}");
     session_command(&here, "restore", "{\"name\": \"a\"}");
     session_command(&here, "snapshot", params);
@@ -406,7 +406,7 @@ START_TEST(a_file_of_a_line_with_other_readings_is_refused)
     session_command(&here, "snapshot", params);
     session_end(&here);
     session_begin(&here, &kind);
-    refused("restore", params, "the snapshot is of another line: one of the readings (--readings) is different");
+    refused("restore", params, "the snapshot does not fit this bus: one of the readings (--readings) is different");
 }
 END_TEST
 
@@ -419,7 +419,7 @@ START_TEST(a_file_of_another_line_is_refused_and_changes_nothing)
     session_begin(&here, &session_kinds[2]);
     session_set(&here, 1, '1', "F5 R");
     sim_advance(&here.sim, SECOND);
-    refused("restore", params, "the snapshot is of another line: the number of units is different");
+    refused("restore", params, "the snapshot does not fit this bus: the number of units is different");
     ck_assert_int_eq(counter(1), 5);
     FILE *file = fopen(path, "w");
     fputs("{\"rkm04_record\":1,\n", file);

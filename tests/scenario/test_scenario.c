@@ -151,7 +151,7 @@ START_TEST(P1_a_program_must_be_taken_unless_another_flag_is_expected)
     expect_fail(QUIET "  - set: 'F1 R q'\n", 3, "the answer to the program with flag 0", "flag 2 (unknown command 'q')");
     expect_fail(QUIET "  - set: 'F0 R'\n", 3, "the answer to the program with flag 0", "flag 1 (bad value 'F')");
     expect_pass(QUIET "  - {set: 'V0', flag: 1}\n");
-    expect_fail(QUIET "  - {set: 'V1', flag: 1}\n", 3, "the answer to the program with flag 1", "flag 0 (all right)");
+    expect_fail(QUIET "  - {set: 'V1', flag: 1}\n", 3, "the answer to the program with flag 1", "flag 0 (ok)");
 }
 END_TEST
 
@@ -241,7 +241,7 @@ START_TEST(a_step_may_have_its_time)
 {
     expect_pass_at(QUIET "  - {advance: 5ms, at: 2s}\n", 2005 * MS);
     expect_fail(QUIET "  - advance: 3s\n  - {di: {\"01\": 1}, at: 2s}\n", 4, "to begin at 2.000000 s",
-                "the step before has ended only now");
+                "the step before has just ended");
 }
 END_TEST
 
@@ -283,9 +283,9 @@ END_TEST
 START_TEST(a_stimulus_that_never_acts_is_a_failure)
 {
     expect_fail("stimuli: [{when: {motor: 1, position: 5}, di: {\"03\": 1}}]\nsteps: [{advance: 1s}]\n", 1,
-                "the stimulus to have acted when the last step is over", "motor 1 position 0");
+                "the stimulus to act before the last step ends", "motor 1 position 0");
     expect_fail("stimuli: [{at: 5s, di: {\"03\": 1}}]\nsteps: [{advance: 1s}]\n", 1,
-                "the stimulus to have acted when the last step is over", "the last step was over before its time");
+                "the stimulus to act before the last step ends", "the last step ended before its time");
 }
 END_TEST
 

@@ -144,7 +144,7 @@ START_TEST(a_scenario_that_goes_past_the_end_fails_there)
     fclose(errors);
     ck_assert_msg(scenario != NULL, "%s", said);
     ck_assert_int_eq(scenario_run(scenario, NULL, NULL, NULL, &result), SCENARIO_FAILED);
-    ck_assert_str_eq(result.expected, "virtual time to go on");
+    ck_assert_str_eq(result.expected, "virtual time to continue");
     ck_assert_str_eq(result.seen, "its end, after 1000000000 s");
     ck_assert_uint_eq(result.line, 3);
     ck_assert_uint_eq(result.tick, SIM_TIME_MAX);

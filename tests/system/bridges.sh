@@ -72,7 +72,7 @@ by_tcp() {
 }
 
 closed() {
-    [[ $(grep -c 'has closed the line' "$folder/bus.err") == "$1" ]]
+    [[ $(grep -c 'has closed the bus' "$folder/bus.err") == "$1" ]]
 }
 
 test_the_client_reaches_a_unit_over_tcp() {

@@ -79,7 +79,7 @@ test_units_that_cannot_follow_a_fast_clock_answer_all_the_same() {
         exits 0 ctl bus -n "$node" -m 0 set 'S2000 V2000 @1 F9 R J1'
     done
     exits 0 ctl bus -n 1 version
-    soon "it is told" grep -q 'behind clock x10000 for a second' "$folder/bus.err"
+    soon "it is told" grep -q 'too slow for clock x10000 for a second' "$folder/bus.err"
     exits 0 ctrl clock real
     exits 0 ctl bus -n 16 version
 }
@@ -102,7 +102,7 @@ test_the_clock_can_be_changed_while_the_units_run() {
 test_virtual_time_ends_and_it_is_said() {
     serve bus --clock max --record "$folder/session.record"
     exits 0 ctl bus set '@1 W16000000 J1'
-    soon "the end is told" grep -q 'virtual time has come to its end, 1000000000 s' "$folder/bus.err"
+    soon "the end is told" grep -q 'virtual time has reached its end, 1000000000 s' "$folder/bus.err"
     same 1000000000000000 "$(tick)" "the time"
     exits 3 ctrl wait 'do1=1'
     exits 0 ctrl clock stepped

@@ -185,7 +185,7 @@ def test_one_that_only_ends_its_sending_gets_its_answers(emulator):
     client.socket.shutdown(socket.SHUT_WR)
     assert client.line()["id"] == 2
     refused = client.line()
-    assert refused["error"] == {"code": -32700, "message": "the last line has no newline: it was not obeyed"}, refused
+    assert refused["error"] == {"code": -32700, "message": "the last line has no newline: it was ignored"}, refused
     other.call("di.set", mask=1)
     assert client.line() == {"jsonrpc": "2.0", "id": 1, "result": {"t_us": 0, "holds": True}}
     assert client.line() is None  # closed
@@ -228,7 +228,7 @@ def test_too_many_waits_and_subscriptions_are_refused(emulator):
     assert client.refused("wait", until={"di": {"1": 1}}).code == -32000
     for number in range(1, 17):
         assert client.call("subscribe", kinds=["led"])["subscription"] == number
-    assert client.refused("subscribe").message == "too many subscriptions: expected at most 16 of a client at a time"
+    assert client.refused("subscribe").message == "too many subscriptions: expected at most 16 per client"
     client.call("unsubscribe", subscription=3)
     assert client.call("subscribe", kinds=["led"])["subscription"] == 17
 
@@ -293,7 +293,7 @@ def test_a_clock_that_is_being_advanced_cannot_be_changed(emulator):
     emulator.program(1, "V16000 A60000 G+")
     number = slow.request("advance", ticks="30s")
     error = other.refused("clock", clock="real")
-    assert error.code == -32000 and error.message.startswith("the clock is being advanced"), error
+    assert error.code == -32000 and error.message.startswith("a client is advancing the clock"), error
     slow.answer(number)
     assert other.call("clock", clock="max")["clock"] == "max"
 
@@ -373,7 +373,7 @@ def test_files_begun_are_ended_with_the_emulator(emulator):
         client.call("trace.start", file=name)
     error = client.refused("trace.start", file="a.vcd")
     assert error.message == "cannot write a.vcd: it is being written already: choose another name", error
-    assert client.refused("trace.stop").message == "trace: missing: there are several"
+    assert client.refused("trace.stop").message == "trace: missing: several traces are running"
     emulator.program(1, "S100 F5 R")
     client.call("advance", ticks="1s")
     assert client.call("trace.stop", trace=2)["file"] == "a.csv"

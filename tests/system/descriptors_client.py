@@ -39,7 +39,7 @@ while len(crowd) < 100:
 assert len(crowd) < 100, "descriptors without end"
 assert "result" in ask(first, "fault.clear")
 end = time.monotonic() + LIMIT
-while "cannot be plugged in again: trying every second" not in open(log, encoding="utf-8").read():
+while "cannot plug the adapter in again: trying every second" not in open(log, encoding="utf-8").read():
     assert time.monotonic() < end, "nothing is said"
     time.sleep(0.02)
 assert "result" in ask(first, "fault.list"), "it answers"

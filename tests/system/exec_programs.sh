@@ -64,7 +64,7 @@ endless() {
     done
     run 124 --json --trace run.csv "${arguments[@]}"
     holds "$said" '"end":"endless"' "the end"
-    holds "$complained" "it never ends: what happens repeats every $1 s; --until stops it at a time" "stderr"
+    holds "$complained" "the program never ends: its state repeats every $1 s; set an end with --until" "stderr"
     (($(wc -c <run.csv) < 2000000)) || fail "the trace is long"
 }
 
@@ -80,7 +80,7 @@ test_an_endless_motion_is_recognised_at_its_speed() {
     run 124 --json --trace run.csv run.rks
     holds "$said" '"end":"endless"' "the end"
     (($(grep -c ,m1,step, run.csv) >= 247)) || fail "it has not come to its speed"
-    holds "$complained" "it never ends: motor 1 is in an endless motion; --until stops it at a time" "stderr"
+    holds "$complained" "the program never ends: motor 1 is in an endless motion; set an end with --until" "stderr"
     text 1.rks ')02'
     text 2.rks 'G-'
     run 124 1=1.rks 2=2.rks

@@ -85,7 +85,7 @@ test_with_a_link_there_is_a_pty_beside_tcp() {
 # sent_away KEY: whoever comes by this way is told that the line is in use.
 sent_away() {
     exec 4<>"/dev/tcp/127.0.0.1/$(address "$1" | sed 's/.*://')"
-    holds "$(timeout "$limit" cat <&4)" "refused: the line is in use by $2" "what a second client by $1 is told"
+    holds "$(timeout "$limit" cat <&4)" "refused: the bus is in use by $2" "what a second client by $1 is told"
     exec 4>&-
 }
 

@@ -99,7 +99,7 @@ test_a_client_keeps_its_settings_though_another_has_just_gone() { many settings 
 test_settings_outlive_the_client() {
     serve bus
     stty 9600 cstopb min 0 time 7 <"$folder/bus"
-    soon "it has gone" grep -q 'has closed the line' "$folder/bus.err"
+    soon "it has gone" grep -q 'has closed the bus' "$folder/bus.err"
     holds "$(stty -a <"$folder/bus")" "speed 9600" "the next client finds"
     holds "$(stty -a <"$folder/bus")" " cstopb" "the next client finds"
     holds "$(stty -a <"$folder/bus")" "min = 0; time = 7" "the next client finds"
@@ -113,7 +113,7 @@ test_a_pty_that_was_locked_for_good_is_replaced() {
     LD_PRELOAD=$folder/shim.so ASAN_OPTIONS=verify_asan_link_order=0 serve bus
     old=$(readlink "$folder/bus")
     exits 0 ctl bus version
-    soon "it is locked, and replaced" grep -q 'locked the pty .* for good' "$folder/bus.err"
+    soon "it is locked, and replaced" grep -q 'locked the pty .* and has closed it' "$folder/bus.err"
     soon "the link is there" test -L "$folder/bus"
     exits 0 ctl bus version
     holds "$said" "$version" "on another pty than $old"
@@ -132,9 +132,9 @@ without_inotify() {
     for i in 1 2 3; do
         exec 3<>"$folder/bus"
         dialogue 3 "7e 01 00 08 58 10 7e" "7e 00 01 ff 08 00 00 db ff 7e" "time $i"
-        soon "the client is seen" seen 'opened the line' "$i"
+        soon "the client is seen" seen 'opened the bus' "$i"
         exec 3>&-
-        soon "it is seen to go" seen 'closed the line' "$i"
+        soon "it is seen to go" seen 'closed the bus' "$i"
     done
     stty echo icanon icrnl ixon <"$folder/bus"
     soon "the next client finds it raw" raw_again

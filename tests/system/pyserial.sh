@@ -41,8 +41,8 @@ py() {
 
 nobody_has_the_line() {
     local opened closed
-    opened=$(grep -c 'has opened the line' "$folder/bus.err")
-    closed=$(grep -c 'has closed the line' "$folder/bus.err")
+    opened=$(grep -c 'has opened the bus' "$folder/bus.err")
+    closed=$(grep -c 'has closed the bus' "$folder/bus.err")
     ((opened == closed))
 }
 
@@ -85,13 +85,13 @@ test_a_second_client_is_refused_with_a_reason() {
         soon "the first client has the line" grep -qs open "$folder/keep-$way.out"
         other=$(ready_value bus "${way/socket/tcp}")
         exits 0 timeout "$limit" socat -t "$limit" "TCP:$other" -
-        holds "$(tr -d '\r' <<<"$said")" "rkm04: refused: the line is in use by 127.0.0.1:" "what the second client is told"
+        holds "$(tr -d '\r' <<<"$said")" "rkm04: refused: the bus is in use by 127.0.0.1:" "what the second client is told"
         exec 3>&-
         status_of "${processes[-1]}"
         same 0 "$status" "the first client goes on undisturbed"
         soon "nobody has the line" nobody_has_the_line
     done
-    same 2 "$(grep -c 'was sent away' "$folder/bus.err")" "lines of the log"
+    same 2 "$(grep -c 'was refused: another' "$folder/bus.err")" "lines of the log"
 }
 
 test_a_client_of_another_speed_is_reported_once() {

@@ -53,7 +53,7 @@ test_a_killed_process_leaves_a_usable_record() {
     holds "$complained" 'there is no "end": what recorded it was killed, or is still at work' "the note"
     head -c -5 "$folder/a.record" >"$folder/b.record"
     exits 0 "$RKM04" replay "$folder/b.record"
-    holds "$complained" "the last one, is incomplete: all before it was replayed" "the note"
+    holds "$complained" "the last one, is incomplete: everything before it was replayed" "the note"
 }
 
 test_a_difference_is_named_and_the_exit_status_is_1() {

@@ -49,7 +49,7 @@ test_a_failure_is_one_line_with_what_was_expected_seen_and_when() {
     same 3 "$(wc -l <<<"$said")" "lines"
     same "pass good.yaml: Five steps (0.049423 s)" "$(sed -n 1p <<<"$said")" "the first line"
     local line='FAIL bad.yaml:4:5: A <sixth> & "last": one more: expected motor 1 position == 6 within 1.000000 s; '
-    line+='seen motor 1 position 5; at tick 1011980 (1.011980 s); record bad.record'
+    line+='seen motor 1 position 5; at tick 1011980 (1.011980 s); recording bad.record'
     same "$line" "$(sed -n 2p <<<"$said")" "the second line"
     same "2 scenarios: 1 passed, 1 failed" "$(sed -n 3p <<<"$said")" "the third line"
 }
@@ -109,7 +109,7 @@ test_a_scenario_may_come_from_standard_input() {
     scenarios
     exits 3 sh -c "'$RKM04' test --records . - <bad.yaml"
     holds "$said" "FAIL <stdin>:4:5: " "the line"
-    [[ -s stdin.record ]] || fail "no record"
+    [[ -s stdin.record ]] || fail "not a recording"
     exits 2 sh -c "echo 'steps: 5' | '$RKM04' test -"
     holds "$complained" "<stdin>:1:8: error: expected steps, a list" "stderr"
 }

@@ -83,12 +83,12 @@ test_a_client_that_is_killed_leaves_the_line_to_the_next() {
     for kind in tcp rfc2217; do
         serve_tcp --$kind 0
         start client bash -c "exec 3<>/dev/tcp/127.0.0.1/${address##*:}; read -rd '' <&3"
-        soon "the client is there" logged 'has opened the line' 1
+        soon "the client is there" logged 'has opened the bus' 1
         kill -KILL "$started"
         status_of "$started" 2>/dev/null
-        soon "the client has gone" logged 'has closed the line' 1
+        soon "the client has gone" logged 'has closed the bus' 1
         connect
-        soon "the next is there" logged 'has opened the line' 2
+        soon "the next is there" logged 'has opened the bus' 2
         exec 3>&-
     done
 }
@@ -98,7 +98,7 @@ test_a_client_hears_that_the_emulator_has_ended() {
     serve_tcp --tcp 0
     unit=$started
     connect
-    soon "the client is there" logged 'has opened the line' 1
+    soon "the client is there" logged 'has opened the bus' 1
     kill "$unit"
     same "" "$(hear_bytes 3 1)" "the end of the connection"
     exec 3>&-
@@ -126,9 +126,9 @@ test_random_bytes_do_no_harm() {
     for kind in tcp rfc2217; do
         serve_tcp --$kind 0 --baud 0
         head -c 300000 /dev/urandom | timeout "$limit" socat -u - "TCP:$address" || fail "$kind: cannot send"
-        soon "the client has gone" logged 'has closed the line' 1
+        soon "the client has gone" logged 'has closed the bus' 1
         connect
-        soon "the next is there" logged 'has opened the line' 2
+        soon "the next is there" logged 'has opened the bus' 2
         exec 3>&-
     done
 }
@@ -138,7 +138,7 @@ test_a_client_that_comes_again_at_once_is_served() {
     serve_tcp --tcp 0
     exits 0 timeout "$limit" python3 "$(dirname "$0")/tcp_client.py" again "${address##*:}"
     holds "$(<"$folder/bus.err")" "bytes that it had sent were dropped" "the log"
-    same 0 "$(grep -c 'was sent away' "$folder/bus.err")" "clients sent away"
+    same 0 "$(grep -c 'was refused: another' "$folder/bus.err")" "clients sent away"
 }
 
 # serve_occupied: a unit with pty and TCP whose pty has a client, as descriptor 3.
@@ -154,14 +154,14 @@ test_a_refused_client_reads_why() {
     serve_occupied
     for node in 1 0; do
         exits 1 "$RKMCTL" -p "tcp:$address" -n "$node" set 'F1 R'
-        holds "$complained" "refused: the line is in use by a client of the pty" "the message, unit $node"
+        holds "$complained" "refused: the bus is in use by a client of the pty" "the message, unit $node"
     done
 }
 
 test_clients_without_number_do_not_fill_the_log() {
     serve_occupied
     exits 0 timeout "$limit" python3 "$(dirname "$0")/tcp_client.py" refused "${address##*:}"
-    same 100 "$(grep -c 'was sent away' "$folder/bus.err")" "lines of the log"
+    same 100 "$(grep -c 'was refused: another' "$folder/bus.err")" "lines of the log"
 }
 
 run_cases "$@"

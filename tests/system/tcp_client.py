@@ -31,7 +31,7 @@ def again():
 def refused():
     """Many who are sent away."""
     for _ in range(300):
-        session(b"", b"rkm04: refused: the line is in use by a client of the pty\r\n")
+        session(b"", b"rkm04: refused: the bus is in use by a client of the pty\r\n")
 
 
 {"again": again, "refused": refused}[sys.argv[1]]()

@@ -82,10 +82,10 @@ START_TEST(P1_a_conditional_jump_is_told_which_part_is_wrong)
 {
     assert_says("I9H1", "expected an input or variable 1..8 or 80..95 after I, found 9");
     assert_says("I H1", "expected an input or variable 1..8 or 80..95 after I, found 'H'");
-    assert_says("I01 20", "expected H or L behind the input of I, found 20");
-    assert_says("I01X5", "expected H or L behind the input of I, found 'X'");
-    assert_says("I01L81", "expected a label 1..80 behind H or L of I, found 81");
-    assert_says("I80H", "expected a label 1..80 behind H or L of I, found the end of the text");
+    assert_says("I01 20", "expected H or L after the input of I, found 20");
+    assert_says("I01X5", "expected H or L after the input of I, found 'X'");
+    assert_says("I01L81", "expected a label 1..80 after H or L of I, found 81");
+    assert_says("I80H", "expected a label 1..80 after H or L of I, found the end of the text");
 }
 END_TEST
 

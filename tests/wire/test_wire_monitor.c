@@ -284,7 +284,7 @@ START_TEST(L3_a_request_that_no_unit_obeys_is_told_with_the_reason)
     wire_rig_ask(7, "\1", 1);
     wire_rig_says("master > 7: 1 Version; ignored: there is no unit 7");
     wire_rig_ask(0, "\4" "1", 2);
-    wire_rig_says("master > all: 4 Get Position m1; ignored: a question to all is not answered (P10)");
+    wire_rig_says("master > all: 4 Get Position m1; ignored: a request to all units is not answered (P10)");
     sim_power(sim, 1, false);
     wire_rig_ask(3, "\1", 1);
     wire_rig_says("master > 3: 1 Version; ignored: no power at unit 3");
@@ -354,7 +354,7 @@ START_TEST(P4_P5_P6_the_other_refusals_are_told)
     DIALOGUE("\4" "5", "master > 3: 4 Get Position m5",
              "3 > master: 4 Get Position m5 -> ERROR COMMAND!; refused: there is no motor '5'");
     DIALOGUE("\7" "0", "master > 3: 7 Get Pozic Run m0",
-             "3 > master: 7 Get Pozic Run m0 -> ERROR COMMAND!; refused: one motor has to be named, 1 to 4");
+             "3 > master: 7 Get Pozic Run m0 -> ERROR COMMAND!; refused: expected one motor, 1 to 4");
     DIALOGUE("\x08" "1", "master > 3: 8 unknown message, and 31",
              "3 > master: 255 unknown message 8; refused: there is no message 8");
     sim->config.flash.erase = fail_to_erase;
