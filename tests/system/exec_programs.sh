@@ -241,7 +241,7 @@ test_the_table_for_people_shows_every_motor() {
     run 0 run.rks
     holds "$said" $'\nmotor     position  state   command  led    fault\n' "the head"
     holds "$said" $'\n1              100  wait          6  off    -\n2                0  idle          0  off    -\n' "the motors"
-    holds "$said" "at 1: inputs none; outputs 02 05; variables 81" "the bits"
+    holds "$said" "inputs on: none; outputs on: 02 05; variables on: 81" "the bits"
 }
 
 test_an_interrupted_run_shows_the_state_reached() {

@@ -64,7 +64,7 @@ test_the_recording_of_a_failure_is_no_file_that_is_read() {
     cp start.record kept
     printf 'steps:\n  - call: restore\n    params: {file: start.record}\n  - expect: {motor: 1, position: 77}\n' >start.yaml
     exits 3 "$RKM04" test start.yaml
-    holds "$complained" "cannot write the record ./start.record: it is" "stderr"
+    holds "$complained" "cannot write the recording ./start.record: it is" "stderr"
     cmp -s start.record kept || fail "the recording that is restored was overwritten"
     printf 'precious' >first.record
     exits 3 "$RKM04" test first.yaml

@@ -50,7 +50,7 @@ test_a_killed_process_leaves_a_usable_record() {
     kill -KILL "$started"
     status_of "$started"
     exits 0 "$RKM04" replay "$folder/a.record"
-    holds "$complained" 'there is no "end": what recorded it was killed, or is still at work' "the note"
+    holds "$complained" 'no "end" line: the recording process was killed or is still running' "the note"
     head -c -5 "$folder/a.record" >"$folder/b.record"
     exits 0 "$RKM04" replay "$folder/b.record"
     holds "$complained" "the last one, is incomplete: everything before it was replayed" "the note"

@@ -72,8 +72,8 @@ test_a_restore_has_a_limit_of_real_time() {
     make_long
     serve bus
     exits 1 ctrl call restore file="$folder/long.record" timeout=300ms
-    holds "$complained" 'of real time its replay is at' "the message"
-    holds "$complained" 'us only: give it a longer timeout' "the message"
+    holds "$complained" 'of real time the replay has only reached' "the message"
+    holds "$complained" 'us only: give a longer timeout' "the message"
     exits 2 ctrl call restore file="$folder/long.record" timeout=soon
     holds "$complained" 'timeout: expected a time' "the message"
 }
@@ -93,7 +93,7 @@ test_a_scenario_restores_within_the_limit() {
     make_long
     printf '%s\n' 'steps:' "  - call: restore" "    params: {file: $folder/long.record, timeout: 300ms}" >"$folder/long.yaml"
     exits 3 "$RKM04" test "$folder/long.yaml"
-    holds "$said$complained" 'give it a longer timeout' "the message"
+    holds "$said$complained" 'give a longer timeout' "the message"
 }
 
 test_a_scenario_can_be_interrupted_while_it_restores() {

@@ -60,7 +60,7 @@ test_the_record_of_a_failure_can_be_repeated() {
     cp bad.yaml other/
     exits 3 "$RKM04" test --records kept good.yaml bad.yaml other/bad.yaml
     same "bad-2.record bad.record" "$(cd kept && echo *)" "records kept"
-    holds "$said" "record kept/bad-2.record" "the line"
+    holds "$said" "recording kept/bad-2.record" "the line"
     exits 0 "$RKM04" replay --trace pulses.csv kept/bad.record
     same 5 "$(grep -c ',step,' pulses.csv)" "pulses in the trace of the replay"
 }
@@ -76,7 +76,7 @@ test_no_record_is_kept_of_what_passes_or_when_none_is_wanted() {
 test_a_record_that_cannot_be_written_is_reported() {
     scenarios
     exits 3 "$RKM04" test --records nowhere bad.yaml
-    holds "$complained" "cannot write the record nowhere/bad.record: No such file or directory" "stderr"
+    holds "$complained" "cannot write the recording nowhere/bad.record: No such file or directory" "stderr"
 }
 
 test_a_file_that_is_no_scenario_is_refused_and_nothing_is_run() {
