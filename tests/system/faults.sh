@@ -276,7 +276,7 @@ test_units_that_answer_one_another_for_ever_are_cut_off_and_it_is_told() {
     serve bus --framing plain --node 1,1 --baud 0
     exits 0 "$RKMCTL" -c "$folder/bus.control" -u 1-2 fault inject delay delay=10 count=1
     exits 0 ctl bus --framing plain version
-    soon "it is told" grep -q 'cut off' "$folder/bus.err"
+    soon "it is told" grep -q 's in all: stopped' "$folder/bus.err"
     exits 0 "$RKMCTL" -c "$folder/bus.control" fault clear
     exits 0 ctl bus --framing plain version
 }

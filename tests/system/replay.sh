@@ -53,7 +53,7 @@ test_a_killed_process_leaves_a_usable_record() {
     holds "$complained" 'no "end" line: the recording process was killed or is still running' "the note"
     head -c -5 "$folder/a.record" >"$folder/b.record"
     exits 0 "$RKM04" replay "$folder/b.record"
-    holds "$complained" "the last one, is incomplete: everything before it was replayed" "the note"
+    holds "$complained" "the last one, is incomplete: the lines before it were replayed" "the note"
 }
 
 test_a_difference_is_named_and_the_exit_status_is_1() {

@@ -73,7 +73,7 @@ test_a_restore_has_a_limit_of_real_time() {
     serve bus
     exits 1 ctrl call restore file="$folder/long.record" timeout=300ms
     holds "$complained" 'of real time the replay has only reached' "the message"
-    holds "$complained" 'us only: give a longer timeout' "the message"
+    holds "$complained" 'us: give a longer timeout' "the message"
     exits 2 ctrl call restore file="$folder/long.record" timeout=soon
     holds "$complained" 'timeout: expected a time' "the message"
 }
