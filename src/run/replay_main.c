@@ -157,7 +157,7 @@ static bool look(void *context)
     double virtual = (double)sim_now(replay_sim(progress->replay)) / RKM04_TICKS_PER_SECOND;
     fprintf(stderr, "\r%.1f s of the line's time, %.0f times real time", virtual, virtual / (now - progress->begin));
     if (progress->size > 0)
-        fprintf(stderr, "; %.0f %% of the recordinging", 100.0 * (double)ftello(progress->in) / (double)progress->size);
+        fprintf(stderr, "; %.0f %% of the recording", 100.0 * (double)ftello(progress->in) / (double)progress->size);
     fputs("; Ctrl-C ends it\033[K", stderr);
     return false;
 }

@@ -54,7 +54,7 @@ static void tell_flash(struct bus *bus)
                 bus_log(&bus->log, "unit %s, motor %u: starts the program of %u commands from flash", name, motor,
                         state.commands);
             else if (state.slot == RKM04_SLOT_UNTRUSTED)
-                bus_log(&bus->log, "unit %s, motor %u: its flash program is incomplete: it starts without a program", name, motor);
+                bus_log(&bus->log, "unit %s, motor %u: incomplete flash program: starts without a program", name, motor);
         }
     }
 }
