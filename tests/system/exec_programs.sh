@@ -84,7 +84,7 @@ test_an_endless_motion_is_recognised_at_its_speed() {
     text 1.rks ')02'
     text 2.rks 'G-'
     run 124 1=1.rks 2=2.rks
-    holds "$complained" "motor 1 moves until input 02 is 1, which no stimulus sets; motor 2 is in an endless motion; --until" \
+    holds "$complained" "motor 1 moves until input 02 is 1, which no stimulus sets; motor 2 is in an endless motion; set an end" \
         "stderr"
 }
 
