@@ -67,6 +67,16 @@ START_TEST(a_motion_from_rest_has_its_two_accelerations_in_both_directions)
 }
 END_TEST
 
+START_TEST(a_motion_that_does_not_reach_its_speed_has_its_peak_where_both_accelerations_meet)
+{
+    ck_assert_int_eq(go(0, PROFILE_TO_PLACE, 600, 2000), PROFILE_MOVES);
+    run(RKM04_NEVER - 1);
+    ck_assert_uint_eq(pulses, 600);
+    expect_pulse(480, 800000, 1); /* at 1000 steps/s */
+    expect_pulse(600, 1000000, 1);
+}
+END_TEST
+
 START_TEST(an_axis_at_rest_stays_there_without_a_way_and_when_it_is_to_stop)
 {
     ck_assert_int_eq(go(0, PROFILE_TO_PLACE, 0, 1000), PROFILE_STANDS);
@@ -221,6 +231,7 @@ int main(void)
     TCase *goal = tcase_create("goal");
     tcase_add_checked_fixture(goal, setup, NULL);
     tcase_add_loop_test(goal, a_motion_from_rest_has_its_two_accelerations_in_both_directions, 0, 2);
+    tcase_add_test(goal, a_motion_that_does_not_reach_its_speed_has_its_peak_where_both_accelerations_meet);
     tcase_add_test(goal, an_axis_at_rest_stays_there_without_a_way_and_when_it_is_to_stop);
     tcase_add_loop_test(goal, a_motion_for_ever_keeps_its_speed, 0, 2);
     tcase_add_loop_test(goal, a_speed_in_the_same_direction_is_taken_on_the_way, 0, 2);
