@@ -15,13 +15,12 @@
 
 static void tell_fault(struct bus *bus, const struct watch_event *event)
 {
-    enum rkm04_fault fault = (enum rkm04_fault)event->value;
-    struct rkm04_motor_state state;
-    if (fault == RKM04_FAULT_NONE)
+    unsigned fault = (unsigned)event->value;
+    if (fault == 0)
         return;
-    rkm04_motor_state(sim_core(&bus->sim, event->unit), event->motor, &state);
     bus_log_at(&bus->log, event->tick, "unit %s, motor %u: fault %s at command %u",
-               bus->sim.unit[event->unit - 1u].name, event->motor, rkm04_fault_name(fault), (unsigned)state.index);
+               bus->sim.unit[event->unit - 1u].name, event->motor, sim_device(&bus->sim)->fault_name(fault),
+               (unsigned)sim_axis(&bus->sim, event->unit, event->motor).index);
     if (bus->coverage)
         coverage_fault(bus->coverage, fault);
 }
@@ -302,7 +301,6 @@ static bool begin_sim(struct bus *bus)
 {
     const struct bus_options *options = bus->options;
     struct sim_config config = {
-        .unit = options->config,
         .nodes = options->nodes,
         .timed = bus->time.timed && !bus_is_stepped(bus),
         .turnaround = options->turnaround,
@@ -311,6 +309,7 @@ static bool begin_sim(struct bus *bus)
         .adapter = unplug,
         .context = bus,
     };
+    rkm04_settings_put(&config.unit, &options->config);
     if (options->flash)
         config.flash = (struct sim_flash){.read = flash_read, .erase = flash_erase, .program = flash_program, .context = bus};
     if (sim_begin(&bus->sim, &config) && snapshots_attach(&bus->sim))

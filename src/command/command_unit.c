@@ -93,9 +93,9 @@ static json_t *command_di_set(struct sim *sim, const json_t *params, struct refu
     if (!read_di(params, &given, &levels, refusal))
         return NULL;
     sim_set_di(sim, number, levels);
-    uint8_t inputs = rkm04_inputs(sim_core(sim, number));
+    uint8_t inputs = (uint8_t)sim_device(sim)->inputs_of(sim_core(sim, number));
     json_t *overridden = json_array();
-    for (unsigned input = 1; input <= RKM04_INPUTS; input++)
+    for (unsigned input = 1; input <= sim_device(sim)->inputs; input++)
         if (((inputs ^ levels) & given) >> (input - 1) & 1)
             json_array_append_new(overridden, json_integer((json_int_t)input));
     return json_pack("{s:I, s:i, s:o}", "t_us", (json_int_t)sim_now(sim), "di", (int)inputs, "overridden", overridden);
@@ -135,7 +135,7 @@ static json_t *command_switch(struct sim *sim, const json_t *params, struct refu
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
     const json_t *reset = json_object_get(params, "reset");
     int64_t node;
-    if (number == 0 || !param_integer(params, "node", 1, RKM04_NODE_MAX, &node, refusal))
+    if (number == 0 || !param_integer(params, "node", 1, sim_device(sim)->addresses, &node, refusal))
         return NULL;
     if (reset && !json_is_boolean(reset))
         return refuse(refusal, REFUSED_PARAMS, "reset: expected true or false");
@@ -143,7 +143,7 @@ static json_t *command_switch(struct sim *sim, const json_t *params, struct refu
     if (json_is_true(reset) && sim_powered(sim, number))
         sim_power(sim, number, true);
     return json_pack("{s:I, s:i, s:i}", "t_us", (json_int_t)sim_now(sim), "switch", (int)node, "node",
-                     (int)sim_core(sim, number)->config.node);
+                     (int)sim_device(sim)->node(sim_core(sim, number)));
 }
 
 const struct command_method unit_methods[] = {

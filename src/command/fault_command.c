@@ -5,7 +5,7 @@
 
 #define SURE 1000000u        /* millionths */
 #define COUNT_MAX UINT32_MAX
-#define EVERY_MIN RKM04_SLOT_TICKS
+#define EVERY_MIN 1000u /* us */
 
 /* What a kind of fault can be given besides kind, count, skip, probability, after and for. */
 enum { UNIT = 1, DIRECTION = 2, DURATION = 4, EVERY = 8 };
@@ -278,8 +278,9 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
         !read_window(sim, params, &fault, refusal) || !read_spell(params, kind->takes, &fault, refusal) ||
         !read_whose(sim, params, kind->takes, &fault, refusal) || !kind->read(params, &fault, refusal))
         return NULL;
-    if (fault.kind == FAULT_WRONG_FCS && sim->config.unit.framing && sim->config.unit.framing != &rkm04_hdlc)
-        return refuse(refusal, REFUSED_STATE, "wrong_fcs: framing `%s' has no check value", sim->config.unit.framing->name);
+    if (fault.kind == FAULT_WRONG_FCS && !sim_device(sim)->has_check_value(&sim->config.unit))
+        return refuse(refusal, REFUSED_STATE, "wrong_fcs: framing `%s' has no check value",
+                      sim_device(sim)->framing(&sim->config.unit)->name);
     uint32_t id = faults_add(&sim->faults, &fault);
     if (id == 0)
         return refuse(refusal, REFUSED_STATE, "too many faults: %u can still act; clear some of them first", FAULTS_MAX);

@@ -14,10 +14,9 @@ static bool add_counters(struct sim *sim, unsigned number, json_t *motors)
     json_t *motor;
     bool well = true;
     json_array_foreach(motors, i, motor) {
-        struct rkm04_motor_state state;
         unsigned which = (unsigned)json_integer_value(json_object_get(motor, "motor"));
-        well = well && rkm04_motor_state(sim_core(sim, number), which, &state) &&
-               json_object_set_new(motor, "position", json_integer(state.position)) == 0;
+        well = well && which >= 1 && which <= sim_device(sim)->axes &&
+               json_object_set_new(motor, "position", json_integer(sim_axis(sim, number, which).position)) == 0;
     }
     return well;
 }
@@ -100,7 +99,7 @@ static json_t *handle(struct sim *sim, unsigned number, const json_t *params, st
     struct sim_unit *unit = &sim->unit[number - 1u];
     bool held = json_object_get(params, "jammed"), taken = json_object_get(params, "missing_lead"), jammed, missing;
     int64_t motor, position;
-    if (!param_integer(params, "motor", 1, RKM04_MOTORS, &motor, refusal) ||
+    if (!param_integer(params, "motor", 1, sim_device(sim)->axes, &motor, refusal) ||
         !param_flag(params, "jammed", &jammed, refusal) || !param_flag(params, "missing_lead", &missing, refusal))
         return NULL;
     unsigned which = (unsigned)motor;

@@ -41,7 +41,7 @@ static json_t *line_json(const struct segment *segment)
 json_t *unit_state(struct sim *sim, unsigned number)
 {
     const struct sim_unit *unit = &sim->unit[number - 1u];
-    json_t *state = rkm04_device.describe((const struct device_unit *)sim_core(sim, number), sim_now(sim));
+    json_t *state = sim_device(sim)->describe(sim_core(sim, number), sim_now(sim));
     put_true_positions(json_object_get(state, "motors"), unit->plant);
     put(state, "unit", json_string(unit->name));
     move_to_end(state, "node");

@@ -9,19 +9,12 @@
 
 /* ---- What there is -------------------------------------------------------------------------------------------------- */
 
-static bool motor_is_idle(const struct rkm04_unit *unit, unsigned motor)
-{
-    struct rkm04_motor_state state;
-    rkm04_motor_state(unit, motor, &state);
-    return state.state == RKM04_IDLE || state.state == RKM04_ENDED;
-}
-
-static bool is_idle(const struct rkm04_unit *unit, unsigned motor)
+static bool is_idle(struct sim *sim, unsigned unit, unsigned motor)
 {
     if (motor != 0)
-        return motor_is_idle(unit, motor);
-    for (motor = 1; motor <= RKM04_MOTORS; motor++) {
-        if (!motor_is_idle(unit, motor))
+        return sim_axis(sim, unit, motor).idle;
+    for (motor = 1; motor <= sim_device(sim)->axes; motor++) {
+        if (!sim_axis(sim, unit, motor).idle)
             return false;
     }
     return true;
@@ -29,10 +22,9 @@ static bool is_idle(const struct rkm04_unit *unit, unsigned motor)
 
 static int64_t motor_value(const struct term *term, struct sim *sim)
 {
-    struct rkm04_motor_state state = {0};
+    const struct device_axis state = sim_axis(sim, term->unit, term->motor);
     int64_t true_position;
     const struct plant *plant = sim->unit[term->unit - 1].plant;
-    rkm04_motor_state(sim_core(sim, term->unit), term->motor, &state);
     switch ((enum term_kind)term->kind) {
     case TERM_TRUE_POSITION:
         if (plant != NULL && plant_position(plant, term->motor, &true_position))
@@ -61,13 +53,13 @@ static int64_t value(const struct term *term, struct sim *sim)
     case TERM_TIME:
         return (int64_t)sim_now(sim);
     case TERM_IDLE:
-        return is_idle(sim_core(sim, term->unit), term->motor);
+        return is_idle(sim, term->unit, term->motor);
     case TERM_INPUT:
-        return rkm04_inputs(sim_core(sim, term->unit)) >> (term->number - 1) & 1;
+        return sim_device(sim)->inputs_of(sim_core(sim, term->unit)) >> (term->number - 1) & 1;
     case TERM_OUTPUT:
-        return rkm04_outputs(sim_core(sim, term->unit)) >> (term->number - 1) & 1;
+        return sim_device(sim)->outputs_of(sim_core(sim, term->unit)) >> (term->number - 1) & 1;
     case TERM_VARIABLE:
-        return rkm04_variables(sim_core(sim, term->unit)) >> (term->number - RKM04_FIRST_VARIABLE) & 1;
+        return sim_device(sim)->variables_of(sim_core(sim, term->unit)) >> (term->number - sim_device(sim)->first_variable) & 1;
     case TERM_POWERED:
         return sim_powered(sim, term->unit);
     default:
@@ -252,20 +244,20 @@ static const char *term_name(enum term_kind kind)
     return names[kind];
 }
 
-static void print_value(FILE *out, const struct term *term, int64_t number)
+static void print_value(FILE *out, const struct term *term, const struct sim *sim, int64_t number)
 {
     switch ((enum term_kind)term->kind) {
     case TERM_TIME:
         fprintf(out, "%" PRId64 ".%06" PRId64 " s", number / RKM04_TICKS_PER_SECOND, number % RKM04_TICKS_PER_SECOND);
         break;
     case TERM_STATE:
-        fputs(rkm04_state_name((enum rkm04_state)number), out);
+        fputs(sim_device(sim)->state_name((unsigned)number), out);
         break;
     case TERM_LED:
-        fputs(rkm04_led_name((enum rkm04_led)number), out);
+        fputs(sim_device(sim)->led_name((unsigned)number), out);
         break;
     case TERM_FAULT:
-        fputs(rkm04_fault_name((enum rkm04_fault)number), out);
+        fputs(sim_device(sim)->fault_name((unsigned)number), out);
         break;
     case TERM_IDLE:
     case TERM_POWERED:
@@ -311,15 +303,15 @@ static void print_term(FILE *out, const struct term *term, struct sim *sim, enum
         fprintf(out, " %02u", term->number);
     fputc(' ', out);
     if (part == PART_FOUND) {
-        print_value(out, term, value(term, sim));
+        print_value(out, term, sim, value(term, sim));
         return;
     }
     fprintf(out, "%s ", term_relation_name((enum term_relation)term->relation));
-    print_value(out, term, term->value);
+    print_value(out, term, sim, term->value);
     if (part == PART_WANTED)
         return;
     fputs(" (is ", out);
-    print_value(out, term, value(term, sim));
+    print_value(out, term, sim, value(term, sim));
     fputc(')', out);
 }
 

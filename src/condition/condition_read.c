@@ -125,24 +125,24 @@ static bool read_number(struct reader *r, struct term *group, struct term term, 
 
 /* ---- Names ---------------------------------------------------------------------------------------------------------- */
 
-static const char *name_of(enum term_kind kind, unsigned value)
+static const char *name_of(const struct device_kind *device, enum term_kind kind, unsigned value)
 {
     switch (kind) {
     case TERM_STATE:
-        return value <= RKM04_FAULTY ? rkm04_state_name((enum rkm04_state)value) : NULL;
+        return device->state_name(value);
     case TERM_LED:
-        return value <= RKM04_LED_BLINK ? rkm04_led_name((enum rkm04_led)value) : NULL;
+        return device->led_name(value);
     default:
-        return value <= RKM04_FAULT_MOTION ? rkm04_fault_name((enum rkm04_fault)value) : NULL;
+        return device->fault_name(value);
     }
 }
 
 /* The names that may stand there: "idle, ready, …". */
-static void list_names(enum term_kind kind, char list[200])
+static void list_names(const struct device_kind *device, enum term_kind kind, char list[200])
 {
     size_t length = 0;
     const char *name;
-    for (unsigned i = 0; (name = name_of(kind, i)) != NULL; i++)
+    for (unsigned i = 0; (name = name_of(device, kind, i)) != NULL; i++)
         length += (size_t)snprintf(list + length, 200 - length, "%s%s", i > 0 ? ", " : "", name);
 }
 
@@ -151,14 +151,14 @@ static bool read_name(struct reader *r, struct term *group, struct term term, co
     const char *name, *wanted = json_string_value(json);
     char list[200];
     if (term.kind == TERM_FAULT && json_is_null(json))
-        wanted = rkm04_fault_name(RKM04_FAULT_NONE);
-    for (unsigned i = 0; wanted != NULL && (name = name_of((enum term_kind)term.kind, i)) != NULL; i++) {
+        wanted = sim_device(r->sim)->fault_name(0);
+    for (unsigned i = 0; wanted != NULL && (name = name_of(sim_device(r->sim), (enum term_kind)term.kind, i)) != NULL; i++) {
         if (strcmp(name, wanted) == 0) {
             term.value = i;
             return add(r, group, &term);
         }
     }
-    list_names((enum term_kind)term.kind, list);
+    list_names(sim_device(r->sim), (enum term_kind)term.kind, list);
     if (wanted == NULL)
         return REFUSE("%s: expected one of %s", key, list);
     return REFUSE("%s: expected one of %s, found \"%.40s\"", key, list, wanted);
@@ -188,8 +188,9 @@ static uint8_t read_bit_number(const char *text, unsigned low, unsigned high)
 static bool read_bits(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
 {
     bool variables = term.kind == TERM_VARIABLE;
-    unsigned low = variables ? RKM04_FIRST_VARIABLE : 1;
-    unsigned high = variables ? RKM04_FIRST_VARIABLE + RKM04_VARIABLES - 1 : RKM04_INPUTS;
+    const struct device_kind *device = sim_device(r->sim);
+    unsigned low = variables ? device->first_variable : 1;
+    unsigned high = low - 1 + (variables ? device->variables : term.kind == TERM_OUTPUT ? device->outputs : device->inputs);
     const char *name;
     json_t *level;
     if (!json_is_object(json) || json_object_size(json) == 0)
@@ -233,7 +234,7 @@ static bool read_message(struct reader *r, struct term *group, struct term term,
     if (!json_is_object(json))
         return REFUSE("%s: expected an object, as in {\"number\": 4, \"from\": \"unit\"}", key);
     if (!params_known(json, known, r->refusal) || !param_integer_or(json, "number", 0, 255, -1, &number, r->refusal) ||
-        !param_integer_or(json, "motor", 0, RKM04_MOTORS, -1, &motor, r->refusal))
+        !param_integer_or(json, "motor", 0, (int)sim_device(r->sim)->axes, -1, &motor, r->refusal))
         return false;
     term.message = (struct term_message){.number = (int)number, .motor = motor < 0 ? -1 : '0' + (int)motor, .from = -1};
     if (from != NULL && !read_from(r, from, &term.message.from))
@@ -322,9 +323,9 @@ static bool read_key(struct reader *r, struct term *group, const json_t *object,
         if (term.unit == 0)
             return false;
     }
-    if (keys[i].needs == NEEDS_MOTOR && !param_integer(object, "motor", 1, RKM04_MOTORS, &motor, r->refusal))
+    if (keys[i].needs == NEEDS_MOTOR && !param_integer(object, "motor", 1, (int)sim_device(r->sim)->axes, &motor, r->refusal))
         return false;
-    if (term.kind == TERM_IDLE && !param_integer_or(object, "motor", 1, RKM04_MOTORS, 0, &motor, r->refusal))
+    if (term.kind == TERM_IDLE && !param_integer_or(object, "motor", 1, (int)sim_device(r->sim)->axes, 0, &motor, r->refusal))
         return false;
     term.motor = (uint8_t)motor;
     return keys[i].read(r, group, term, key, json);

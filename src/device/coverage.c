@@ -278,7 +278,7 @@ void coverage_answer(struct coverage *coverage, const uint8_t *message, size_t l
         count(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, 1));
 }
 
-void coverage_fault(struct coverage *coverage, enum rkm04_fault fault)
+void coverage_fault(struct coverage *coverage, unsigned fault)
 {
     count(coverage, COVERAGE_FAULTS, fault);
 }

@@ -57,7 +57,7 @@ void coverage_request(struct coverage *coverage, uint8_t dnode, const uint8_t *m
 void coverage_answer(struct coverage *coverage, const uint8_t *message, size_t length);
 
 /* The program of a motor has stopped with a fault (RKM04_EVENT_FAULT). RKM04_FAULT_NONE is passed over. */
-void coverage_fault(struct coverage *coverage, enum rkm04_fault fault);
+void coverage_fault(struct coverage *coverage, unsigned fault);
 
 /* Items of a group that have been exercised, and all of it; group COVERAGE_GROUPS: of everything. */
 struct coverage_sum {

@@ -18,10 +18,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+
+#include <rkm04/unit.h>
 
 #include "coverage.h"
 #include "serve_names.h"
 
+#define DEVICE_FLASH_BLOCK_MAX 4096u /* bytes of a block of flash */
 #define DEVICE_NEVER UINT64_MAX   /* no time */
 #define DEVICE_AXES_MAX 16u       /* of a unit; axis 1..DEVICE_AXES_MAX, 0 is the unit */
 #define DEVICE_BITS_MAX 32u       /* inputs, outputs, variables: bit 0 is the first */
@@ -46,7 +50,7 @@ struct device_config {
 enum device_event {
     DEVICE_EVENT_MOTION,   /* value 1: a motion begins, 0: it has ended */
     DEVICE_EVENT_COMMAND,  /* value: place from 1 of the command being executed; 0: none */
-    DEVICE_EVENT_LED,      /* value: kind->led_name() */
+    DEVICE_EVENT_LED,      /* value: enum device_led */
     DEVICE_EVENT_VARIABLE, /* axis 0; value: all variables, the first in bit 0 */
     DEVICE_EVENT_FAULT,    /* value: kind->fault_name(); 0: none */
     DEVICE_EVENT_POSITION  /* value: counter, as two's complement, that no step led to */
@@ -68,6 +72,16 @@ struct device_port {
     int (*flash_program)(void *context, unsigned block, unsigned offset, const void *data, unsigned length);
 };
 
+enum device_led { DEVICE_LED_OFF, DEVICE_LED_ON, DEVICE_LED_BLINK /* 0.5 s on, 0.5 s off, begins on */ };
+
+/* What an axis has in flash: as power-up found it, until a program is stored. */
+enum device_slot {
+    DEVICE_SLOT_EMPTY,
+    DEVICE_SLOT_LOADED,    /* the program that power-up has loaded */
+    DEVICE_SLOT_UNTRUSTED, /* something that is no whole program: counts as empty */
+    DEVICE_SLOT_STORED     /* a program that was stored since power-up */
+};
+
 /* What can be seen of an axis. */
 struct device_axis {
     int32_t position;  /* counter */
@@ -77,18 +91,23 @@ struct device_axis {
     uint16_t commands; /* in memory */
     uint8_t state;     /* kind->state_name() */
     uint8_t fault;     /* kind->fault_name(); 0: none */
-    uint8_t led;       /* kind->led_name(); 0: off */
+    uint8_t led;       /* enum device_led */
+    uint64_t blink_from; /* us since power-up from which the LED blinks */
     bool lit;          /* is the LED bright now? */
     bool idle;         /* it has nothing more to do */
+    bool running;      /* it goes on of itself: it moves, or time will bring its next command */
     bool moving;
     bool stopping;     /* on a stop ramp */
     bool forward;      /* direction output */
+    enum device_slot slot;
 };
 
 /* Counters since power-up, mod 2^32. */
 struct device_counters {
-    uint32_t frames;  /* that ended on the wires as this unit hears them: its requests, those of others, and dropped ones */
-    uint32_t answers; /* that have gone out whole */
+    uint32_t requests; /* for this unit */
+    uint32_t answers;  /* that have gone out whole */
+    uint32_t others;   /* frames for others */
+    uint32_t dropped;  /* frames that were none. With each frame that ends one of these three counts up */
 };
 
 /* A kind of device. Every function is set unless it says otherwise. */
@@ -125,8 +144,9 @@ struct device_kind {
     uint64_t (*answer_wait)(const struct device_unit *unit);      /* us until it can begin with that answer; 0: now */
     struct device_counters (*counters)(const struct device_unit *unit);
     /* Where the check value of the answer that is about to go out can be made wrong so that the frame stays as long: the byte *at
-     * of the answer, bits *mask. NULL: its frames have none. Returns false: these have none. */
-    bool (*find_check_value)(const struct device_unit *unit, uint32_t *at, uint8_t *mask);
+     * of the answer, bits *mask. Asked only if messages with these settings have one. */
+    bool (*has_check_value)(const struct device_config *config);
+    void (*find_check_value)(const struct device_unit *unit, uint32_t *at, uint8_t *mask);
     /* A message without framing at the present us, as if from the host. Returns the length of the answer, which may be more than
      * `room`; 0: none. NULL: not possible. */
     size_t (*exchange)(struct device_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room);
@@ -142,6 +162,10 @@ struct device_kind {
      * message. NULL: it takes no texts. */
     int (*set_text)(struct device_unit *unit, unsigned axis, const char *text, size_t length, char error[DEVICE_ERROR_SIZE]);
 
+    /* Does `text` have anything that a unit with these settings refuses? Then it is reported on `out` (NULL: nobody), as
+     * NAME:LINE:COLUMN: error: … NULL: it takes no texts. */
+    bool (*check_text)(const struct device_config *config, const char *name, const char *text, size_t length, FILE *out);
+
     /* Is there a fault, or does the axis wait for what only new commands can bring? Then the text says what. */
     bool (*is_stuck)(const struct device_unit *unit, unsigned axis, char text[DEVICE_ERROR_SIZE]);
 
@@ -155,12 +179,21 @@ struct device_kind {
     json_t *(*state)(const struct device_unit *unit, uint64_t t_us);
     json_t *(*describe)(const struct device_unit *unit, uint64_t t_us);
 
-    /* Settings by name: "framing", "readings", "version_text" of an RKM04. put: into a recording's head. read: from a head or a
-     * scenario, a name that is not there is left alone. Returns false and a message. unlike: what differs but for the node, in
-     * words; NULL: nothing. */
+    /* Settings by name: "framing", "readings", "version_text" of an RKM04; the list ends with NULL. put: into a recording's head.
+     * read: one of the names; value NULL: it is not there. The value must stay. Returns false and a message. unlike: what differs
+     * but for the node, in words; NULL: nothing. */
+    const char *const *settings;
     void (*put_settings)(const struct device_config *config, json_t *object);
     bool (*read_setting)(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
     const char *(*unlike)(const struct device_config *a, const struct device_config *b);
+
+    /* Messages on the wires, for their monitor and a scenario's host: how they stand in bytes. */
+    const struct rkm04_framing *(*framing)(const struct device_config *config);
+
+    /* Does the state repeat, so that it does for ever? Called again and again with `memory`, `repeat_size` bytes, zero at first.
+     * Returns after how many us it has repeated; 0: it has not. repeat_size 0: that cannot be told. */
+    size_t repeat_size;
+    uint64_t (*find_repeat)(void *memory, const struct device_unit *unit);
 
     bool has_coverage;       /* coverage.h knows its messages and commands */
 };
@@ -169,7 +202,14 @@ struct device_kind {
 const struct device_kind *device_kind_named(const char *name);
 const struct device_kind *device_kind_at(unsigned at);
 
-/* The kind that is meant where none is named: the RKM04. */
+/* The kind that is meant where none is named: the RKM04. Its settings as they lie in a config; `node` is that of the config. */
 extern const struct device_kind rkm04_device;
+struct rkm04_config rkm04_settings(const struct device_config *config);
+
+/* Put them there; the node of the config stays. */
+void rkm04_settings_put(struct device_config *config, const struct rkm04_config *settings);
+
+/* A config with them and their node. */
+struct device_config rkm04_device_config(const struct rkm04_config *settings);
 
 #endif

@@ -9,15 +9,14 @@ static const struct device_kind *const device_kinds[] = {&rkm04_device};
 
 #define KINDS (sizeof device_kinds / sizeof device_kinds[0])
 
-/* Kinds of a program that is linked with more of them; ends with NULL. */
-extern const struct device_kind *const device_kinds_added[] __attribute__((weak));
+/* Kinds of a program that is linked with more of them; ends with NULL. This one has none. */
+extern const struct device_kind *const device_kinds_added[];
+const struct device_kind *const device_kinds_added[] __attribute__((weak)) = {NULL};
 
 const struct device_kind *device_kind_at(unsigned at)
 {
     if (at < KINDS)
         return device_kinds[at];
-    if (!device_kinds_added)
-        return NULL;
     for (unsigned i = 0; device_kinds_added[i]; i++)
         if (i == at - KINDS)
             return device_kinds_added[i];

@@ -4,9 +4,15 @@
 
 #include <stdio.h>
 
+#include "rkm04_repeat.h"
+#include "text/text.h"
+
 #define DESCRIPTION "unit for four stepper motors on RS485 (SofCon RKM04)"
 #define ANSWER_MAX 9216u /* bytes of the longest message of a unit, however small requests are */
 
+_Static_assert((int)DEVICE_SLOT_LOADED == (int)RKM04_SLOT_LOADED && (int)DEVICE_SLOT_UNTRUSTED == (int)RKM04_SLOT_UNTRUSTED &&
+                   (int)DEVICE_SLOT_STORED == (int)RKM04_SLOT_STORED,
+               "slots have the same numbers here and there");
 _Static_assert((int)DEVICE_EVENT_MOTION == (int)RKM04_EVENT_MOTION && (int)DEVICE_EVENT_COMMAND == (int)RKM04_EVENT_COMMAND &&
                    (int)DEVICE_EVENT_LED == (int)RKM04_EVENT_LED &&
                    (int)DEVICE_EVENT_VARIABLE == (int)RKM04_EVENT_VARIABLE &&
@@ -155,23 +161,28 @@ static struct device_counters counters_of(const struct device_unit *unit)
 {
     const struct rkm04_counters counters = rkm04_counters(core_of(unit));
     return (struct device_counters){
-        .frames = counters.requests + counters.others + counters.dropped,
+        .requests = counters.requests,
         .answers = counters.answers,
+        .others = counters.others,
+        .dropped = counters.dropped,
     };
 }
 
 #define ESCAPE 0x7d
 #define FLAG 0x7e
 
-/* hdlc: in the low byte of the check value, or what stands for it. The answer is the one that a copy of the unit sends. */
-static bool find_check_value(const struct device_unit *unit, uint32_t *at, uint8_t *mask)
+static bool has_check_value(const struct device_config *config)
+{
+    return rkm04_settings_framing(config) == &rkm04_hdlc;
+}
+
+/* In the low byte of the check value, or what stands for it. The answer is the one that a copy of the unit sends. */
+static void find_check_value(const struct device_unit *unit, uint32_t *at, uint8_t *mask)
 {
     static const struct rkm04_port nothing;
     struct rkm04_unit copy = *core_of(unit);
     uint8_t last[8] = {0}; /* bytes, the last one first */
     uint32_t sent = rkm04_counters(&copy).answers, length = 0;
-    if (copy.config.framing && copy.config.framing != &rkm04_hdlc)
-        return false;
     copy.port = &nothing;
     while (rkm04_counters(&copy).answers == sent && rkm04_send(&copy, &last[0], 1) == 1) {
         length++;
@@ -184,7 +195,6 @@ static bool find_check_value(const struct device_unit *unit, uint32_t *at, uint8
     uint8_t other = last[low] ^ 1u;
     *at = length - low;
     *mask = escaped ? ESCAPE ^ FLAG : other == ESCAPE || other == FLAG ? 4 : 1;
-    return true;
 }
 
 static size_t exchange(struct device_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room)
@@ -232,11 +242,14 @@ static void axis(const struct device_unit *unit, unsigned motor, struct device_a
         .state = (uint8_t)state.state,
         .fault = (uint8_t)state.fault,
         .led = (uint8_t)state.led,
+        .blink_from = core_of(unit)->motor[motor - 1].blink_from,
         .lit = state.lit,
         .idle = state.state == RKM04_IDLE || state.state == RKM04_ENDED,
+        .running = state.state == RKM04_READY || state.state == RKM04_MOVING || state.state == RKM04_DWELL,
         .moving = state.state == RKM04_MOVING,
         .stopping = state.stopping,
         .forward = state.forward,
+        .slot = (enum device_slot)state.slot,
     };
 }
 
@@ -246,6 +259,28 @@ static int set_text(struct device_unit *unit, unsigned motor, const char *text, 
     int flag = rkm04_set_command(rkm04_of(unit), (char)('0' + motor), text, length, NULL);
     snprintf(error, DEVICE_ERROR_SIZE, "%s", flag >= 0 && flag <= 3 ? flags[flag] : "refused");
     return flag;
+}
+
+static bool is_refused(const char *text, size_t length, const struct rkm04_readings *readings)
+{
+    bool negative = false;
+    struct rkm04_reader reader;
+    struct rkm04_command command;
+    enum rkm04_read found;
+    rkm04_read_begin(&reader, text, length);
+    do {
+        found = rkm04_read(&reader, &command);
+        negative = negative || (found == RKM04_READ_COMMAND && command.op == '=' && command.argument > INT32_MAX);
+    } while (found == RKM04_READ_COMMAND);
+    return found != RKM04_READ_END || (negative && readings->negative_position == RKM04_NEGATIVE_POSITION_NO);
+}
+
+static bool check_text(const struct device_config *config, const char *name, const char *text, size_t length, FILE *out)
+{
+    const struct rkm04_config settings = rkm04_settings(config);
+    if (out)
+        return diagnose_text(name, text, length, out) > 0 || diagnose_readings(name, text, length, &settings.readings, out) > 0;
+    return is_refused(text, length, &settings.readings);
 }
 
 static bool is_stuck(const struct device_unit *unit, unsigned motor, char text[DEVICE_ERROR_SIZE])
@@ -283,6 +318,11 @@ static const char *fault_name(unsigned fault)
 static const char *led_name(unsigned led)
 {
     return led <= RKM04_LED_BLINK ? rkm04_led_name((enum rkm04_led)led) : NULL;
+}
+
+static uint64_t find_repeat(void *memory, const struct device_unit *unit)
+{
+    return rkm04_repeat_look(memory, core_of(unit));
 }
 
 static json_t *state(const struct device_unit *unit, uint64_t t_us)
@@ -324,6 +364,7 @@ const struct device_kind rkm04_device = {
     .has_answer = has_answer,
     .answer_wait = answer_wait,
     .counters = counters_of,
+    .has_check_value = has_check_value,
     .find_check_value = find_check_value,
     .exchange = exchange,
     .set_inputs = set_inputs,
@@ -333,14 +374,19 @@ const struct device_kind rkm04_device = {
     .node = node,
     .axis = axis,
     .set_text = set_text,
+    .check_text = check_text,
     .is_stuck = is_stuck,
     .state_name = state_name,
     .fault_name = fault_name,
     .led_name = led_name,
     .state = state,
     .describe = describe,
+    .settings = rkm04_setting_names,
     .put_settings = rkm04_put_settings,
     .read_setting = rkm04_read_setting,
     .unlike = rkm04_settings_unlike,
+    .framing = rkm04_settings_framing,
+    .repeat_size = sizeof(struct rkm04_repeat),
+    .find_repeat = find_repeat,
     .has_coverage = true,
 };

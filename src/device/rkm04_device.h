@@ -20,10 +20,6 @@ struct rkm04_device {
 /* The RKM04 in a unit of this kind. */
 struct rkm04_unit *rkm04_of(struct device_unit *unit);
 
-/* Settings of an RKM04 as they lie in a config; `node` is that of the config. */
-struct rkm04_config rkm04_settings(const struct device_config *config);
-void rkm04_settings_put(struct device_config *config, const struct rkm04_config *settings);
-
 /* ---- rkm04_json.c, rkm04_waits.c: as struct device_kind's of the same names ------------------------------------------ */
 
 json_t *rkm04_json_state(const struct rkm04_unit *unit, uint64_t tick);
@@ -38,8 +34,10 @@ unsigned rkm04_awaited_label(const struct rkm04_motor *motor);
 
 /* ---- rkm04_settings.c: as struct device_kind's ------------------------------------------------------------------------- */
 
+extern const char *const rkm04_setting_names[];
 void rkm04_put_settings(const struct device_config *config, json_t *object);
 bool rkm04_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
 const char *rkm04_settings_unlike(const struct device_config *a, const struct device_config *b);
+const struct rkm04_framing *rkm04_settings_framing(const struct device_config *config);
 
 #endif

@@ -11,6 +11,8 @@
 
 _Static_assert(sizeof(struct rkm04_config) <= DEVICE_SETTINGS_SIZE, "the settings of an RKM04 have to fit");
 
+const char *const rkm04_setting_names[] = {"framing", "version_text", "speed_change_latency", "readings", NULL};
+
 struct rkm04_config rkm04_settings(const struct device_config *config)
 {
     struct rkm04_config settings;
@@ -22,6 +24,13 @@ struct rkm04_config rkm04_settings(const struct device_config *config)
 void rkm04_settings_put(struct device_config *config, const struct rkm04_config *settings)
 {
     memcpy(config->own.byte, settings, sizeof *settings);
+}
+
+struct device_config rkm04_device_config(const struct rkm04_config *settings)
+{
+    struct device_config config = {.node = settings->node};
+    rkm04_settings_put(&config, settings);
+    return config;
 }
 
 static const struct rkm04_framing *framing_of(const struct rkm04_config *settings)
@@ -38,7 +47,7 @@ void rkm04_put_settings(const struct device_config *config, json_t *object)
 {
     const struct rkm04_config settings = rkm04_settings(config);
     json_object_set_new(object, "framing", json_string(framing_of(&settings)->name));
-    json_object_set_new(object, "version_text", json_string(version_text_of(&settings)));
+    json_object_set_new_nocheck(object, "version_text", json_string_nocheck(version_text_of(&settings)));
     json_object_set_new(object, "readings", readings_json(&settings.readings));
 }
 
@@ -54,7 +63,7 @@ static bool read_framing(struct rkm04_config *settings, const json_t *value, cha
 static bool read_version_text(struct rkm04_config *settings, const json_t *value, char error[DEVICE_ERROR_SIZE])
 {
     settings->version_text = json_string_value(value);
-    if (!settings->version_text || json_string_length(value) > VERSION_TEXT_MAX) {
+    if (value && (!settings->version_text || json_string_length(value) > VERSION_TEXT_MAX)) {
         snprintf(error, DEVICE_ERROR_SIZE, "expected \"version_text\", at most %u bytes", VERSION_TEXT_MAX);
         return false;
     }
@@ -65,6 +74,8 @@ static bool read_version_text(struct rkm04_config *settings, const json_t *value
 static bool read_latency(struct rkm04_config *settings, const json_t *value, char error[DEVICE_ERROR_SIZE])
 {
     json_int_t latency = json_integer_value(value);
+    if (!value)
+        return true;
     if (!json_is_integer(value) || latency < 0 || latency > LATENCY_MAX) {
         snprintf(error, DEVICE_ERROR_SIZE, "expected \"speed_change_latency\", a number from 0 to %u", LATENCY_MAX);
         return false;
@@ -84,10 +95,16 @@ bool rkm04_read_setting(struct device_config *config, const char *name, const js
         is_right = read_version_text(&settings, value, error);
     else if (strcmp(name, "speed_change_latency") == 0)
         is_right = read_latency(&settings, value, error);
-    else if (strcmp(name, "readings") == 0 && !(is_right = readings_read_json(&settings.readings, value, text)))
+    else if (strcmp(name, "readings") == 0 && value && !(is_right = readings_read_json(&settings.readings, value, text)))
         snprintf(error, DEVICE_ERROR_SIZE, "\"readings\": %.200s", text);
     rkm04_settings_put(config, &settings);
     return is_right;
+}
+
+const struct rkm04_framing *rkm04_settings_framing(const struct device_config *config)
+{
+    const struct rkm04_config settings = rkm04_settings(config);
+    return framing_of(&settings);
 }
 
 const char *rkm04_settings_unlike(const struct device_config *a, const struct device_config *b)

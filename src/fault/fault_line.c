@@ -4,9 +4,6 @@
 
 #include <stdio.h>
 
-#define ESCAPE 0x7d
-#define FLAG 0x7e
-
 const struct fault_answer fault_answer_well = {.end = UINT32_MAX, .wrong_at = UINT32_MAX};
 
 struct name {
@@ -23,33 +20,6 @@ static struct name name_of(const struct faults *faults, unsigned station)
 }
 
 /* ---- Answers -------------------------------------------------------------------------------------------------------- */
-
-static uint32_t answers_sent(const struct rkm04_unit *unit)
-{
-    return rkm04_counters(unit).answers;
-}
-
-/* Where the check value of the answer that a unit is about to send can be made wrong, and by which bits, so that the frame stays
- * as long as it is: in the low byte, or what stands for it. The answer is the one that a copy of the unit sends. */
-static void find_check_value(const struct rkm04_unit *unit, struct fault_answer *answer)
-{
-    static const struct rkm04_port nothing;
-    struct rkm04_unit copy = *unit;
-    uint8_t last[8] = {0}; /* bytes, the last one first */
-    uint32_t sent = answers_sent(&copy), length = 0;
-    copy.port = &nothing;
-    while (answers_sent(&copy) == sent && rkm04_send(&copy, &last[0], 1) == 1) {
-        length++;
-        for (unsigned i = sizeof last - 1u; i > 0; i--)
-            last[i] = last[i - 1u];
-    }
-    /* last[1] is the closing flag, the high byte before it may take two. */
-    unsigned low = last[3] == ESCAPE ? 4 : 3;
-    bool escaped = last[low + 1u] == ESCAPE;
-    uint8_t other = last[low] ^ 1u;
-    answer->wrong_at = length - low;
-    answer->mask = escaped ? ESCAPE ^ FLAG : other == ESCAPE || other == FLAG ? 4 : 1;
-}
 
 static uint64_t on_answer(void *context, unsigned number)
 {
@@ -72,7 +42,7 @@ static uint64_t on_answer(void *context, unsigned number)
         fault_report(faults, fault, number, "the answer ends after %u bytes", (unsigned)fault->number);
     }
     if ((fault = fault_apply(faults, FAULT_WRONG_FCS, number, 0, 0))) {
-        find_check_value(segment_unit(faults->segment, number), answer);
+        segment_kind(faults->segment)->find_check_value(segment_unit(faults->segment, number), &answer->wrong_at, &answer->mask);
         fault_report(faults, fault, number, "the check value of the answer is wrong");
     }
     return delay;

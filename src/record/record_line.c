@@ -40,8 +40,24 @@ static bool put(json_t *head, const char *name, json_t *value)
     return json_object_set_new(head, name, value) == 0;
 }
 
+/* The device's own settings. */
+static bool put_device(json_t *head, const struct device_kind *kind, const struct device_config *config)
+{
+    const char *name;
+    json_t *settings = json_object(), *value;
+    bool well = settings != NULL;
+    if (well)
+        kind->put_settings(config, settings);
+    json_object_foreach(settings, name, value)
+        well = well && (json_is_string(value) ? put_string(head, name, json_string_value(value))
+                                              : json_object_set(head, name, value) == 0);
+    json_decref(settings);
+    return well;
+}
+
 static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
 {
+    const struct device_kind *kind = sim_device(sim);
     const struct sim_config *config = &sim->config;
     json_t *nodes = json_array();
     char seed[24];
@@ -50,10 +66,8 @@ static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
         if (json_array_append_new(nodes, json_integer(config->nodes.node[at])) != 0)
             return json_decref(nodes), false;
     return put(head, "rkm04_record", json_integer(RECORD_VERSION)) && put(head, "program", json_string("rkm04 " RKM04_VERSION)) &&
-           put(head, "nodes", nodes) &&
-           put(head, "framing", json_string(config->unit.framing ? config->unit.framing->name : rkm04_hdlc.name)) &&
-           put_string(head, "version_text", config->unit.version_text ? config->unit.version_text : RKM04_VERSION_TEXT) &&
-           put(head, "readings", readings_json(&config->unit.readings)) &&
+           (kind == device_kind_at(0) || put(head, "device", json_string(kind->name))) && put(head, "nodes", nodes) &&
+           put_device(head, kind, &config->unit) &&
            put(head, "timed", json_boolean(config->timed)) && put(head, "turnaround", json_integer(config->turnaround)) &&
            put(head, "seed", json_string(seed)) && (!sim->plant_text || put_string(head, "plant", sim->plant_text)) &&
            put(head, "outputs", json_boolean(outputs));
@@ -64,15 +78,16 @@ static bool write_flash(FILE *out, struct sim *sim, unsigned number)
 {
     struct sim_unit *unit = &sim->unit[number - 1u];
     const struct sim_flash *flash = &sim->config.flash;
-    uint8_t data[RKM04_FLASH_BLOCK_SIZE];
+    const unsigned size = sim_device(sim)->flash_block_size;
+    uint8_t data[DEVICE_FLASH_BLOCK_MAX];
     if (!flash->read && !unit->memory)
         return true;
-    for (unsigned block = 0; block < RKM04_FLASH_BLOCKS; block++) {
-        size_t length = sizeof data;
-        if (flash->read && flash->read(flash->context, number, block, 0, data, sizeof data) != 0)
+    for (unsigned block = 0; block < sim_device(sim)->flash_blocks; block++) {
+        size_t length = size;
+        if (flash->read && flash->read(flash->context, number, block, 0, data, size) != 0)
             return false;
-        for (unsigned i = 0; !flash->read && i < sizeof data; i++)
-            data[i] = (uint8_t)~unit->memory[block * RKM04_FLASH_BLOCK_SIZE + i];
+        for (unsigned i = 0; !flash->read && i < size; i++)
+            data[i] = (uint8_t)~unit->memory[block * size + i];
         while (length > 0 && data[length - 1u] == 0xFF)
             length--;
         if (length == 0)

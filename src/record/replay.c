@@ -279,7 +279,7 @@ static bool read_span(struct replay *replay, struct replay_span *span)
     json_int_t position = json_integer_value(json_object_get(replay->json, "position"));
     if (!replay_number(replay, "t", 0, TIME_VALUE_MAX, RKM04_NEVER, &span->tick) ||
         !replay_number(replay, "unit", 0, sim_units(replay->sim), RKM04_NEVER, &unit) ||
-        !replay_number(replay, "motor", 0, unit > 0 ? RKM04_MOTORS : 0, RKM04_NEVER, &motor) ||
+        !replay_number(replay, "motor", 0, unit > 0 ? sim_device(replay->sim)->axes : 0, RKM04_NEVER, &motor) ||
         !replay_number(replay, "events", 0, INT64_MAX, RKM04_NEVER, &span->stream.events) ||
         !replay_number(replay, "steps", 0, INT64_MAX, 0, &span->stream.steps) || !read_digest(replay, &span->stream.digest))
         return false;
@@ -473,7 +473,7 @@ void replay_free(struct replay *replay)
     }
     free(replay->sim);
     free(replay->flash);
-    free(replay->version_text);
+    json_decref(replay->settings);
     free(replay->program);
     free(replay->line);
     free(replay->hex);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +8,8 @@
 #include "replay_inside.h"
 
 #define TEXT_MAX 255u               /* bytes of a version text */
-#define LATENCY_MAX 2000u           /* ms (C4) */
+#define KEY_SIZE 64u                /* bytes of a key */
+#define KEYS_MAX 64u                /* of a head */
 #define PLANT_MAX (1u << 20)        /* bytes */
 
 /* ---- Flash: memory, all bytes inverted, so that what nobody touches costs nothing ------------------------------------- */
@@ -15,9 +17,10 @@
 static uint8_t *flash_at(void *context, unsigned number, unsigned block, unsigned offset, unsigned length)
 {
     const struct replay *replay = context;
-    if (block >= RKM04_FLASH_BLOCKS || offset > RKM04_FLASH_BLOCK_SIZE || length > RKM04_FLASH_BLOCK_SIZE - offset)
+    const unsigned blocks = replay->device->flash_blocks, size = replay->device->flash_block_size;
+    if (block >= blocks || offset > size || length > size - offset)
         return NULL;
-    return replay->flash + ((number - 1u) * RKM04_FLASH_BLOCKS + block) * RKM04_FLASH_BLOCK_SIZE + offset;
+    return replay->flash + ((number - 1u) * blocks + block) * size + offset;
 }
 
 static int flash_read(void *context, unsigned number, unsigned block, unsigned offset, void *data, unsigned length)
@@ -31,9 +34,10 @@ static int flash_read(void *context, unsigned number, unsigned block, unsigned o
 
 static int flash_erase(void *context, unsigned number, unsigned block)
 {
-    uint8_t *at = flash_at(context, number, block, 0, RKM04_FLASH_BLOCK_SIZE);
+    const struct replay *replay = context;
+    uint8_t *at = flash_at(context, number, block, 0, replay->device->flash_block_size);
     if (at)
-        memset(at, 0, RKM04_FLASH_BLOCK_SIZE);
+        memset(at, 0, replay->device->flash_block_size);
     return at ? 0 : 1;
 }
 
@@ -58,9 +62,9 @@ static bool read_images(struct replay *replay, unsigned units)
             return true;
         }
         if (!replay_keys(replay, keys) || !replay_number(replay, "flash", 1, units, RKM04_NEVER, &number) ||
-            !replay_number(replay, "block", 0, RKM04_FLASH_BLOCKS - 1u, RKM04_NEVER, &block))
+            !replay_number(replay, "block", 0, replay->device->flash_blocks - 1u, RKM04_NEVER, &block))
             return false;
-        const uint8_t *bytes = replay_bytes(replay, "hex", RKM04_FLASH_BLOCK_SIZE, &length);
+        const uint8_t *bytes = replay_bytes(replay, "hex", replay->device->flash_block_size, &length);
         if (!bytes || flash_program(replay, (unsigned)number, (unsigned)block, 0, bytes, (unsigned)length) != 0)
             return false;
     }
@@ -76,21 +80,45 @@ static bool read_nodes(struct replay *replay, struct node_list *nodes)
     bool well = json_is_array(list) && json_array_size(list) >= 1 && json_array_size(list) <= NODE_LIST_MAX;
     nodes->count = well ? (unsigned)json_array_size(list) : 0;
     json_array_foreach((json_t *)list, i, node) {
-        well = well && json_is_integer(node) && json_integer_value(node) >= 1 && json_integer_value(node) <= RKM04_NODE_MAX;
+        well = well && json_is_integer(node) && json_integer_value(node) >= 1 &&
+               json_integer_value(node) <= replay->device->addresses;
         if (well)
             nodes->node[i] = (uint8_t)json_integer_value(node);
     }
-    return well || replay_wrong(replay, "nodes", "expected \"nodes\", a list of 1 to %u addresses from 1 to %d", NODE_LIST_MAX,
-                                RKM04_NODE_MAX);
+    return well || replay_wrong(replay, "nodes", "expected \"nodes\", a list of 1 to %u addresses from 1 to %u", NODE_LIST_MAX,
+                                replay->device->addresses);
 }
 
-static bool read_framing(struct replay *replay, const struct rkm04_framing **framing)
+/* Recordings that name no device are an RKM04's. */
+static bool read_device(struct replay *replay, struct sim_config *config)
 {
-    const char *name = replay_string(replay, "framing");
-    *framing = name ? rkm04_framing_named(name) : NULL;
-    if (name && !*framing)
-        replay_wrong(replay, "framing", "expected \"framing\", hdlc or plain");
-    return *framing != NULL;
+    const char *name = json_object_get(replay->json, "device") ? replay_string(replay, "device") : device_kind_at(0)->name;
+    config->device = replay->device = name ? device_kind_named(name) : NULL;
+    return replay->device || !name ||
+           replay_wrong(replay, "device", "expected \"device\", one of those that rkm04 devices lists");
+}
+
+/* The device's own settings, NAME or NAME_hex. They stay as long as the replay. */
+static bool read_own(struct replay *replay, struct device_config *config)
+{
+    char error[DEVICE_ERROR_SIZE], hex_name[KEY_SIZE];
+    replay->settings = json_object();
+    for (const char *const *name = replay->device->settings; *name; name++) {
+        json_t *value = json_object_get(replay->json, *name);
+        char *text;
+        snprintf(hex_name, sizeof hex_name, "%s_hex", *name);
+        if (json_object_get(replay->json, hex_name)) {
+            if (!replay_text_of(replay, *name, TEXT_MAX, &text))
+                return false;
+            json_object_set_new_nocheck(replay->settings, *name, json_string_nocheck(text));
+            free(text);
+        } else if (value) {
+            json_object_set(replay->settings, *name, value);
+        }
+        if (!replay->device->read_setting(config, *name, json_object_get(replay->settings, *name), error))
+            return replay_wrong(replay, *name, "%s", error);
+    }
+    return true;
 }
 
 static bool read_seed(struct replay *replay, uint64_t *seed)
@@ -100,47 +128,44 @@ static bool read_seed(struct replay *replay, uint64_t *seed)
                     replay_wrong(replay, "seed", "expected \"seed\", a string with a number from 0 to 2^64 - 1"));
 }
 
-/* Recordings without them were made under the defaults, but for speed_change_latency, the older name of speed-change. */
-static bool read_readings(struct replay *replay, struct rkm04_readings *readings)
-{
-    char error[READINGS_ERROR_SIZE];
-    uint64_t latency;
-    const json_t *json = json_object_get(replay->json, "readings");
-    if (!replay_number(replay, "speed_change_latency", 0, LATENCY_MAX, 0, &latency))
-        return false;
-    readings->speed_change = (uint16_t)latency;
-    return !json || readings_read_json(readings, json, error) || replay_wrong(replay, "readings", "\"readings\": %s", error);
-}
-
 static bool read_settings(struct replay *replay, struct sim_config *config)
 {
     uint64_t turnaround;
-    bool well = read_nodes(replay, &config->nodes) && read_framing(replay, &config->unit.framing) &&
-                replay_text_of(replay, "version_text", TEXT_MAX, &replay->version_text) &&
-                read_readings(replay, &config->unit.readings) &&
+    bool well = read_nodes(replay, &config->nodes) && read_own(replay, &config->unit) &&
                 replay_flag(replay, "timed", true, &config->timed) &&
                 replay_number(replay, "turnaround", 0, SEGMENT_TURNAROUND_MAX, 0, &turnaround) &&
                 read_seed(replay, &config->seed) && replay_flag(replay, "outputs", false, &replay->outputs);
     if (!well)
         return false;
-    config->unit.version_text = replay->version_text;
     config->turnaround = (uint32_t)turnaround;
     return true;
 }
 
+static bool has_known_keys(struct replay *replay)
+{
+    const char *names[KEYS_MAX] = {"rkm04_record", "program", "device", "nodes", "timed", "turnaround", "seed", "plant",
+                                   "plant_hex", "outputs"};
+    char hex[KEYS_MAX][KEY_SIZE];
+    size_t count = 10;
+    for (const char *const *name = replay->device->settings; *name && count < KEYS_MAX - 2u; name++) {
+        snprintf(hex[count], KEY_SIZE, "%s_hex", *name);
+        names[count + 1u] = *name;
+        names[count] = hex[count];
+        count += 2;
+    }
+    return replay_keys(replay, names);
+}
+
 static bool read_head(struct replay *replay, struct sim_config *config, char **plant)
 {
-    static const char *const keys[] = {"rkm04_record", "program",  "nodes", "framing", "version_text", "version_text_hex",
-                                       "speed_change_latency", "readings", "timed", "turnaround", "seed", "plant",
-                                       "plant_hex", "outputs", NULL};
     uint64_t version;
     if (!replay_next_line(replay))
         return replay->ended || replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
     if (!json_object_get(replay->json, "rkm04_record"))
         return replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
     if (!replay_number(replay, "rkm04_record", RECORD_VERSION, RECORD_VERSION, RKM04_NEVER, &version) ||
-        !replay_keys(replay, keys) || !replay_text_of(replay, "program", TEXT_MAX, &replay->program) ||
-        !read_settings(replay, config))
+        !read_device(replay, config) || !has_known_keys(replay) ||
+        !replay_text_of(replay, "program", TEXT_MAX, &replay->program) || !read_settings(replay, config))
         return false;
     return replay_text_of(replay, "plant", PLANT_MAX, plant);
 }
@@ -177,7 +202,7 @@ bool replay_begin(struct replay *replay)
     char *plant = NULL;
     bool well = read_head(replay, &config, &plant) && !replay->ended;
     if (well) {
-        replay->flash = calloc(config.nodes.count, RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE);
+        replay->flash = calloc(config.nodes.count, replay->device->flash_blocks * replay->device->flash_block_size + 1u);
         well = replay->flash ? read_images(replay, config.nodes.count) : replay_no_memory(replay);
     }
     well = well && power_up(replay, &config, plant);

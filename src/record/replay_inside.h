@@ -22,7 +22,9 @@ struct replay {
     struct sim *sim;
     bool begun;                 /* the head is right: sim is powered up */
     uint8_t *flash;             /* of all units, inverted */
-    char *version_text, *program;
+    const struct device_kind *device; /* of the head */
+    json_t *settings;           /* of the units, as the head has them */
+    char *program;
     uint64_t until;
     bool (*interrupted)(void *context);
     void *context;

@@ -6,10 +6,8 @@
 
 #include "text/text.h"
 
-#define FLASH_SIZE (RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE)
-
 struct snapshot {
-    struct segment segment; /* units that are not there have never been touched */
+    struct segment segment;
     struct node_list switches; /* S1 of the units, as it stands */
     struct faults faults;
     struct wire_monitor monitor;
@@ -28,9 +26,8 @@ struct look_motor {
 
 struct look {
     bool powered;
-    uint8_t inputs, outputs;
-    uint16_t variables;
-    struct look_motor motor[RKM04_MOTORS];
+    uint32_t inputs, outputs, variables;
+    struct look_motor motor[DEVICE_AXES_MAX];
 };
 
 /* ---- Flash: past the faults on demand, which are the unit's --------------------------------------------------------- */
@@ -38,60 +35,55 @@ struct look {
 static bool read_flash(struct sim *sim, const struct sim_unit *unit, unsigned block, uint8_t *data)
 {
     const struct sim_flash *flash = &sim->config.flash;
+    unsigned size = sim_device(sim)->flash_block_size;
     if (flash->read)
-        return flash->read(flash->context, unit->number, block, 0, data, RKM04_FLASH_BLOCK_SIZE) == 0;
-    for (unsigned i = 0; i < RKM04_FLASH_BLOCK_SIZE; i++)
-        data[i] = unit->memory ? (uint8_t)~unit->memory[block * RKM04_FLASH_BLOCK_SIZE + i] : 0xFF;
+        return flash->read(flash->context, unit->number, block, 0, data, size) == 0;
+    for (unsigned i = 0; i < size; i++)
+        data[i] = unit->memory ? (uint8_t)~unit->memory[block * size + i] : 0xFF;
     return true;
 }
 
 static bool write_flash(struct sim *sim, struct sim_unit *unit, unsigned block, const uint8_t *data)
 {
     const struct sim_flash *flash = &sim->config.flash;
-    uint8_t present[RKM04_FLASH_BLOCK_SIZE];
-    if (read_flash(sim, unit, block, present) && memcmp(present, data, sizeof present) == 0)
+    unsigned size = sim_device(sim)->flash_block_size;
+    uint8_t present[DEVICE_FLASH_BLOCK_MAX];
+    if (read_flash(sim, unit, block, present) && memcmp(present, data, size) == 0)
         return true;
     if (flash->read)
         return flash->erase(flash->context, unit->number, block) == 0 &&
-               flash->program(flash->context, unit->number, block, 0, data, RKM04_FLASH_BLOCK_SIZE) == 0;
+               flash->program(flash->context, unit->number, block, 0, data, size) == 0;
     if (!unit->memory)
-        unit->memory = calloc(RKM04_FLASH_BLOCKS, RKM04_FLASH_BLOCK_SIZE);
-    for (unsigned i = 0; unit->memory && i < RKM04_FLASH_BLOCK_SIZE; i++)
-        unit->memory[block * RKM04_FLASH_BLOCK_SIZE + i] = (uint8_t)~data[i];
+        unit->memory = calloc(sim_device(sim)->flash_blocks, size);
+    for (unsigned i = 0; unit->memory && i < size; i++)
+        unit->memory[block * size + i] = (uint8_t)~data[i];
     return unit->memory != NULL;
 }
 
 static bool write_images(struct sim *sim, const struct snapshot *snapshot)
 {
+    const struct device_kind *kind = sim_device(sim);
     for (unsigned at = 0; at < sim_units(sim); at++)
-        for (unsigned block = 0; block < RKM04_FLASH_BLOCKS; block++)
-            if (!write_flash(sim, &sim->unit[at], block, snapshot->flash[at] + block * RKM04_FLASH_BLOCK_SIZE))
+        for (unsigned block = 0; block < kind->flash_blocks; block++)
+            if (!write_flash(sim, &sim->unit[at], block, snapshot->flash[at] + block * kind->flash_block_size))
                 return false;
     return true;
 }
 
 /* ---- Taking --------------------------------------------------------------------------------------------------------- */
 
-/* Everything but units that are not there: their memory is not touched. */
-static void copy_segment(struct segment *to, const struct segment *from)
-{
-    size_t units = offsetof(struct segment, unit), behind = units + sizeof from->unit;
-    memcpy(to, from, units);
-    memcpy(to->unit, from->unit, from->units * sizeof from->unit[0]);
-    memcpy((char *)to + behind, (const char *)from + behind, sizeof *from - behind);
-}
-
 static bool take_unit(struct sim *sim, struct snapshot *snapshot, unsigned at)
 {
+    const struct device_kind *kind = sim_device(sim);
     struct sim_unit *unit = &snapshot->unit[at];
     *unit = sim->unit[at];
     unit->memory = NULL;
     unit->plant = unit->plant ? plant_copy(sim->unit[at].plant, 0) : NULL;
-    snapshot->flash[at] = malloc(FLASH_SIZE);
+    snapshot->flash[at] = malloc(kind->flash_blocks * kind->flash_block_size + 1u);
     if (!snapshot->flash[at] || (sim->unit[at].plant && !unit->plant))
         return false;
-    for (unsigned block = 0; block < RKM04_FLASH_BLOCKS; block++)
-        if (!read_flash(sim, &sim->unit[at], block, snapshot->flash[at] + block * RKM04_FLASH_BLOCK_SIZE))
+    for (unsigned block = 0; block < kind->flash_blocks; block++)
+        if (!read_flash(sim, &sim->unit[at], block, snapshot->flash[at] + block * kind->flash_block_size))
             return false;
     return true;
 }
@@ -101,10 +93,10 @@ struct snapshot *snapshot_take(struct sim *sim)
     struct snapshot *snapshot = calloc(1, sizeof *snapshot);
     if (!snapshot)
         return NULL;
-    copy_segment(&snapshot->segment, &sim->segment);
     snapshot->switches = sim->config.nodes;
     snapshot->faults = sim->faults;
-    bool well = wire_monitor_begin(&snapshot->monitor, sim->monitor.framing, NULL, (struct wire_monitor_calls){0});
+    bool well = segment_copy(&snapshot->segment, &sim->segment);
+    well = wire_monitor_begin(&snapshot->monitor, sim->monitor.framing, NULL, (struct wire_monitor_calls){0}) && well;
     if (well)
         wire_monitor_copy(&snapshot->monitor, &sim->monitor, 0);
     if (sim->plant_text)
@@ -125,6 +117,7 @@ void snapshot_free(struct snapshot *snapshot)
         plant_free(snapshot->unit[at].plant);
         free(snapshot->flash[at]);
     }
+    segment_end(&snapshot->segment);
     wire_monitor_end(&snapshot->monitor);
     free(snapshot->plant_text);
     free(snapshot);
@@ -137,30 +130,18 @@ uint64_t snapshot_tick(const struct snapshot *snapshot)
 
 /* ---- Does it fit? --------------------------------------------------------------------------------------------------- */
 
-static const char *text_of(const struct rkm04_config *config)
-{
-    return config->version_text ? config->version_text : RKM04_VERSION_TEXT;
-}
-
-static const struct rkm04_framing *framing_of(const struct rkm04_config *config)
-{
-    return config->framing ? config->framing : &rkm04_hdlc;
-}
-
 static const char *unlike(const struct segment *a, const struct segment *b)
 {
+    if (segment_kind(a) != segment_kind(b))
+        return "the device";
     if (a->units != b->units)
         return "the number of units";
     if (a->config.turnaround != b->config.turnaround)
         return "the turnaround";
     for (unsigned at = 0; at < a->units; at++) {
-        const struct rkm04_config *here = &a->unit[at].unit.config, *there = &b->unit[at].unit.config;
-        if (framing_of(here) != framing_of(there))
-            return "the framing";
-        if (!readings_same(&here->readings, &there->readings))
-            return "one of the readings (--readings)";
-        if (strcmp(text_of(here), text_of(there)) != 0)
-            return "the version text";
+        const char *what = segment_kind(a)->unlike(&a->unit[at].config, &b->unit[at].config);
+        if (what)
+            return what;
     }
     return NULL;
 }
@@ -179,23 +160,23 @@ const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapsh
 
 /* ---- Telling what has changed --------------------------------------------------------------------------------------- */
 
-static void look_at(const struct sim *sim, unsigned number, struct look *look)
+static void look_at(struct sim *sim, unsigned number, struct look *look)
 {
-    const struct segment_unit *unit = &sim->segment.unit[number - 1u];
+    const struct device_kind *kind = sim_device(sim);
+    const struct device_unit *unit = sim_core(sim, number);
     *look = (struct look){
-        .powered = unit->powered,
-        .inputs = rkm04_inputs(&unit->unit),
-        .outputs = rkm04_outputs(&unit->unit),
-        .variables = rkm04_variables(&unit->unit),
+        .powered = sim_powered(sim, number),
+        .inputs = kind->inputs_of(unit),
+        .outputs = kind->outputs_of(unit),
+        .variables = kind->variables_of(unit),
     };
-    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
-        struct rkm04_motor_state state;
-        rkm04_motor_state(&unit->unit, motor, &state);
+    for (unsigned motor = 1; motor <= kind->axes; motor++) {
+        struct device_axis state = sim_axis(sim, number, motor);
         look->motor[motor - 1u] = (struct look_motor){
             .forward = state.forward,
-            .moving = state.state == RKM04_MOVING,
-            .led = (uint8_t)state.led,
-            .fault = (uint8_t)state.fault,
+            .moving = state.moving,
+            .led = state.led,
+            .fault = state.fault,
             .index = state.index,
             .position = state.position,
         };
@@ -220,10 +201,10 @@ static void tell_changes(struct sim *sim, unsigned number, const struct look *be
     struct look after;
     look_at(sim, number, &after);
     tell(sim, number, 0, WATCH_POWER, before->powered, after.powered);
-    tell(sim, number, 0, WATCH_INPUTS, before->inputs, after.inputs);
-    tell(sim, number, 0, WATCH_OUTPUTS, before->outputs, after.outputs);
-    tell(sim, number, 0, WATCH_VARIABLES, before->variables, after.variables);
-    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+    tell(sim, number, 0, WATCH_INPUTS, (int32_t)before->inputs, (int32_t)after.inputs);
+    tell(sim, number, 0, WATCH_OUTPUTS, (int32_t)before->outputs, (int32_t)after.outputs);
+    tell(sim, number, 0, WATCH_VARIABLES, (int32_t)before->variables, (int32_t)after.variables);
+    for (unsigned motor = 1; motor <= sim_device(sim)->axes; motor++) {
         const struct look_motor *a = &before->motor[motor - 1u], *b = &after.motor[motor - 1u];
         tell(sim, number, motor, WATCH_POSITION, a->position, b->position);
         tell(sim, number, motor, WATCH_MOTION, a->moving, b->moving);
@@ -235,28 +216,6 @@ static void tell_changes(struct sim *sim, unsigned number, const struct look *be
 }
 
 /* ---- Putting -------------------------------------------------------------------------------------------------------- */
-
-static void put_segment(struct sim *sim, const struct segment *from, uint64_t later)
-{
-    static const struct rkm04_config none;
-    struct segment *segment = &sim->segment;
-    struct segment_config config = segment->config;
-    struct rkm04_config own[SEGMENT_UNITS] = {none};
-    for (unsigned at = 0; at < segment->units; at++)
-        own[at] = segment->unit[at].unit.config;
-    copy_segment(segment, from);
-    config.echo = from->config.echo;
-    config.hooks = from->config.hooks;
-    segment->config = config;
-    for (unsigned at = 0; at < segment->units; at++) {
-        struct rkm04_unit *unit = &segment->unit[at].unit;
-        unit->config.framing = own[at].framing;
-        unit->config.version_text = own[at].version_text;
-        unit->port = &sim->unit[at].port;
-        unit->context = &sim->unit[at];
-    }
-    segment_shift(segment, later);
-}
 
 /* What belongs to this sim stays, everything else becomes as it was. */
 static void put_unit(struct sim_unit *unit, const struct sim_unit *from, struct plant *plant)
@@ -297,7 +256,8 @@ static bool put_later(struct sim *sim, const struct snapshot *snapshot, uint64_t
     for (unsigned number = 1; number <= sim_units(sim); number++)
         look_at(sim, number, &before[number - 1u]);
     bool unplugged = sim->faults.unplugged;
-    put_segment(sim, &snapshot->segment, later);
+    segment_copy(&sim->segment, &snapshot->segment); /* there is memory for its units */
+    segment_shift(&sim->segment, later);
     for (unsigned at = 0; at < sim_units(sim); at++)
         put_unit(&sim->unit[at], &snapshot->unit[at], plant[at]);
     sim->config.nodes = snapshot->switches;

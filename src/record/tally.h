@@ -8,7 +8,7 @@
 #include "sim/sim.h"
 
 #define TALLY_UNITS (SEGMENT_UNITS + 1u) /* unit 0: the bytes on the wires */
-#define TALLY_MOTORS (RKM04_MOTORS + 1u) /* motor 0: the unit */
+#define TALLY_MOTORS (DEVICE_AXES_MAX + 1u) /* motor 0: the unit */
 
 /* Of one motor, of one unit, or of the wires, since the beginning. */
 struct tally_stream {

@@ -30,6 +30,8 @@ struct options {
     uint64_t until;
     bool json;
     unsigned output_flags; /* of output_file.h */
+    const struct device_kind *device;
+    struct device_config config;
     struct rkm04_readings readings;
     readings_set named; /* by --readings */
 };
@@ -172,9 +174,9 @@ static bool read_file(struct exec_file *file, const char *path)
 }
 
 /* Report all that a unit with these readings refuses. Returns false if there is something. */
-static bool check_text(const char *name, const char *text, size_t length, const struct rkm04_readings *readings)
+static bool check_text(const struct options *options, const char *name, const char *text, size_t length)
 {
-    return diagnose_text(name, text, length, stderr) == 0 && diagnose_readings(name, text, length, readings, stderr) == 0;
+    return !options->device->check_text(&options->config, name, text, length, stderr);
 }
 
 static bool read_programs(struct inputs *inputs, const struct options *options)
@@ -186,14 +188,14 @@ static bool read_programs(struct inputs *inputs, const struct options *options)
         program->motor = options->argument[i].motor;
         if (!read_file(file, options->argument[i].path))
             well = false;
-        else if (!check_text(file->name, file->text.text, file->text.length, &options->readings))
+        else if (!check_text(options, file->name, file->text.text, file->text.length))
             well = false;
     }
     return well;
 }
 
 /* Report what is wrong with a text that stands in the middle of a file, by its place in the file. */
-static bool check_set(const struct stimulus *s, const char *name, const struct rkm04_readings *readings)
+static bool check_set(const struct options *options, const struct stimulus *s, const char *name)
 {
     size_t before = s->line - 1 + s->column - 1;
     char *padded = malloc(before + s->length + 1);
@@ -202,26 +204,17 @@ static bool check_set(const struct stimulus *s, const char *name, const struct r
     memset(padded, '\n', s->line - 1);
     memset(padded + s->line - 1, ' ', s->column - 1);
     memcpy(padded + before, s->data, s->length);
-    bool well = check_text(name, padded, before + s->length, readings);
+    bool well = check_text(options, name, padded, before + s->length);
     free(padded);
     return well;
 }
 
-static bool is_refused(const struct stimulus *s, const struct rkm04_readings *readings)
+static bool is_refused(const struct stimulus *s, const struct options *options)
 {
-    bool negative = false;
-    struct rkm04_reader reader;
-    struct rkm04_command command;
-    enum rkm04_read found;
-    rkm04_read_begin(&reader, s->data, s->length);
-    do {
-        found = rkm04_read(&reader, &command);
-        negative = negative || (found == RKM04_READ_COMMAND && command.op == '=' && command.argument > INT32_MAX);
-    } while (found == RKM04_READ_COMMAND);
-    return found != RKM04_READ_END || (negative && readings->negative_position == RKM04_NEGATIVE_POSITION_NO);
+    return options->device->check_text(&options->config, NULL, (const char *)s->data, s->length, NULL);
 }
 
-static bool read_stimuli(struct inputs *inputs, const char *path, const struct rkm04_readings *readings)
+static bool read_stimuli(struct inputs *inputs, const char *path, const struct options *options)
 {
     struct exec_file *file = &inputs->stimulus_file;
     if (!read_file(file, path))
@@ -232,7 +225,7 @@ static bool read_stimuli(struct inputs *inputs, const char *path, const struct r
     bool well = errors == 0;
     for (size_t i = 0; i < inputs->stimuli.count; i++) {
         const struct stimulus *s = &inputs->stimuli.list[i];
-        if (s->kind == STIMULUS_SET && is_refused(s, readings) && !check_set(s, file->name, readings))
+        if (s->kind == STIMULUS_SET && is_refused(s, options) && !check_set(options, s, file->name))
             well = false;
     }
     return well;
@@ -268,13 +261,13 @@ static void catch_signals(void)
     signal(SIGPIPE, SIG_IGN); /* a closed pipe is a failed write, which is reported */
 }
 
-static bool is_running(const struct rkm04_unit *unit)
+static bool is_running(struct exec_run *run)
 {
     bool running = false;
-    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
-        struct rkm04_motor_state state;
-        rkm04_motor_state(unit, motor, &state);
-        running = running || state.state == RKM04_READY || state.state == RKM04_MOVING || state.state == RKM04_DWELL;
+    for (unsigned motor = 1; motor <= run->device->axes; motor++) {
+        struct device_axis state;
+        run->device->axis(exec_run_unit(run), motor, &state);
+        running = running || state.running;
     }
     return running;
 }
@@ -298,9 +291,8 @@ static void say_endless(const struct rkm04_unit *unit, uint64_t period)
 
 static int exit_status(struct exec_run *run, const struct options *options, enum exec_end end, bool written)
 {
-    const struct rkm04_unit *unit = exec_run_unit(run);
-    bool fault = report_faults(unit);
-    if (end == EXEC_UNTIL && is_running(unit)) {
+    bool fault = report_faults(run);
+    if (end == EXEC_UNTIL && is_running(run)) {
         if (options->until_text == NULL)
             fprintf(stderr, "rkm04 exec: virtual time has reached its end with a motor still running\n");
         else
@@ -345,7 +337,8 @@ static int run_programs(struct exec_run *run, const struct options *options, con
     run->stimuli = &inputs->stimuli;
     run->stimulus_name = inputs->stimulus_file.name;
     run->until = options->until;
-    run->readings = options->readings;
+    run->device = options->device;
+    run->config = options->config;
     run->progress = isatty(STDERR_FILENO) != 0;
     run->answered = report_answer;
     run->context = &report;
@@ -391,7 +384,7 @@ static int run_traced(struct exec_run *run, const struct options *options, const
 int exec_main(int argc, char **argv)
 {
     static struct exec_run run;
-    struct options options = {.until = RKM04_NEVER};
+    struct options options = {.until = RKM04_NEVER, .device = device_kind_at(0), .config.node = 1};
     struct inputs inputs = {0};
     int status = STATUS_FAILURE;
 
@@ -401,8 +394,9 @@ int exec_main(int argc, char **argv)
         fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
     } else {
         parse_options(argc, argv, &options);
+        rkm04_settings_put(&options.config, &(struct rkm04_config){.readings = options.readings});
         bool well = read_programs(&inputs, &options);
-        if (options.stimulus != NULL && !read_stimuli(&inputs, options.stimulus, &options.readings))
+        if (options.stimulus != NULL && !read_stimuli(&inputs, options.stimulus, &options))
             well = false;
         if (well)
             status = run_traced(&run, &options, &inputs);

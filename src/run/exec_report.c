@@ -78,29 +78,30 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
         [EXEC_INTERRUPTED] = "interrupted",
         [EXEC_NO_TRACE] = "stopped",
     };
-    const struct rkm04_unit *unit = exec_run_unit(run);
+    const struct device_kind *kind = run->device;
+    const struct device_unit *unit = exec_run_unit(run);
     fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / RKM04_TICKS_PER_SECOND,
             run->reached % RKM04_TICKS_PER_SECOND, ends[end]);
     fprintf(out, "motor     position  state   command  led    fault\n");
-    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
-        struct rkm04_motor_state state;
-        rkm04_motor_state(unit, motor, &state);
-        fprintf(out, "%-5u  %11" PRId32 "  %-6s  %7u  %-5s  %s\n", motor, state.position, rkm04_state_name(state.state),
-                (unsigned)state.index, rkm04_led_name(state.led),
-                state.fault == RKM04_FAULT_NONE ? "-" : rkm04_fault_name(state.fault));
+    for (unsigned motor = 1; motor <= kind->axes; motor++) {
+        struct device_axis state;
+        kind->axis(unit, motor, &state);
+        fprintf(out, "%-5u  %11" PRId32 "  %-6s  %7u  %-5s  %s\n", motor, state.position, kind->state_name(state.state),
+                (unsigned)state.index, kind->led_name(state.led),
+                state.fault == 0 ? "-" : kind->fault_name(state.fault));
     }
-    print_bits(out, "inputs on:", rkm04_inputs(unit), 1);
-    print_bits(out, "; outputs on:", rkm04_outputs(unit), 1);
-    print_bits(out, "; variables on:", rkm04_variables(unit), RKM04_FIRST_VARIABLE);
+    print_bits(out, "inputs on:", kind->inputs_of(unit), 1);
+    print_bits(out, "; outputs on:", kind->outputs_of(unit), 1);
+    print_bits(out, "; variables on:", kind->variables_of(unit), kind->first_variable);
     fputc('\n', out);
 }
 
-bool report_faults(const struct rkm04_unit *unit)
+bool report_faults(struct exec_run *run)
 {
     char text[DEVICE_ERROR_SIZE];
     bool any = false;
-    for (unsigned motor = 1; motor <= rkm04_device.axes; motor++) {
-        if (!rkm04_device.is_stuck((const struct device_unit *)unit, motor, text))
+    for (unsigned motor = 1; motor <= run->device->axes; motor++) {
+        if (!run->device->is_stuck(exec_run_unit(run), motor, text))
             continue;
         any = true;
         fprintf(stderr, "rkm04 exec: motor %u: %s\n", motor, text);
@@ -112,7 +113,7 @@ bool report_faults(const struct rkm04_unit *unit)
 
 static bool print_json(FILE *out, json_t *answers, struct exec_run *run, enum exec_end end)
 {
-    json_t *state = rkm04_device.state((const struct device_unit *)exec_run_unit(run), run->reached);
+    json_t *state = run->device->state(exec_run_unit(run), run->reached);
     bool well = state != NULL && json_object_set_new(state, "end", json_string(end_name(end))) == 0 &&
                 json_object_set(state, "answers", answers) == 0 && json_dumpf(state, out, JSON_COMPACT) == 0;
     json_decref(state);

@@ -25,6 +25,6 @@ void report_answer(void *context, uint64_t tick, const struct stimulus *stimulus
 bool report_end(struct report *report, struct exec_run *run, enum exec_end end, FILE *out);
 
 /* Tell on stderr about each motor that ended in a fault. Returns true if there is one. */
-bool report_faults(const struct rkm04_unit *unit);
+bool report_faults(struct exec_run *run);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <time.h>
 
 #define ANSWER_MAX 16384     /* the longest answer, a full memory, has 9101 bytes */
@@ -29,23 +30,26 @@ void exec_run_interrupt(int signal_number)
 
 bool exec_run_begin(struct exec_run *run)
 {
-    struct sim_config config = {.nodes = {.count = 1, .node = {1}}, .unit.readings = run->readings};
-    return sim_begin(&run->sim, &config);
+    struct sim_config config = {.nodes = {.count = 1, .node = {1}}, .device = run->device, .unit = run->config};
+    run->repeat = calloc(1, run->device->repeat_size + 1u);
+    return run->repeat && sim_begin(&run->sim, &config);
 }
 
 void exec_run_end(struct exec_run *run)
 {
+    free(run->repeat);
     sim_end(&run->sim);
 }
 
-struct rkm04_unit *exec_run_unit(struct exec_run *run)
+struct device_unit *exec_run_unit(struct exec_run *run)
 {
     return sim_core(&run->sim, 1);
 }
 
 int exec_run_set(struct exec_run *run, char motor, const void *text, size_t length)
 {
-    return rkm04_set_command(exec_run_unit(run), motor, text, length, NULL);
+    char error[DEVICE_ERROR_SIZE];
+    return run->device->set_text(exec_run_unit(run), (unsigned)(motor - '0'), text, length, error);
 }
 
 /* ---- Progress for a person who waits ------------------------------------------------------------------------------ */
@@ -86,7 +90,7 @@ static void progress_end(const struct progress *progress)
 
 static void deliver_input(struct exec_run *run, const struct stimulus *s)
 {
-    uint8_t mask = rkm04_inputs(exec_run_unit(run));
+    uint8_t mask = (uint8_t)run->device->inputs_of(exec_run_unit(run));
     uint8_t bit = (uint8_t)(1u << (s->input - 1));
     sim_set_di(&run->sim, 1, s->level ? (uint8_t)(mask | bit) : (uint8_t)(mask & ~bit));
 }
@@ -106,7 +110,7 @@ static void deliver(struct exec_run *run, const struct stimulus *s)
                     s->line, s->column, RKM04_PROGRAM_MAX);
         break;
     case STIMULUS_MESSAGE:
-        length = rkm04_exchange(exec_run_unit(run), s->data, s->length, answer, sizeof answer);
+        length = run->device->exchange(exec_run_unit(run), s->data, s->length, answer, sizeof answer);
         run->answered(run->context, s->tick, s, answer, length < sizeof answer ? length : sizeof answer);
         break;
     }
@@ -121,10 +125,17 @@ static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
     if (run->open && end > run->until) /* a motor goes on for ever: the state repeats from slot to slot */
         end = sim_next_event(&run->sim);
     if (end <= run->until)
-        end = (end + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS * RKM04_SLOT_TICKS + 1;
+        end = (end + run->device->slot - 1) / run->device->slot * run->device->slot + 1;
     if (stimulus < end)
         end = stimulus;
     return end == RKM04_NEVER || end <= run->until ? end : run->until + 1;
+}
+
+static bool repeats(struct exec_run *run)
+{
+    if (run->device->repeat_size > 0)
+        run->period = run->device->find_repeat(run->repeat, exec_run_unit(run));
+    return run->period > 0;
 }
 
 static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
@@ -146,7 +157,7 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
         run->reached = end - 1;
         if (run->trace != NULL && trace_file_failed(run->trace) != 0)
             return EXEC_NO_TRACE;
-        if (run->open && !left && (run->period = exec_repeat_look(&run->repeat, exec_run_unit(run))) > 0)
+        if (run->open && !left && repeats(run))
             return EXEC_ENDLESS;
         progress_look(progress, run);
     }

@@ -6,7 +6,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "exec_repeat.h"
 #include "sim/sim.h"
 #include "stimulus.h"
 #include "trace/trace.h"
@@ -25,7 +24,8 @@ struct exec_run {
     const char *stimulus_name;      /* for messages */
     const struct trace_file *trace; /* the run ends when it fails; NULL: none */
     uint64_t until;                 /* last tick to be done; RKM04_NEVER: no limit */
-    struct rkm04_readings readings; /* of the unit */
+    const struct device_kind *device; /* of the unit */
+    struct device_config config;    /* of the unit */
     bool progress;                  /* show a line on stderr while it takes long */
     /* Called with what the unit answered to a message of the stimulus; length 0: nothing. */
     void (*answered)(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);
@@ -35,7 +35,7 @@ struct exec_run {
     uint64_t reached; /* out: the last tick in which something was done */
     size_t next;      /* inside: stimuli delivered */
     bool open;        /* inside: there is no `until` */
-    struct exec_repeat repeat;
+    void *repeat;     /* inside: of device_kind.find_repeat */
 };
 
 /* Power up at tick 0 with empty flash. *run must be zero; the members of the first part must be set by exec_run(). Returns false
@@ -44,7 +44,7 @@ bool exec_run_begin(struct exec_run *run);
 void exec_run_end(struct exec_run *run);
 
 /* The unit. */
-struct rkm04_unit *exec_run_unit(struct exec_run *run);
+struct device_unit *exec_run_unit(struct exec_run *run);
 
 /* Store a text for motor '0'..'4' at the present tick. Returns the flag of P1. */
 int exec_run_set(struct exec_run *run, char motor, const void *text, size_t length);

@@ -10,7 +10,7 @@
 
 static const struct rkm04_framing *framing_of(const struct running *running)
 {
-    return running->scenario->config.unit.framing;
+    return sim_device(running->sim)->framing(&running->scenario->config.unit);
 }
 
 void running_hear(void *context, const uint8_t *bytes, size_t length)
@@ -41,7 +41,7 @@ static void listen(struct master *master)
 
 static unsigned address_of(const struct running *running, unsigned unit)
 {
-    return unit == 0 ? 0 : sim_core(running->sim, unit)->config.node;
+    return unit == 0 ? 0 : sim_device(running->sim)->node(sim_core(running->sim, unit));
 }
 
 /* The bytes on the line. Returns them, to be freed, or NULL if out of memory. */

@@ -72,6 +72,7 @@ struct scenario {
     struct config_tree *tree;
     const char *name;
     struct sim_config config;
+    struct rkm04_config settings; /* of an RKM04, as in `config` */
     readings_set named;      /* readings that it fixes itself */
     char *plant;             /* text of the plant; NULL: none */
     char *plant_name;        /* for messages */

@@ -47,7 +47,7 @@ static bool read_readings(struct scenario *scenario, const struct config_node *r
     uint64_t latency = 0;
     char text[32], error[READINGS_ERROR_SIZE];
     const struct config_node *map = config_get(root, "readings"), *node = config_get(root, "speed_change_latency");
-    struct rkm04_readings *readings = &scenario->config.unit.readings;
+    struct rkm04_readings *readings = &scenario->settings.readings;
     bool well = map == NULL || readings_read_map(readings, &scenario->named, map);
     if (node == NULL)
         return well;
@@ -70,8 +70,8 @@ static bool read_line(struct scenario *scenario, const struct config_node *root)
     const char *baud = text_of(root, "baud", &well);
     if (!node_list_read(&config->nodes, units != NULL ? units : "1"))
         well = config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED);
-    config->unit.framing = rkm04_framing_named(framing != NULL ? framing : "hdlc");
-    if (config->unit.framing == NULL)
+    scenario->settings.framing = rkm04_framing_named(framing != NULL ? framing : "hdlc");
+    if (scenario->settings.framing == NULL)
         well = config_error(config_get(root, "framing"), "expected framing, hdlc or plain, found \"%.20s\"", framing);
     config->timed = baud == NULL || strcmp(baud, "0") != 0;
     if (baud != NULL && strcmp(baud, "0") != 0 && strcmp(baud, "19200") != 0)
@@ -89,9 +89,10 @@ static bool read_rest(struct scenario *scenario, const struct config_node *root)
     const struct config_node *node = config_get(root, "seed");
     scenario->name = text_of(root, "name", &well);
     text_of(root, "description", &well);
-    scenario->config.unit.version_text = text_of(root, "version_text", &well);
-    if (scenario->config.unit.version_text != NULL && strlen(scenario->config.unit.version_text) > VERSION_MAX)
+    scenario->settings.version_text = text_of(root, "version_text", &well);
+    if (scenario->settings.version_text != NULL && strlen(scenario->settings.version_text) > VERSION_MAX)
         well = config_error(config_get(root, "version_text"), "expected version_text of up to %u bytes", VERSION_MAX);
+    rkm04_settings_put(&scenario->config.unit, &scenario->settings);
     if (node != NULL)
         well = config_integer(node, "seed", 0, INT64_MAX, &seed) && well;
     scenario->config.seed = (uint64_t)seed;
@@ -323,7 +324,8 @@ void scenario_set_readings(struct scenario *scenario, const struct rkm04_reading
 {
     for (unsigned at = 0; at < READINGS; at++)
         if (!(scenario->named >> at & 1u))
-            readings_put(&scenario->config.unit.readings, at, readings_get(readings, at));
+            readings_put(&scenario->settings.readings, at, readings_get(readings, at));
+    rkm04_settings_put(&scenario->config.unit, &scenario->settings);
 }
 
 readings_set scenario_named(const struct scenario *scenario)

@@ -69,9 +69,9 @@ static void see(void *context, const struct watch_event *event)
         *forward = event->value > 0 ? (uint8_t)(*forward | bit) : (uint8_t)(*forward & ~bit);
     } else if (event->kind == WATCH_STEP) {
         *(*forward & bit ? &count->forward : &count->back) += 1;
-    } else if (event->value != RKM04_FAULT_NONE && !running->fault.there) {
+    } else if (event->value != 0 && !running->fault.there) {
         running->fault = (struct running_fault){
-            true, event->tick, event->unit, event->motor, (enum rkm04_fault)event->value,
+            true, event->tick, event->unit, event->motor, (unsigned)event->value,
         };
     }
 }
@@ -87,14 +87,13 @@ static void watch(struct running *running)
 static bool check_faults(struct running *running)
 {
     const struct running_fault *fault = &running->fault;
-    struct rkm04_motor_state state;
     if (!fault->there || running->scenario->allow_faults)
         return true;
-    rkm04_motor_state(sim_core(running->sim, fault->unit), fault->motor, &state);
+    const unsigned index = sim_axis(running->sim, fault->unit, fault->motor).index;
     return running_failed(running, running->step, fault->tick, running_text("no motor in fault"),
                           running_text("unit %s motor %u in fault: %s at command %u",
-                                       running->sim->unit[fault->unit - 1u].name, fault->motor, rkm04_fault_name(fault->fault),
-                                       (unsigned)state.index));
+                                       running->sim->unit[fault->unit - 1u].name, fault->motor,
+                                       sim_device(running->sim)->fault_name(fault->fault), index));
 }
 
 /* ---- What must hold always ------------------------------------------------------------------------------------------ */

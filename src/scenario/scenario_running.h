@@ -23,7 +23,7 @@ struct running_fault {
     bool there;
     uint64_t tick;
     unsigned unit, motor;
-    enum rkm04_fault fault;
+    unsigned fault;
 };
 
 struct master {

@@ -47,13 +47,12 @@ static void tell_flash(struct bus *bus)
         const char *name = bus->sim.unit[at].name;
         if (bus->unit[at].flash_path)
             bus_log(&bus->log, "unit %s: flash image %s", name, bus->unit[at].flash_path);
-        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
-            struct rkm04_motor_state state;
-            rkm04_motor_state(sim_core(&bus->sim, at + 1u), motor, &state);
-            if (state.slot == RKM04_SLOT_LOADED)
+        for (unsigned motor = 1; motor <= sim_device(&bus->sim)->axes; motor++) {
+            const struct device_axis state = sim_axis(&bus->sim, at + 1u, motor);
+            if (state.slot == DEVICE_SLOT_LOADED)
                 bus_log(&bus->log, "unit %s, motor %u: starts the program of %u commands from flash", name, motor,
                         state.commands);
-            else if (state.slot == RKM04_SLOT_UNTRUSTED)
+            else if (state.slot == DEVICE_SLOT_UNTRUSTED)
                 bus_log(&bus->log, "unit %s, motor %u: incomplete flash program: starts without a program", name, motor);
         }
     }
@@ -150,10 +149,10 @@ bool serve_report_ready(const struct bus_options *options, struct bus *const *bu
 
 void serve_report_end(struct bus *bus)
 {
-    struct rkm04_counters sum = {0};
+    struct device_counters sum = {0};
     struct segment_counters line = segment_counters(&bus->sim.segment);
     for (unsigned number = 1; number <= sim_units(&bus->sim); number++) {
-        struct rkm04_counters counters = rkm04_counters(sim_core(&bus->sim, number));
+        const struct device_counters counters = sim_device(&bus->sim)->counters(sim_core(&bus->sim, number));
         sum.requests += counters.requests;
         sum.answers += counters.answers;
         sum.dropped += counters.dropped;

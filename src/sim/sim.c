@@ -77,18 +77,18 @@ static void on_direction(void *context, uint64_t tick, unsigned motor, bool forw
     tell(unit, tick, phase_of(unit), WATCH_DIRECTION, motor, forward);
 }
 
-static void on_outputs(void *context, uint64_t tick, uint8_t mask)
+static void on_outputs(void *context, uint64_t tick, uint32_t mask)
 {
     const struct sim_unit *unit = context;
-    tell(unit, tick, phase_of(unit), WATCH_OUTPUTS, 0, mask);
+    tell(unit, tick, phase_of(unit), WATCH_OUTPUTS, 0, (int32_t)mask);
 }
 
-static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_event what, uint32_t value)
+static void on_event(void *context, uint64_t tick, unsigned motor, enum device_event what, uint32_t value)
 {
     static const enum watch_kind kinds[] = {
-        [RKM04_EVENT_MOTION] = WATCH_MOTION,     [RKM04_EVENT_COMMAND] = WATCH_COMMAND, [RKM04_EVENT_LED] = WATCH_LED,
-        [RKM04_EVENT_VARIABLE] = WATCH_VARIABLES, [RKM04_EVENT_FAULT] = WATCH_FAULT,
-        [RKM04_EVENT_POSITION] = WATCH_POSITION,
+        [DEVICE_EVENT_MOTION] = WATCH_MOTION,     [DEVICE_EVENT_COMMAND] = WATCH_COMMAND, [DEVICE_EVENT_LED] = WATCH_LED,
+        [DEVICE_EVENT_VARIABLE] = WATCH_VARIABLES, [DEVICE_EVENT_FAULT] = WATCH_FAULT,
+        [DEVICE_EVENT_POSITION] = WATCH_POSITION,
     };
     tell(context, tick, phase_of(context), kinds[what], motor, (int32_t)value);
 }
@@ -117,65 +117,11 @@ static void look_who_watches(struct sim *sim)
     for (unsigned number = 1; number <= sim->segment.units; number++) {
         struct sim_unit *unit = &sim->unit[number - 1u];
         bool pulses = (sim->watch.kinds & WATCH_BIT(WATCH_STEP)) != 0 || unit->plant;
+        if (pulses == (unit->port.steps != NULL))
+            continue;
         unit->port.steps = pulses ? on_steps : NULL;
+        segment_port_changed(&sim->segment, number);
     }
-}
-
-/* ---- Flash ---------------------------------------------------------------------------------------------------------- */
-
-/* The memory is there once something has been written, and holds every byte inverted: what has not been is 0. */
-static void invert(uint8_t *to, const uint8_t *from, unsigned length)
-{
-    for (unsigned i = 0; i < length; i++)
-        to[i] = (uint8_t)~from[i];
-}
-
-static uint8_t *memory_of(struct sim_unit *unit)
-{
-    if (!unit->memory)
-        unit->memory = calloc(RKM04_FLASH_BLOCKS, RKM04_FLASH_BLOCK_SIZE);
-    return unit->memory;
-}
-
-static bool within(unsigned block, unsigned offset, unsigned length)
-{
-    return block < RKM04_FLASH_BLOCKS && offset <= RKM04_FLASH_BLOCK_SIZE && length <= RKM04_FLASH_BLOCK_SIZE - offset;
-}
-
-int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length)
-{
-    const struct sim_flash *flash = &unit->sim->config.flash;
-    if (flash->read)
-        return flash->read(flash->context, unit->number, block, offset, data, length);
-    if (!within(block, offset, length))
-        return 1;
-    if (!unit->memory)
-        memset(data, 0xFF, length);
-    else
-        invert(data, unit->memory + block * RKM04_FLASH_BLOCK_SIZE + offset, length);
-    return 0;
-}
-
-int sim_flash_erase(struct sim_unit *unit, unsigned block)
-{
-    const struct sim_flash *flash = &unit->sim->config.flash;
-    if (flash->erase)
-        return flash->erase(flash->context, unit->number, block);
-    if (!within(block, 0, RKM04_FLASH_BLOCK_SIZE) || !memory_of(unit))
-        return 1;
-    memset(unit->memory + block * RKM04_FLASH_BLOCK_SIZE, 0, RKM04_FLASH_BLOCK_SIZE);
-    return 0;
-}
-
-int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length)
-{
-    const struct sim_flash *flash = &unit->sim->config.flash;
-    if (flash->program)
-        return flash->program(flash->context, unit->number, block, offset, data, length);
-    if (!within(block, offset, length) || !memory_of(unit))
-        return 1;
-    invert(unit->memory + block * RKM04_FLASH_BLOCK_SIZE + offset, data, length);
-    return 0;
 }
 
 /* ---- Inputs --------------------------------------------------------------------------------------------------------- */
@@ -190,11 +136,12 @@ static uint8_t inputs_of(struct sim *sim, const struct sim_unit *unit)
 
 static void set_inputs(struct sim *sim, struct sim_unit *unit, uint64_t tick)
 {
-    struct rkm04_unit *core = segment_unit(&sim->segment, unit->number);
+    const struct device_kind *kind = sim_device(sim);
+    struct device_unit *core = segment_unit(&sim->segment, unit->number);
     uint8_t levels = inputs_of(sim, unit);
-    if (levels == rkm04_inputs(core))
+    if (levels == kind->inputs_of(core))
         return;
-    rkm04_set_inputs(core, levels);
+    kind->set_inputs(core, levels);
     struct watch_event event = {.tick = tick, .value = levels, .kind = WATCH_INPUTS, .unit = (uint8_t)unit->number};
     watch_add(&sim->watch, WATCH_DELIVERED, event);
 }
@@ -330,7 +277,7 @@ uint64_t sim_due(const struct sim *sim)
 
 static uint64_t plants_next(const struct sim *sim)
 {
-    uint64_t next = RKM04_NEVER;
+    uint64_t next = DEVICE_NEVER;
     for (unsigned at = 0; at < sim->segment.units; at++)
         if (sim->unit[at].plant)
             next = earlier(next, plant_next(sim->unit[at].plant));
@@ -351,7 +298,8 @@ uint64_t sim_next_report(const struct sim *sim)
 static uint64_t slot_after(const struct sim *sim, unsigned number, uint64_t tick)
 {
     uint64_t since = segment_since(&sim->segment, number);
-    return since + ((tick - since) / RKM04_SLOT_TICKS + 1u) * RKM04_SLOT_TICKS;
+    unsigned slot = sim_device(sim)->slot;
+    return since + ((tick - since) / slot + 1u) * slot;
 }
 
 /* The end of the next leap on the way to `tick`: where a fault begins or ends, and with pulses to be told of, the slot after
@@ -415,9 +363,21 @@ unsigned sim_unit_named(const struct sim *sim, const char *name)
     return 0;
 }
 
-struct rkm04_unit *sim_core(struct sim *sim, unsigned number)
+struct device_unit *sim_core(struct sim *sim, unsigned number)
 {
     return segment_unit(&sim->segment, number);
+}
+
+const struct device_kind *sim_device(const struct sim *sim)
+{
+    return segment_kind(&sim->segment);
+}
+
+struct device_axis sim_axis(struct sim *sim, unsigned number, unsigned axis)
+{
+    struct device_axis state;
+    sim_device(sim)->axis(sim_core(sim, number), axis, &state);
+    return state;
 }
 
 bool sim_powered(const struct sim *sim, unsigned number)
@@ -438,7 +398,7 @@ void sim_power(struct sim *sim, unsigned number, bool on)
         tell_power(sim, number, false);
     unit->forward = 0;
     if (on)
-        segment_unit(&sim->segment, number)->config.node = sim->config.nodes.node[number - 1u]; /* S1 is read now (U4) */
+        segment_set_node(&sim->segment, number, sim->config.nodes.node[number - 1u]); /* S1 is read now (U4) */
     segment_power(&sim->segment, number, on);
     if (!on)
         return;
@@ -531,10 +491,10 @@ static const struct fault_calls fault_calls = {
 static bool add_unit(struct sim *sim, unsigned at)
 {
     struct sim_unit *unit = &sim->unit[at];
-    struct rkm04_config config = sim->config.unit;
+    struct device_config config = sim->config.unit;
     unit->sim = sim;
     unit->number = at + 1u;
-    unit->port = (struct rkm04_port){
+    unit->port = (struct device_port){
         .direction = on_direction,
         .outputs = on_outputs,
         .event = on_event,
@@ -550,6 +510,7 @@ static bool add_unit(struct sim *sim, unsigned at)
 bool sim_begin(struct sim *sim, const struct sim_config *config)
 {
     struct segment_config segment = {
+        .kind = config->device,
         .timed = config->timed,
         .turnaround = config->turnaround,
         .out = on_out,
@@ -561,7 +522,7 @@ bool sim_begin(struct sim *sim, const struct sim_config *config)
     faults_begin(&sim->faults, config->seed, &sim->segment, &fault_calls, sim);
     segment_begin(&sim->segment, &segment);
     struct wire_monitor_calls calls = {.is_wanted = is_message_wanted, .message = on_message, .context = sim};
-    if (!wire_monitor_begin(&sim->monitor, config->unit.framing, &sim->segment, calls))
+    if (!wire_monitor_begin(&sim->monitor, sim_device(sim)->framing(&sim->config.unit), &sim->segment, calls))
         return false;
     for (unsigned at = 0; at < config->nodes.count; at++)
         if (!add_unit(sim, at))
@@ -571,6 +532,7 @@ bool sim_begin(struct sim *sim, const struct sim_config *config)
 
 void sim_end(struct sim *sim)
 {
+    segment_end(&sim->segment);
     watch_end(&sim->watch);
     wire_monitor_end(&sim->monitor);
     if (sim->snapshots)

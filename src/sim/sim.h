@@ -28,7 +28,7 @@ struct command_method; /* command.h */
 
 #define SIM_COMMAND_TABLES 4u /* that rooms above `command` may attach */
 
-/* The flash of unit `number`, as in struct rkm04_port; all functions set. */
+/* The flash of unit `number`, as in struct device_port; all functions set. */
 struct sim_flash {
     int (*read)(void *context, unsigned number, unsigned block, unsigned offset, void *data, unsigned length);
     int (*erase)(void *context, unsigned number, unsigned block);
@@ -47,7 +47,8 @@ struct sim_journal {
 };
 
 struct sim_config {
-    struct rkm04_config unit;      /* of all units; node comes from `nodes` */
+    const struct device_kind *device; /* of all units; NULL: the RKM04 */
+    struct device_config unit;     /* of all units; node comes from `nodes` */
     struct node_list nodes;
     bool timed;                    /* false: bytes take no time (--baud 0) */
     uint32_t turnaround;           /* ticks (segment.h) */
@@ -62,11 +63,11 @@ struct sim_unit {
     struct sim *sim;
     unsigned number;            /* on the line, 1..16 */
     char name[NODE_NAME_SIZE];  /* its address, as in "3"; with a suffix if it is not the only one with it, "3-2" */
-    struct rkm04_port port;     /* `steps` is set while somebody wants pulses */
+    struct device_port port;    /* `steps` is set while somebody wants pulses */
     uint8_t di;                 /* inputs set by hand: DI 01 in bit 0 */
     uint8_t forward;            /* direction outputs: motor 1 in bit 0 */
     struct plant *plant;        /* NULL: none. Who changes it calls sim_update_inputs() */
-    uint8_t *memory;            /* flash without a file, RKM04_FLASH_BLOCKS blocks, inverted; NULL: not used yet */
+    uint8_t *memory;            /* flash without a file, the device's flash_blocks, inverted; NULL: not used yet */
 };
 
 struct sim {
@@ -140,7 +141,13 @@ unsigned sim_unit_named(const struct sim *sim, const char *name);
 /* The names of all units, for messages in words (wire_words.h). They stay the sim's. */
 struct wire_names sim_wire_names(const struct sim *sim);
 
-struct rkm04_unit *sim_core(struct sim *sim, unsigned number);
+struct device_unit *sim_core(struct sim *sim, unsigned number);
+
+/* The kind of all units. */
+const struct device_kind *sim_device(const struct sim *sim);
+
+/* What can be seen of an axis, 1..axes of the kind. */
+struct device_axis sim_axis(struct sim *sim, unsigned number, unsigned axis);
 bool sim_powered(const struct sim *sim, unsigned number);
 
 /* The power switch: off, or on; one that is on is switched off and on again (reset). */
@@ -158,7 +165,7 @@ void sim_update_inputs(struct sim *sim, unsigned number);
  * changed. Returns false then. Inputs follow at once. */
 bool sim_configure_plants(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors);
 
-/* Flash of a unit as it is, without faults on demand. As in struct rkm04_port. */
+/* Flash of a unit as it is, without faults on demand. As in struct device_port. */
 int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);
 int sim_flash_erase(struct sim_unit *unit, unsigned block);
 int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length);

@@ -20,12 +20,10 @@ static void free_plants(struct plants *plants)
 
 static struct plant *read_plant(struct sim *sim, const struct config_node *node, unsigned number)
 {
-    struct plant_device device = {.axes = RKM04_MOTORS, .inputs = RKM04_INPUTS};
-    for (unsigned axis = 1; axis <= device.axes; axis++) {
-        struct rkm04_motor_state state;
-        if (rkm04_motor_state(sim_core(sim, number), axis, &state))
-            device.position[axis - 1u] = state.position;
-    }
+    const struct device_kind *kind = sim_device(sim);
+    struct plant_device device = {.axes = kind->axes, .inputs = kind->inputs};
+    for (unsigned axis = 1; axis <= device.axes; axis++)
+        device.position[axis - 1u] = sim_axis(sim, number, axis).position;
     return plant_read(node, &device, sim_now(sim), sim->config.seed);
 }
 

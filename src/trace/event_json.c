@@ -97,9 +97,9 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
 {
     switch ((enum watch_kind)event->kind) {
     case WATCH_LED:
-        return put_string(at, rkm04_led_name((enum rkm04_led)event->value));
+        return put_string(at, sim_device(sim)->led_name((unsigned)event->value));
     case WATCH_FAULT:
-        return put_string(at, rkm04_fault_name((enum rkm04_fault)event->value));
+        return put_string(at, sim_device(sim)->fault_name((unsigned)event->value));
     case WATCH_BYTE:
         return put_byte(at, sim, &event->byte);
     case WATCH_MESSAGE:

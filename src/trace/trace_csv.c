@@ -11,7 +11,7 @@ static const char *const names[WATCH_KINDS] = {
     [WATCH_POWER] = ",power,", [WATCH_POSITION] = ",position,",
 };
 
-static char *put_value(char *at, const struct watch_event *event)
+static char *put_value(char *at, const struct sim *sim, const struct watch_event *event)
 {
     switch ((enum watch_kind)event->kind) {
     case WATCH_DIRECTION:
@@ -19,7 +19,7 @@ static char *put_value(char *at, const struct watch_event *event)
     case WATCH_MOTION:
         return put_text(at, event->value ? "begin" : "end");
     case WATCH_LED:
-        return put_text(at, rkm04_led_name((enum rkm04_led)event->value));
+        return put_text(at, sim_device(sim)->led_name((unsigned)event->value));
     case WATCH_POWER:
         return put_text(at, event->value ? "on" : "off");
     default:
@@ -39,9 +39,9 @@ static void write_row(struct trace_file *file, const struct watch_event *event, 
         at = put_text(at, "unit");
     } else {
         *at++ = 'm';
-        *at++ = (char)('0' + event->motor);
+        at = put_number(at, event->motor);
     }
-    at = put_value(put_text(at, name), event);
+    at = put_value(put_text(at, name), file->sim, event);
     *at++ = '\n';
     trace_wrote(file, at);
 }
@@ -63,30 +63,30 @@ static void tell(struct trace_file *file, unsigned number, unsigned motor, enum 
 
 static void tell_motor(struct trace_file *file, unsigned number, unsigned motor)
 {
-    struct rkm04_motor_state state;
-    rkm04_motor_state(sim_core(file->sim, number), motor, &state);
+    const struct device_axis state = sim_axis(file->sim, number, motor);
     tell(file, number, motor, WATCH_POSITION, state.position);
     tell(file, number, motor, WATCH_COMMAND, state.index);
     tell(file, number, motor, WATCH_DIRECTION, state.forward);
-    tell(file, number, motor, WATCH_LED, (int32_t)state.led);
-    tell(file, number, motor, WATCH_MOTION, state.state == RKM04_MOVING);
+    tell(file, number, motor, WATCH_LED, state.led);
+    tell(file, number, motor, WATCH_MOTION, state.moving);
 }
 
 /* A trace that begins later begins with what is not as after power-up. */
 static void begin(struct trace_file *file)
 {
     static const char header[] = "t_us,source,event,value\n";
+    const struct device_kind *kind = sim_device(file->sim);
     trace_put(file, header, sizeof header - 1u);
     for (unsigned number = 1; number <= sim_units(file->sim); number++) {
-        const struct rkm04_unit *core = sim_core(file->sim, number);
+        const struct device_unit *core = sim_core(file->sim, number);
         if (!sim_powered(file->sim, number)) {
             tell(file, number, 0, WATCH_POWER, 0);
             continue;
         }
-        tell(file, number, 0, WATCH_INPUTS, rkm04_inputs(core));
-        tell(file, number, 0, WATCH_OUTPUTS, rkm04_outputs(core));
-        tell(file, number, 0, WATCH_VARIABLES, rkm04_variables(core));
-        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+        tell(file, number, 0, WATCH_INPUTS, (int32_t)kind->inputs_of(core));
+        tell(file, number, 0, WATCH_OUTPUTS, (int32_t)kind->outputs_of(core));
+        tell(file, number, 0, WATCH_VARIABLES, (int32_t)kind->variables_of(core));
+        for (unsigned motor = 1; motor <= kind->axes; motor++)
             tell_motor(file, number, motor);
     }
 }

@@ -7,7 +7,7 @@
 #include "trace_writer.h"
 
 #define MOTOR_ROOM 200u
-#define UNIT_ROOM (160u + RKM04_MOTORS * MOTOR_ROOM)
+#define UNIT_ROOM (160u + DEVICE_AXES_MAX * MOTOR_ROOM)
 
 static void see(void *context, const struct watch_event *event)
 {
@@ -35,30 +35,30 @@ static char *put_member(char *at, const char *name, int32_t value)
 
 static char *put_motor(char *at, struct sim *sim, unsigned number, unsigned motor)
 {
-    struct rkm04_motor_state state;
-    rkm04_motor_state(sim_core(sim, number), motor, &state);
+    const struct device_axis state = sim_axis(sim, number, motor);
     at = put_member(at, motor == 1 ? "{\"motor\":" : ",{\"motor\":", (int32_t)motor);
     at = put_member(at, ",\"position\":", state.position);
     at = put_member(at, ",\"direction\":", state.forward);
-    at = put_member(at, ",\"motion\":", state.state == RKM04_MOVING);
+    at = put_member(at, ",\"motion\":", state.moving);
     at = put_member(at, ",\"command\":", state.index);
-    at = put_text(put_text(at, ",\"led\":\""), rkm04_led_name(state.led));
-    at = put_text(put_text(at, "\",\"fault\":\""), rkm04_fault_name(state.fault));
+    at = put_text(put_text(at, ",\"led\":\""), sim_device(sim)->led_name(state.led));
+    at = put_text(put_text(at, "\",\"fault\":\""), sim_device(sim)->fault_name(state.fault));
     return put_text(at, "\"}");
 }
 
 static void put_unit(struct trace_file *file, unsigned number)
 {
-    struct rkm04_unit *core = sim_core(file->sim, number);
+    const struct device_kind *kind = sim_device(file->sim);
+    const struct device_unit *core = sim_core(file->sim, number);
     char *at = trace_room(file, UNIT_ROOM);
     at = put_text(at, number == 1 ? "{\"unit\":\"" : ",{\"unit\":\"");
     at = put_text(at, file->sim->unit[number - 1u].name);
     at = put_member(at, "\",\"power\":", sim_powered(file->sim, number));
-    at = put_member(at, ",\"inputs\":", rkm04_inputs(core));
-    at = put_member(at, ",\"outputs\":", rkm04_outputs(core));
-    at = put_member(at, ",\"variables\":", rkm04_variables(core));
+    at = put_member(at, ",\"inputs\":", (int32_t)kind->inputs_of(core));
+    at = put_member(at, ",\"outputs\":", (int32_t)kind->outputs_of(core));
+    at = put_member(at, ",\"variables\":", (int32_t)kind->variables_of(core));
     at = put_text(at, ",\"motors\":[");
-    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+    for (unsigned motor = 1; motor <= kind->axes; motor++)
         at = put_motor(at, file->sim, number, motor);
     trace_wrote(file, put_text(at, "]}"));
 }

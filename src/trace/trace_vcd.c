@@ -15,13 +15,9 @@
 #define ID_BASE 94u                         /* characters of an identifier: ! to ~ */
 
 enum motor_signal { STEP, DIRECTION, LED, MOVING, COMMAND, SPEED, POSITION, MOTOR_SIGNALS };
-enum unit_signal {
-    POWER,
-    INPUTS,
-    OUTPUTS = INPUTS + RKM04_INPUTS,
-    VARIABLES = OUTPUTS + RKM04_OUTPUTS,
-    MOTORS = VARIABLES + RKM04_VARIABLES,
-    UNIT_SIGNALS = MOTORS + RKM04_MOTORS * MOTOR_SIGNALS
+/* Where the signals of a unit begin, counted from its first one, which is `power`. */
+struct vcd_places {
+    unsigned inputs, outputs, variables, motors, count;
 };
 
 struct vcd_motor {
@@ -35,12 +31,13 @@ struct vcd_motor {
 };
 
 struct vcd_unit {
-    uint8_t power, inputs, outputs;
-    uint16_t variables;
-    struct vcd_motor motor[RKM04_MOTORS];
+    bool power;
+    uint32_t inputs, outputs, variables;
+    struct vcd_motor motor[DEVICE_AXES_MAX];
 };
 
 struct vcd {
+    struct vcd_places place;
     uint64_t tick;   /* that has been written */
     uint64_t toggle; /* the next one of all LEDs; RKM04_NEVER: none */
     unsigned first, falls;
@@ -53,9 +50,16 @@ struct vcd {
 
 /* ---- Writing -------------------------------------------------------------------------------------------------------- */
 
-static unsigned signal_of(unsigned unit, unsigned motor, enum motor_signal signal)
+static unsigned first_of(const struct trace_file *file, unsigned unit)
 {
-    return (unit - 1u) * UNIT_SIGNALS + MOTORS + (motor - 1u) * MOTOR_SIGNALS + signal;
+    const struct vcd *vcd = file->state;
+    return (unit - 1u) * vcd->place.count;
+}
+
+static unsigned signal_of(const struct trace_file *file, unsigned unit, unsigned motor, enum motor_signal signal)
+{
+    const struct vcd *vcd = file->state;
+    return first_of(file, unit) + vcd->place.motors + (motor - 1u) * MOTOR_SIGNALS + signal;
 }
 
 static char *put_id(char *at, unsigned signal)
@@ -108,12 +112,12 @@ static void write_real(struct trace_file *file, unsigned signal, int32_t whole, 
 
 static void write_speed(struct trace_file *file, unsigned unit, unsigned motor, uint64_t speed)
 {
-    write_real(file, signal_of(unit, motor, SPEED), (int32_t)(speed / 1000u), (uint32_t)(speed % 1000u));
+    write_real(file, signal_of(file, unit, motor, SPEED), (int32_t)(speed / 1000u), (uint32_t)(speed % 1000u));
 }
 
 static void write_mask(struct trace_file *file, unsigned first, uint32_t mask, uint32_t changed)
 {
-    for (unsigned bit = 0; changed >> bit != 0; bit++)
+    for (unsigned bit = 0; bit < 32u && changed >> bit != 0; bit++)
         if ((changed >> bit & 1u) != 0)
             write_bit(file, first + bit, (mask >> bit & 1u) != 0);
 }
@@ -137,7 +141,7 @@ static void end_first_pulse(struct trace_file *file)
         return; /* cut off, or another one has begun */
     write_time(file, tick);
     state->step = false;
-    write_bit(file, signal_of(unit, motor, STEP), false);
+    write_bit(file, signal_of(file, unit, motor, STEP), false);
 }
 
 static void find_toggle(const struct trace_file *file)
@@ -145,7 +149,7 @@ static void find_toggle(const struct trace_file *file)
     struct vcd *vcd = file->state;
     vcd->toggle = RKM04_NEVER;
     for (unsigned unit = 1; unit <= sim_units(file->sim); unit++)
-        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+        for (unsigned motor = 1; motor <= sim_device(file->sim)->axes; motor++)
             if (motor_of(vcd, unit, motor)->toggle < vcd->toggle)
                 vcd->toggle = motor_of(vcd, unit, motor)->toggle;
 }
@@ -156,13 +160,13 @@ static void toggle_leds(struct trace_file *file)
     uint64_t tick = vcd->toggle;
     write_time(file, tick);
     for (unsigned unit = 1; unit <= sim_units(file->sim); unit++) {
-        for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+        for (unsigned motor = 1; motor <= sim_device(file->sim)->axes; motor++) {
             struct vcd_motor *state = motor_of(vcd, unit, motor);
             if (state->toggle != tick)
                 continue;
             state->lit = !state->lit;
             state->toggle += BLINK;
-            write_bit(file, signal_of(unit, motor, LED), state->lit);
+            write_bit(file, signal_of(file, unit, motor, LED), state->lit);
         }
     }
     find_toggle(file);
@@ -207,14 +211,14 @@ static void see_step(struct trace_file *file, const struct watch_event *event, s
     if (vcd->falls == FALLS)
         end_first_pulse(file);
     unsigned last = (vcd->first + vcd->falls++) % FALLS;
-    vcd->fall[last].tick = state->fall = event->tick + RKM04_PULSE_TICKS;
+    vcd->fall[last].tick = state->fall = event->tick + sim_device(file->sim)->pulse;
     vcd->fall[last].unit = event->unit;
     vcd->fall[last].motor = event->motor;
     if (!state->step)
-        write_bit(file, signal_of(event->unit, event->motor, STEP), true);
+        write_bit(file, signal_of(file, event->unit, event->motor, STEP), true);
     state->step = true;
     state->position = event->value;
-    write_real(file, signal_of(event->unit, event->motor, POSITION), event->value, 0);
+    write_real(file, signal_of(file, event->unit, event->motor, POSITION), event->value, 0);
     if (!state->counting) {
         open_gate(state, event->tick);
         return;
@@ -230,7 +234,7 @@ static void see_motion(struct trace_file *file, const struct watch_event *event,
 {
     bool moving = event->value != 0;
     if (state->moving != moving)
-        write_bit(file, signal_of(event->unit, event->motor, MOVING), moving);
+        write_bit(file, signal_of(file, event->unit, event->motor, MOVING), moving);
     state->moving = moving;
     open_gate(state, event->tick);
     state->counting = moving;
@@ -239,11 +243,11 @@ static void see_motion(struct trace_file *file, const struct watch_event *event,
 
 static void see_led(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
 {
-    bool lit = event->value != RKM04_LED_OFF;
+    bool lit = event->value != DEVICE_LED_OFF;
     if (state->lit != lit)
-        write_bit(file, signal_of(event->unit, event->motor, LED), lit);
+        write_bit(file, signal_of(file, event->unit, event->motor, LED), lit);
     state->lit = lit;
-    state->toggle = event->value == RKM04_LED_BLINK ? event->tick + BLINK : RKM04_NEVER;
+    state->toggle = event->value == DEVICE_LED_BLINK ? event->tick + BLINK : RKM04_NEVER;
     find_toggle(file);
 }
 
@@ -262,15 +266,15 @@ static void see_motor(struct trace_file *file, const struct watch_event *event)
         break;
     case WATCH_DIRECTION:
         state->forward = event->value != 0;
-        write_bit(file, signal_of(event->unit, event->motor, DIRECTION), state->forward);
+        write_bit(file, signal_of(file, event->unit, event->motor, DIRECTION), state->forward);
         break;
     case WATCH_POSITION:
         state->position = event->value;
-        write_real(file, signal_of(event->unit, event->motor, POSITION), event->value, 0);
+        write_real(file, signal_of(file, event->unit, event->motor, POSITION), event->value, 0);
         break;
     case WATCH_COMMAND:
         state->command = event->value;
-        write_real(file, signal_of(event->unit, event->motor, COMMAND), event->value, 0);
+        write_real(file, signal_of(file, event->unit, event->motor, COMMAND), event->value, 0);
         break;
     default:
         break;
@@ -284,10 +288,10 @@ static void see_power(struct trace_file *file, const struct watch_event *event)
 {
     struct vcd *vcd = file->state;
     struct vcd_unit *unit = &vcd->unit[event->unit - 1u];
-    uint8_t inputs = unit->inputs;
+    uint32_t inputs = unit->inputs;
     if (event->value == 0) {
         *unit = (struct vcd_unit){.inputs = inputs};
-        for (unsigned motor = 0; motor < RKM04_MOTORS; motor++)
+        for (unsigned motor = 0; motor < DEVICE_AXES_MAX; motor++)
             unit->motor[motor].toggle = RKM04_NEVER;
         find_toggle(file);
     }
@@ -299,17 +303,17 @@ static void see_masks(struct trace_file *file, const struct watch_event *event)
 {
     struct vcd *vcd = file->state;
     struct vcd_unit *unit = &vcd->unit[event->unit - 1u];
-    unsigned first = (event->unit - 1u) * UNIT_SIGNALS;
+    unsigned first = first_of(file, event->unit);
     uint32_t mask = (uint32_t)event->value;
     if (event->kind == WATCH_INPUTS) {
-        write_mask(file, first + INPUTS, mask, mask ^ unit->inputs);
-        unit->inputs = (uint8_t)mask;
+        write_mask(file, first + vcd->place.inputs, mask, mask ^ unit->inputs);
+        unit->inputs = mask;
     } else if (event->kind == WATCH_OUTPUTS) {
-        write_mask(file, first + OUTPUTS, mask, mask ^ unit->outputs);
-        unit->outputs = (uint8_t)mask;
+        write_mask(file, first + vcd->place.outputs, mask, mask ^ unit->outputs);
+        unit->outputs = mask;
     } else {
-        write_mask(file, first + VARIABLES, mask, mask ^ unit->variables);
-        unit->variables = (uint16_t)mask;
+        write_mask(file, first + vcd->place.variables, mask, mask ^ unit->variables);
+        unit->variables = mask;
     }
 }
 
@@ -372,19 +376,22 @@ static void declare_motor(struct trace_file *file, const char *unit_prefix, unsi
         [MOVING] = {"wire 1", "moving"},   [COMMAND] = {"real 64", "command"}, [SPEED] = {"real 64", "speed"},
         [POSITION] = {"real 64", "position"},
     };
-    char scope[] = {'m', (char)('0' + motor), '\0'}, prefix[NODE_NAME_SIZE + 8u], *at = put_text(prefix, unit_prefix);
+    char scope[4] = "m", prefix[NODE_NAME_SIZE + 8u], *at = put_text(prefix, unit_prefix);
+    *put_number(scope + 1, motor) = '\0';
     memcpy(put_text(at, scope), "_", 2);
     open_scope(file, scope);
     for (unsigned signal = 0; signal < MOTOR_SIGNALS; signal++)
         declare(file, signals[signal].type, prefix, signals[signal].name,
-                signal_of(unit, motor, (enum motor_signal)signal));
+                signal_of(file, unit, motor, (enum motor_signal)signal));
     close_scope(file);
 }
 
 static void declare_unit(struct trace_file *file, unsigned unit)
 {
+    const struct device_kind *kind = sim_device(file->sim);
+    const struct vcd *vcd = file->state;
     char prefix[NODE_NAME_SIZE + 4u] = "";
-    unsigned first = (unit - 1u) * UNIT_SIGNALS;
+    unsigned first = first_of(file, unit);
     if (sim_units(file->sim) > 1) {
         char *at = prefix;
         *at++ = 'u';
@@ -394,70 +401,86 @@ static void declare_unit(struct trace_file *file, unsigned unit)
         open_scope(file, prefix);
         memcpy(at, "_", 2);
     }
-    declare(file, "wire 1", prefix, "power", first + POWER);
-    declare_bits(file, prefix, "di", RKM04_INPUTS, 1, first + INPUTS);
-    declare_bits(file, prefix, "do", RKM04_OUTPUTS, 1, first + OUTPUTS);
-    declare_bits(file, prefix, "var", RKM04_VARIABLES, RKM04_FIRST_VARIABLE, first + VARIABLES);
-    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
+    declare(file, "wire 1", prefix, "power", first);
+    declare_bits(file, prefix, "di", kind->inputs, 1, first + vcd->place.inputs);
+    declare_bits(file, prefix, "do", kind->outputs, 1, first + vcd->place.outputs);
+    declare_bits(file, prefix, "var", kind->variables, kind->first_variable, first + vcd->place.variables);
+    for (unsigned motor = 1; motor <= sim_device(file->sim)->axes; motor++)
         declare_motor(file, prefix, unit, motor);
     if (sim_units(file->sim) > 1)
         close_scope(file);
 }
 
+/* A mask with so many bits. */
+static uint32_t all_of(unsigned bits)
+{
+    return bits > 0 ? UINT32_MAX >> (32u - bits) : 0;
+}
+
 /* All signals of a unit as they stand. */
 static void write_unit(struct trace_file *file, unsigned unit)
 {
+    const struct device_kind *kind = sim_device(file->sim);
     const struct vcd *vcd = file->state;
     const struct vcd_unit *state = &vcd->unit[unit - 1u];
-    unsigned first = (unit - 1u) * UNIT_SIGNALS;
-    write_bit(file, first + POWER, state->power);
-    write_mask(file, first + INPUTS, state->inputs, (1u << RKM04_INPUTS) - 1u);
-    write_mask(file, first + OUTPUTS, state->outputs, (1u << RKM04_OUTPUTS) - 1u);
-    write_mask(file, first + VARIABLES, state->variables, (1u << RKM04_VARIABLES) - 1u);
-    for (unsigned number = 1; number <= RKM04_MOTORS; number++) {
+    unsigned first = first_of(file, unit);
+    write_bit(file, first, state->power);
+    write_mask(file, first + vcd->place.inputs, state->inputs, all_of(kind->inputs));
+    write_mask(file, first + vcd->place.outputs, state->outputs, all_of(kind->outputs));
+    write_mask(file, first + vcd->place.variables, state->variables, all_of(kind->variables));
+    for (unsigned number = 1; number <= sim_device(file->sim)->axes; number++) {
         const struct vcd_motor *motor = &state->motor[number - 1u];
-        write_bit(file, signal_of(unit, number, STEP), motor->step);
-        write_bit(file, signal_of(unit, number, DIRECTION), motor->forward);
-        write_bit(file, signal_of(unit, number, LED), motor->lit);
-        write_bit(file, signal_of(unit, number, MOVING), motor->moving);
-        write_real(file, signal_of(unit, number, COMMAND), motor->command, 0);
+        write_bit(file, signal_of(file, unit, number, STEP), motor->step);
+        write_bit(file, signal_of(file, unit, number, DIRECTION), motor->forward);
+        write_bit(file, signal_of(file, unit, number, LED), motor->lit);
+        write_bit(file, signal_of(file, unit, number, MOVING), motor->moving);
+        write_real(file, signal_of(file, unit, number, COMMAND), motor->command, 0);
         write_speed(file, unit, number, motor->speed);
-        write_real(file, signal_of(unit, number, POSITION), motor->position, 0);
+        write_real(file, signal_of(file, unit, number, POSITION), motor->position, 0);
     }
 }
 
 static void look_at_motor(struct trace_file *file, unsigned unit, unsigned motor)
 {
-    const struct rkm04_unit *core = sim_core(file->sim, unit);
     struct vcd_motor *state = motor_of(file->state, unit, motor);
-    struct rkm04_motor_state now;
-    if (!sim_powered(file->sim, unit) || !rkm04_motor_state(core, motor, &now))
+    if (!sim_powered(file->sim, unit))
         return;
+    const struct device_axis now = sim_axis(file->sim, unit, motor);
     state->forward = now.forward;
     state->lit = now.lit;
-    state->moving = now.state == RKM04_MOVING;
+    state->moving = now.moving;
     state->command = now.index;
     state->speed = now.speed * UINT64_C(1000);
     state->position = now.position;
-    if (now.led != RKM04_LED_BLINK)
+    if (now.led != DEVICE_LED_BLINK)
         return;
-    uint64_t from = segment_since(&file->sim->segment, unit) + core->motor[motor - 1u].blink_from;
+    uint64_t from = segment_since(&file->sim->segment, unit) + now.blink_from;
     state->toggle = from + ((sim_now(file->sim) - from) / BLINK + 1u) * BLINK;
 }
 
 static void look_at_unit(struct trace_file *file, unsigned unit)
 {
-    const struct rkm04_unit *core = sim_core(file->sim, unit);
+    const struct device_kind *kind = sim_device(file->sim);
+    const struct device_unit *core = sim_core(file->sim, unit);
     struct vcd *vcd = file->state;
     struct vcd_unit *state = &vcd->unit[unit - 1u];
     state->power = sim_powered(file->sim, unit);
-    state->inputs = rkm04_inputs(core);
-    state->outputs = state->power ? rkm04_outputs(core) : 0;
-    state->variables = state->power ? rkm04_variables(core) : 0;
-    for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
+    state->inputs = kind->inputs_of(core);
+    state->outputs = state->power ? kind->outputs_of(core) : 0;
+    state->variables = state->power ? kind->variables_of(core) : 0;
+    for (unsigned motor = 1; motor <= DEVICE_AXES_MAX; motor++)
         state->motor[motor - 1u].toggle = RKM04_NEVER;
+    for (unsigned motor = 1; motor <= kind->axes; motor++)
         look_at_motor(file, unit, motor);
-    }
+}
+
+static void find_places(struct vcd_places *place, const struct device_kind *kind)
+{
+    place->inputs = 1;
+    place->outputs = place->inputs + kind->inputs;
+    place->variables = place->outputs + kind->outputs;
+    place->motors = place->variables + kind->variables;
+    place->count = place->motors + kind->axes * MOTOR_SIGNALS;
 }
 
 static void begin(struct trace_file *file)
@@ -465,8 +488,9 @@ static void begin(struct trace_file *file)
     static const char head[] = "$version rkm04 " RKM04_VERSION " $end\n$timescale 1 us $end\n";
     static const char end_of_head[] = "$enddefinitions $end\n#";
     struct vcd *vcd = file->state;
+    find_places(&vcd->place, sim_device(file->sim));
     trace_put(file, head, sizeof head - 1u);
-    open_scope(file, "rkm04");
+    open_scope(file, sim_device(file->sim)->name);
     for (unsigned unit = 1; unit <= sim_units(file->sim); unit++)
         declare_unit(file, unit);
     close_scope(file);

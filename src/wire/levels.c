@@ -7,7 +7,7 @@
 #define STOP_BIT (BITS - 1u)
 #define MIDDLE (WIRE_BIT / 2u)         /* of a bit */
 #define DECIDED (STOP_BIT * WIRE_BIT + MIDDLE) /* from the start of a byte to the sample of its stop bit */
-#define HELD_END (RKM04_NEVER - 1u)    /* of a break that goes on; RKM04_NEVER stands for none */
+#define HELD_END (DEVICE_NEVER - 1u)    /* of a break that goes on; DEVICE_NEVER stands for none */
 
 static uint32_t bit_of(unsigned station)
 {
@@ -44,7 +44,7 @@ static uint64_t signal_falls(const struct wire *wire, const struct wire_signal *
         if (falls && time > after && (time == 0 || level(wire, time - 1u)))
             return time;
     }
-    return RKM04_NEVER;
+    return DEVICE_NEVER;
 }
 
 /* The first time from `from` on at which the line falls. `high`: whatever went before, it was at 1. */
@@ -52,7 +52,7 @@ static uint64_t line_falls(const struct wire *wire, uint64_t from, bool high)
 {
     if ((high || from == 0 || level(wire, from - 1u)) && !level(wire, from))
         return from;
-    uint64_t first = RKM04_NEVER;
+    uint64_t first = DEVICE_NEVER;
     for (unsigned i = 0; i < wire->count; i++) {
         const struct wire_signal *signal = &wire->signal[i];
         if (signal->end <= from)
@@ -64,7 +64,7 @@ static uint64_t line_falls(const struct wire *wire, uint64_t from, bool high)
     return first;
 }
 
-/* The end of what a station sends itself at some time from `from` to before `before`; RKM04_NEVER: it sends nothing then. */
+/* The end of what a station sends itself at some time from `from` to before `before`; DEVICE_NEVER: it sends nothing then. */
 static uint64_t own_end(const struct wire *wire, unsigned station, uint64_t from, uint64_t before)
 {
     for (unsigned i = 0; i < wire->count; i++) {
@@ -72,25 +72,25 @@ static uint64_t own_end(const struct wire *wire, unsigned station, uint64_t from
         if (signal->station == station && signal->start < before && signal->end > from)
             return signal->end;
     }
-    return RKM04_NEVER;
+    return DEVICE_NEVER;
 }
 
 /* Find the beginning of the next byte that an ear hears: one during which it does not send itself. */
 static void listen(struct wire *wire, unsigned ear)
 {
-    uint64_t from = wire->ear[ear].from, fall = RKM04_NEVER, end;
+    uint64_t from = wire->ear[ear].from, fall = DEVICE_NEVER, end;
     bool high = false; /* its receiver is off while it sends and gives a 1 */
     if ((wire->stations & bit_of(ear)) != 0) {
         do {
-            while ((end = own_end(wire, ear, from, from + 1u)) != RKM04_NEVER) {
+            while ((end = own_end(wire, ear, from, from + 1u)) != DEVICE_NEVER) {
                 from = end;
                 high = true;
             }
             fall = line_falls(wire, from, high);
-            end = own_end(wire, ear, from, fall == RKM04_NEVER ? RKM04_NEVER : fall + DECIDED + 1u);
+            end = own_end(wire, ear, from, fall == DEVICE_NEVER ? DEVICE_NEVER : fall + DECIDED + 1u);
             from = end;
             high = true;
-        } while (end != RKM04_NEVER);
+        } while (end != DEVICE_NEVER);
     }
     wire->ear[ear].fall = fall;
 }
@@ -226,7 +226,7 @@ void wire_shift(struct wire *wire, uint64_t parts)
     }
     for (unsigned ear = 0; ear < WIRE_EARS; ear++) {
         wire->ear[ear].from += parts;
-        if (wire->ear[ear].fall != RKM04_NEVER)
+        if (wire->ear[ear].fall != DEVICE_NEVER)
             wire->ear[ear].fall += parts;
     }
 }
@@ -246,7 +246,7 @@ static unsigned next_ear(const struct wire *wire)
 uint64_t wire_due(const struct wire *wire)
 {
     uint64_t fall = wire->ear[next_ear(wire)].fall;
-    return fall == RKM04_NEVER ? RKM04_NEVER : fall + WIRE_BYTE;
+    return fall == DEVICE_NEVER ? DEVICE_NEVER : fall + WIRE_BYTE;
 }
 
 static uint32_t senders(const struct wire *wire, uint64_t start, uint64_t end)
@@ -280,7 +280,7 @@ static bool sample(const struct wire *wire, unsigned ear, struct wire_byte *hear
 
 bool wire_hear(struct wire *wire, uint64_t until, struct wire_byte *byte)
 {
-    while (wire_due(wire) <= until && wire_due(wire) != RKM04_NEVER) {
+    while (wire_due(wire) <= until && wire_due(wire) != DEVICE_NEVER) {
         unsigned number = next_ear(wire);
         struct wire_ear *ear = &wire->ear[number];
         bool heard = sample(wire, number, byte);

@@ -15,14 +15,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <rkm04/limits.h>
+#include "device/device.h"
 
 #define WIRE_TICK 12u   /* parts of a tick */
 #define WIRE_BIT 625u   /* parts of a bit at 19200 baud */
 #define WIRE_BYTE 6250u /* parts of ten bits */
 
 #define WIRE_MASTER 0u                          /* station 0; 1..16 are units */
-#define WIRE_STATIONS (1u + RKM04_NODE_MAX)
+#define WIRE_STATIONS 17u /* the host, and sixteen units */
 #define WIRE_MONITOR WIRE_STATIONS              /* an ear that never sends: it hears everything */
 #define WIRE_EARS (WIRE_STATIONS + 1u)
 #define WIRE_NOISE WIRE_EARS                    /* no station: something that disturbs the line, for wire_hold() */
@@ -39,7 +39,7 @@ struct wire_signal {
 
 struct wire_ear {
     uint64_t from;           /* it waits for the line to fall since then */
-    uint64_t fall;           /* when that was; RKM04_NEVER: not yet */
+    uint64_t fall;           /* when that was; DEVICE_NEVER: not yet */
     uint64_t framing_errors; /* bytes lost: the stop bit was 0 */
     uint64_t heard;          /* bytes */
 };
@@ -79,7 +79,7 @@ void wire_hold(struct wire *wire, unsigned station, bool on, uint64_t time);
 /* Make all times later by `parts`. */
 void wire_shift(struct wire *wire, uint64_t parts);
 
-/* When the next byte will have been heard if nobody sends anything more; RKM04_NEVER: never. */
+/* When the next byte will have been heard if nobody sends anything more; DEVICE_NEVER: never. */
 uint64_t wire_due(const struct wire *wire);
 
 /* Fetch the next byte heard by `until`; those of the same time come in the order of their ears. Returns false if there is

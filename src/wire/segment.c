@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "segment.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 static uint64_t earlier(uint64_t a, uint64_t b)
 {
     return a < b ? a : b;
@@ -8,13 +11,13 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 
 static uint64_t parts_of(uint64_t tick)
 {
-    return tick < RKM04_NEVER / WIRE_TICK ? tick * WIRE_TICK : RKM04_NEVER - 1u;
+    return tick < DEVICE_NEVER / WIRE_TICK ? tick * WIRE_TICK : DEVICE_NEVER - 1u;
 }
 
 /* The first tick at or after. */
 static uint64_t tick_of(uint64_t parts)
 {
-    return parts == RKM04_NEVER ? RKM04_NEVER : parts / WIRE_TICK + (parts % WIRE_TICK != 0);
+    return parts == DEVICE_NEVER ? DEVICE_NEVER : parts / WIRE_TICK + (parts % WIRE_TICK != 0);
 }
 
 /* Do the ticks before `tick`. */
@@ -22,11 +25,12 @@ static void bring(struct segment *segment, uint64_t tick)
 {
     if (tick <= segment->now)
         return;
+    const struct device_kind *kind = segment->config.kind;
     segment->advancing = true;
     for (unsigned i = 0; i < segment->units; i++) {
         struct segment_unit *unit = &segment->unit[i];
         if (unit->powered)
-            rkm04_advance(&unit->unit, tick - unit->since - rkm04_now(&unit->unit));
+            kind->advance(unit->unit, tick - unit->since - kind->now(unit->unit));
     }
     segment->advancing = false;
     segment->now = tick;
@@ -73,16 +77,15 @@ static void change(struct segment *segment, unsigned station, uint8_t byte, stru
 }
 
 /* Has the unit an answer, now or later? */
-static bool answers(const struct segment_unit *unit)
+static bool answers(const struct segment *segment, const struct segment_unit *unit)
 {
-    return unit->powered && unit->unit.answer.kind != 0;
+    return unit->powered && segment->config.kind->has_answer(unit->unit);
 }
 
-/* Ticks until the unit's flash is written and it can send again: behind the last slot of the store (reading `store-time`). */
-static uint64_t store_left(const struct segment_unit *unit)
+/* Ticks until the unit can begin with its answer. */
+static uint64_t wait_of(const struct segment *segment, const struct segment_unit *unit)
 {
-    uint64_t now = rkm04_now(&unit->unit), slot = (now + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS * RKM04_SLOT_TICKS;
-    return unit->unit.busy == 0 ? 0 : slot - now + (unit->unit.busy - 1u) * (uint64_t)RKM04_SLOT_TICKS + 1;
+    return segment->config.kind->answer_wait(unit->unit);
 }
 
 /* How much later than now a unit begins with its answer; ticks. 0 in the middle of one. */
@@ -91,18 +94,20 @@ static uint64_t delay(struct segment *segment, struct segment_unit *unit)
     const struct segment_hooks *hooks = segment->config.hooks;
     if (unit->begun)
         return 0;
-    if (unit->unit.busy > 0)
-        return store_left(unit);
+    uint64_t wait = wait_of(segment, unit);
+    if (wait > 0)
+        return wait;
     unit->begun = true;
     return hooks && hooks->answer ? hooks->answer(segment->config.hooks_context, (unsigned)(unit - segment->unit) + 1u) : 0;
 }
 
 /* Fetch the next byte of a unit's answer. Returns false if there is none. */
-static bool fetch(struct segment_unit *unit, uint8_t *byte)
+static bool fetch(const struct segment *segment, struct segment_unit *unit, uint8_t *byte)
 {
-    uint32_t answers = rkm04_counters(&unit->unit).answers;
-    bool fetched = rkm04_send(&unit->unit, byte, 1) == 1;
-    if (rkm04_counters(&unit->unit).answers != answers)
+    const struct device_kind *kind = segment->config.kind;
+    uint32_t answers = kind->counters(unit->unit).answers;
+    bool fetched = kind->send(unit->unit, byte, 1) == 1;
+    if (kind->counters(unit->unit).answers != answers)
         unit->begun = false; /* the next byte is another answer's (P10) */
     return fetched;
 }
@@ -117,11 +122,12 @@ static void tell_monitor(struct segment *segment, const struct segment_byte *byt
 
 static void give_unit(struct segment *segment, struct segment_unit *unit, uint8_t byte)
 {
-    if (rkm04_receive(&unit->unit, &byte, 1) == 0) {
+    const struct device_kind *kind = segment->config.kind;
+    if (kind->receive(unit->unit, &byte, 1) == 0) {
         segment->overruns++;
         return;
     }
-    struct rkm04_counters counters = rkm04_counters(&unit->unit);
+    struct device_counters counters = kind->counters(unit->unit);
     uint32_t frames = counters.requests + counters.others + counters.dropped;
     unit->in_frame = frames == unit->frames;
     unit->frames = frames;
@@ -144,15 +150,15 @@ static bool has_more(const struct segment *segment, unsigned station)
     return segment->more[station].at < segment->more[station].count;
 }
 
-/* When (parts) the next start bit of the master is due; RKM04_NEVER: none. */
+/* When (parts) the next start bit of the master is due; DEVICE_NEVER: none. */
 static uint64_t next_of_master(const struct segment *segment)
 {
     if (has_more(segment, WIRE_MASTER))
         return segment->more_start;
-    return segment->count > 0 ? segment->queue[segment->head].start : RKM04_NEVER;
+    return segment->count > 0 ? segment->queue[segment->head].start : DEVICE_NEVER;
 }
 
-/* When (parts) the next start bit is due, and of which station; RKM04_NEVER: none. */
+/* When (parts) the next start bit is due, and of which station; DEVICE_NEVER: none. */
 static uint64_t next_start(const struct segment *segment, unsigned *station)
 {
     uint64_t start = next_of_master(segment);
@@ -208,11 +214,11 @@ static void start_of_unit(struct segment *segment, unsigned station, uint64_t st
             unit->next = start + later * WIRE_TICK;
             return;
         }
-        if (fetch(unit, &byte))
+        if (fetch(segment, unit, &byte))
             change(segment, station, byte, &segment->more[station]);
     }
     send_more(segment, station, start);
-    unit->next = has_more(segment, station) || answers(unit) ? start + WIRE_BYTE : RKM04_NEVER;
+    unit->next = has_more(segment, station) || answers(segment, unit) ? start + WIRE_BYTE : DEVICE_NEVER;
     obeyed(segment, unit);
 }
 
@@ -246,8 +252,8 @@ static void end_byte(struct segment *segment, const struct wire_byte *heard)
     } else {
         struct segment_unit *unit = &segment->unit[heard->ear - 1u];
         give_unit(segment, unit, heard->byte);
-        if (unit->next == RKM04_NEVER && answers(unit))
-            unit->next = heard->end + (segment->config.turnaround + store_left(unit)) * (uint64_t)WIRE_TICK;
+        if (unit->next == DEVICE_NEVER && answers(segment, unit))
+            unit->next = heard->end + (segment->config.turnaround + wait_of(segment, unit)) * (uint64_t)WIRE_TICK;
     }
 }
 
@@ -300,9 +306,9 @@ static void cut_answers(struct segment *segment)
     uint8_t byte;
     for (unsigned i = 0; i < segment->units; i++) {
         struct segment_unit *unit = &segment->unit[i];
-        unit->next = RKM04_NEVER;
-        while (answers(unit)) {
-            (void)fetch(unit, &byte);
+        unit->next = DEVICE_NEVER;
+        while (answers(segment, unit)) {
+            (void)fetch(segment, unit, &byte);
             obeyed(segment, unit);
         }
     }
@@ -317,14 +323,14 @@ static void pass_answer(struct segment *segment, unsigned station, uint32_t ears
 {
     struct segment_unit *unit = &segment->unit[station - 1u];
     uint8_t byte;
-    while (answers(unit)) {
+    while (answers(segment, unit)) {
         segment->unasked += !unit->begun;
         uint64_t later = delay(segment, unit);
         if (later > 0) {
             unit->next = parts_of(segment->now + later);
             return;
         }
-        if (fetch(unit, &byte))
+        if (fetch(segment, unit, &byte))
             pass_changed(segment, station, ears, byte);
         obeyed(segment, unit);
     }
@@ -337,30 +343,30 @@ static void pass_answers(struct segment *segment)
     uint32_t ears = 0;
     for (unsigned i = 0; i < segment->units; i++) {
         struct segment_unit *unit = &segment->unit[i];
-        if (unit->next != RKM04_NEVER && unit->next <= parts_of(segment->now))
-            unit->next = RKM04_NEVER; /* it has waited long enough */
-        ears |= (uint32_t)(!answers(unit) || unit->next != RKM04_NEVER) << (i + 1u);
+        if (unit->next != DEVICE_NEVER && unit->next <= parts_of(segment->now))
+            unit->next = DEVICE_NEVER; /* it has waited long enough */
+        ears |= (uint32_t)(!answers(segment, unit) || unit->next != DEVICE_NEVER) << (i + 1u);
     }
     for (unsigned i = 0; i < segment->units; i++)
         if ((ears >> (i + 1u) & 1u) == 0)
             pass_answer(segment, i + 1u, ears);
-    segment->again = RKM04_NEVER;
+    segment->again = DEVICE_NEVER;
     for (unsigned i = 0; i < segment->units; i++) {
         const struct segment_unit *unit = &segment->unit[i];
-        if (answers(unit))
-            segment->again = earlier(segment->again, unit->next == RKM04_NEVER ? segment->now + 1u : tick_of(unit->next));
+        if (answers(segment, unit))
+            segment->again = earlier(segment->again, unit->next == DEVICE_NEVER ? segment->now + 1u : tick_of(unit->next));
     }
 }
 
 static uint64_t untimed_due(const struct segment *segment)
 {
-    uint64_t byte = segment->count > 0 ? segment->queue[segment->head].start / WIRE_TICK : RKM04_NEVER;
+    uint64_t byte = segment->count > 0 ? segment->queue[segment->head].start / WIRE_TICK : DEVICE_NEVER;
     return earlier(byte, segment->again);
 }
 
 static void advance_untimed(struct segment *segment, uint64_t tick)
 {
-    for (uint64_t due; (due = untimed_due(segment)) <= tick && due != RKM04_NEVER;) {
+    for (uint64_t due; (due = untimed_due(segment)) <= tick && due != DEVICE_NEVER;) {
         bring(segment, due);
         if (segment->again > segment->now) {
             segment->unasked = 0;
@@ -378,13 +384,15 @@ static void advance_untimed(struct segment *segment, uint64_t tick)
 void segment_begin(struct segment *segment, const struct segment_config *config)
 {
     segment->config = *config;
+    if (!config->kind)
+        segment->config.kind = &rkm04_device;
     segment->now = 0;
     segment->advancing = false;
     segment->units = 0;
     segment->quiet_bytes = segment->overruns = 0;
     segment->unasked = 0;
     segment->asked = segment->cuts = segment->cut_ticks = 0;
-    segment->again = RKM04_NEVER;
+    segment->again = DEVICE_NEVER;
     segment->master_free = 0;
     segment->head = segment->count = 0;
     segment->disturbed = false;
@@ -393,32 +401,63 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
     wire_begin(&segment->wire);
 }
 
-static void power_up(struct segment *segment, unsigned number, const struct rkm04_config *config, const struct rkm04_port *port,
-                     void *context)
+void segment_end(struct segment *segment)
+{
+    for (unsigned i = 0; i < SEGMENT_UNITS; i++) {
+        free(segment->unit[i].unit);
+        segment->unit[i].unit = NULL;
+    }
+    segment->units = 0;
+}
+
+static void power_up(struct segment *segment, unsigned number)
 {
     struct segment_unit *unit = &segment->unit[number - 1u];
-    rkm04_init(&unit->unit, config, port, context);
+    segment->config.kind->begin(unit->unit, &unit->config, unit->port, unit->context);
     unit->since = segment->now;
     unit->powered = true;
     unit->in_frame = false;
     unit->frames = 0;
     unit->begun = false;
-    unit->next = RKM04_NEVER;
+    unit->next = DEVICE_NEVER;
     wire_join(&segment->wire, number, parts_of(segment->now));
 }
 
-unsigned segment_add_unit(struct segment *segment, const struct rkm04_config *config, const struct rkm04_port *port,
+unsigned segment_add_unit(struct segment *segment, const struct device_config *config, const struct device_port *port,
                           void *context)
 {
     if (segment->units == SEGMENT_UNITS)
         return 0;
-    power_up(segment, ++segment->units, config, port, context);
+    struct segment_unit *unit = &segment->unit[segment->units];
+    unit->unit = calloc(1, segment->config.kind->size);
+    if (!unit->unit)
+        return 0;
+    unit->config = *config;
+    unit->port = port;
+    unit->context = context;
+    power_up(segment, ++segment->units);
     return segment->units;
 }
 
-struct rkm04_unit *segment_unit(struct segment *segment, unsigned number)
+const struct device_kind *segment_kind(const struct segment *segment)
 {
-    return &segment->unit[number - 1u].unit;
+    return segment->config.kind;
+}
+
+struct device_unit *segment_unit(struct segment *segment, unsigned number)
+{
+    return segment->unit[number - 1u].unit;
+}
+
+void segment_port_changed(struct segment *segment, unsigned number)
+{
+    struct segment_unit *unit = &segment->unit[number - 1u];
+    segment->config.kind->attach(unit->unit, &unit->config, unit->port, unit->context);
+}
+
+void segment_set_node(struct segment *segment, unsigned number, uint8_t node)
+{
+    segment->unit[number - 1u].config.node = node;
 }
 
 uint64_t segment_since(const struct segment *segment, unsigned number)
@@ -430,13 +469,11 @@ void segment_power(struct segment *segment, unsigned number, bool on)
 {
     struct segment_unit *unit = &segment->unit[number - 1u];
     unit->powered = unit->in_frame = false;
-    unit->next = RKM04_NEVER;
+    unit->next = DEVICE_NEVER;
     segment->more[number].count = 0;
     wire_leave(&segment->wire, number, parts_of(segment->now));
-    if (!on)
-        return;
-    struct rkm04_config config = unit->unit.config;
-    power_up(segment, number, &config, unit->unit.port, unit->unit.context);
+    if (on)
+        power_up(segment, number);
 }
 
 void segment_set_timed(struct segment *segment, bool timed)
@@ -505,46 +542,22 @@ void segment_advance(struct segment *segment, uint64_t tick)
     bring(segment, goal);
 }
 
-/* A time later by `by`; RKM04_NEVER stays. */
-static void postpone(uint64_t *time, uint64_t by)
-{
-    if (*time != RKM04_NEVER)
-        *time += by;
-}
-
-void segment_shift(struct segment *segment, uint64_t ticks)
-{
-    uint64_t parts = ticks * WIRE_TICK;
-    segment->now += ticks;
-    segment->asked += ticks;
-    postpone(&segment->again, ticks);
-    segment->master_free += parts;
-    segment->more_start += parts;
-    for (size_t i = 0; i < segment->count; i++)
-        segment->queue[(segment->head + i) % SEGMENT_ROOM].start += parts;
-    for (unsigned i = 0; i < segment->units; i++) {
-        segment->unit[i].since += ticks;
-        postpone(&segment->unit[i].next, parts);
-    }
-    wire_shift(&segment->wire, parts);
-}
-
 uint64_t segment_due(const struct segment *segment)
 {
     if (!segment->config.timed)
         return untimed_due(segment);
     unsigned station;
     uint64_t start = next_start(segment, &station);
-    return tick_of(earlier(wire_due(&segment->wire), start == RKM04_NEVER ? RKM04_NEVER : start + WIRE_BYTE));
+    return tick_of(earlier(wire_due(&segment->wire), start == DEVICE_NEVER ? DEVICE_NEVER : start + WIRE_BYTE));
 }
 
-static uint64_t next_of_units(const struct segment *segment, uint64_t (*next_of)(const struct rkm04_unit *))
+static uint64_t next_of_units(const struct segment *segment, uint64_t (*next_of)(const struct device_unit *))
 {
-    uint64_t next = RKM04_NEVER;
+    uint64_t next = DEVICE_NEVER;
     for (unsigned i = 0; i < segment->units; i++) {
         const struct segment_unit *unit = &segment->unit[i];
-        uint64_t event = unit->powered ? next_of(&unit->unit) : RKM04_NEVER;
-        if (event != RKM04_NEVER)
+        uint64_t event = unit->powered ? next_of(unit->unit) : DEVICE_NEVER;
+        if (event != DEVICE_NEVER)
             next = earlier(next, event + unit->since);
     }
     return next;
@@ -552,12 +565,12 @@ static uint64_t next_of_units(const struct segment *segment, uint64_t (*next_of)
 
 uint64_t segment_next_event(const struct segment *segment)
 {
-    return next_of_units(segment, rkm04_next_event);
+    return next_of_units(segment, segment->config.kind->next_event);
 }
 
 uint64_t segment_next_report(const struct segment *segment)
 {
-    return next_of_units(segment, rkm04_next_report);
+    return next_of_units(segment, segment->config.kind->next_report);
 }
 
 bool segment_in_frame(const struct segment *segment)
@@ -570,7 +583,7 @@ bool segment_in_frame(const struct segment *segment)
 
 bool segment_idle(const struct segment *segment)
 {
-    return segment_due(segment) == RKM04_NEVER;
+    return segment_due(segment) == DEVICE_NEVER;
 }
 
 struct segment_counters segment_counters(const struct segment *segment)

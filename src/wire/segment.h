@@ -31,11 +31,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <rkm04/unit.h>
-
+#include "device/device.h"
 #include "levels.h"
 
-#define SEGMENT_UNITS RKM04_NODE_MAX    /* on one line (U4) */
+#define SEGMENT_UNITS 16u                /* on one line (U4) */
 #define SEGMENT_ROOM 4096u              /* bytes of the master that may be under way */
 #define SEGMENT_TURNAROUND 521u         /* ticks, the default: one character */
 #define SEGMENT_UNASKED_MAX 1000u       /* without time: more answers than this without a byte of the master are cut off */
@@ -81,6 +80,7 @@ struct segment_config {
     bool timed;             /* false: bytes take no time (--baud 0) */
     bool echo;              /* the master hears its own bytes, too (a two-wire adapter with local echo) */
     uint32_t turnaround;    /* ticks, 0..SEGMENT_TURNAROUND_MAX, from the end of a request to the start bit of the answer */
+    const struct device_kind *kind; /* of all units; NULL: the RKM04 */
     segment_out *out;       /* NULL: nobody */
     segment_monitor *monitor; /* NULL: nobody */
     void *context;          /* of these two */
@@ -90,13 +90,16 @@ struct segment_config {
 
 /* A unit on the line. Who may read it: all. */
 struct segment_unit {
-    struct rkm04_unit unit; /* its tick 0 is `since`; without power: as it stood when it lost it */
+    struct device_unit *unit; /* its us 0 is `since`; without power: as it stood when it lost it */
+    struct device_config config; /* at the next power-up */
+    const struct device_port *port;
+    void *context;          /* of the port */
     uint64_t since;         /* tick of the segment at which it was powered up */
     bool powered;
     bool in_frame;          /* what it has heard so far does not end with a whole frame */
     uint32_t frames;        /* seen by the unit */
     bool begun;             /* its answer has begun to go out: the hook has been asked */
-    uint64_t next;          /* parts (wire.h): start bit of the next byte of its answer; RKM04_NEVER: no answer goes out */
+    uint64_t next;          /* parts (wire.h): start bit of the next byte of its answer; DEVICE_NEVER: no answer goes out */
 };
 
 /* Bytes that a hook has put in the place of one, and that have not set out. */
@@ -128,7 +131,7 @@ struct segment {
     unsigned unasked;        /* answers without time since the master's last byte */
     uint64_t asked;          /* tick of that byte, or of the last cut */
     uint64_t cuts, cut_ticks; /* as in struct segment_counters */
-    uint64_t again;          /* without time: tick at which units answer without being asked again; RKM04_NEVER: they do not */
+    uint64_t again;          /* without time: tick at which units answer without being asked again; DEVICE_NEVER: they do not */
     bool disturbed, held;    /* segment_disturb(), segment_break() */
     uint64_t more_start;     /* parts: start bit of the next of the master's more[0] */
     struct segment_more more[WIRE_STATIONS];
@@ -142,14 +145,21 @@ struct segment {
 
 /* ---- Begin ------------------------------------------------------------------------------------------------------------ */
 
-/* A line without units at tick 0. Memory that a unit does not use is not touched. */
+/* A line without units at tick 0. segment_end() is due. */
 void segment_begin(struct segment *segment, const struct segment_config *config);
 
-/* Add a unit and power it up at the present tick. config, port, context: as for rkm04_init(); all units of a line should have the
- * same framing. The ticks that the port is told are the unit's own: add segment_since(). Several units may have the same
- * address. Returns its number on the line, 1..16 in the order of adding; 0: no place is left. */
-unsigned segment_add_unit(struct segment *segment, const struct rkm04_config *config, const struct rkm04_port *port,
+/* Free the units. The segment may begin again. */
+void segment_end(struct segment *segment);
+
+/* Add a unit and power it up at the present tick. config, port, context: as for device_kind.begin; all units of a line should
+ * have the same framing. The ticks that the port is told are the unit's own: add segment_since(). Several units may have the same
+ * address. Returns its number on the line, 1..16 in the order of adding; 0: no place is left, or
+ * memory is short. */
+unsigned segment_add_unit(struct segment *segment, const struct device_config *config, const struct device_port *port,
                           void *context);
+
+/* The kind of all units. */
+const struct device_kind *segment_kind(const struct segment *segment);
 
 /* Let bytes take time from now on, or none. None may be under way (segment_idle()). */
 void segment_set_timed(struct segment *segment, bool timed);
@@ -157,7 +167,13 @@ void segment_set_timed(struct segment *segment, bool timed);
 /* ---- Units: `number` is 1..segment->units ------------------------------------------------------------------------------ */
 
 /* The unit, at the present tick. For inputs (which count from the present tick on), states and counters; no bytes. */
-struct rkm04_unit *segment_unit(struct segment *segment, unsigned number);
+struct device_unit *segment_unit(struct segment *segment, unsigned number);
+
+/* The port of a unit has changed. */
+void segment_port_changed(struct segment *segment, unsigned number);
+
+/* The address that a unit will have from its next power-up on. */
+void segment_set_node(struct segment *segment, unsigned number, uint8_t node);
 
 /* The tick of the segment at which this unit's time began. */
 uint64_t segment_since(const struct segment *segment, unsigned number);
@@ -199,18 +215,23 @@ void segment_advance(struct segment *segment, uint64_t tick);
  * snapshots. */
 void segment_shift(struct segment *segment, uint64_t ticks);
 
+/* Make `to` like `from`, units included. `to` is zero, or has as many units of the same kind: then its config but for echo and
+ * hooks stays, and its ports, and the pointers in its units' settings. For snapshots; segment_end() is due. Returns false if
+ * memory is short: then `to` is as it was, or, if it was zero, fit for segment_end() alone. */
+bool segment_copy(struct segment *to, const struct segment *from);
+
 /* A tick before which no byte reaches anybody if the master hands over nothing more: advancing in one go up to it changes nothing
- * that can be seen on the line. Mostly the tick of the next byte; RKM04_NEVER: nothing is under way. May lie before
+ * that can be seen on the line. Mostly the tick of the next byte; DEVICE_NEVER: nothing is under way. May lie before
  * segment_now(): then there is something to do at once. */
 uint64_t segment_due(const struct segment *segment);
 
-/* The earliest tick at which a unit does something of itself (rkm04_next_event); RKM04_NEVER if none ever does. */
+/* The earliest tick at which a unit does something of itself (device_kind.next_event); DEVICE_NEVER if none ever does. */
 uint64_t segment_next_event(const struct segment *segment);
 
 /* Has the master left a frame unfinished: did the bytes passed so far end in the middle of one, as the units see it? */
 bool segment_in_frame(const struct segment *segment);
 
-/* The same, without pulses that nobody sees (rkm04_next_report). */
+/* The same, without pulses that nobody sees (device_kind.next_report). */
 uint64_t segment_next_report(const struct segment *segment);
 
 /* Is the line at rest: no byte under way, no answer to come? (Motors may run: segment_next_event().) */

@@ -36,7 +36,7 @@ static void ignored_for_address(struct wire_text *out, const struct segment *seg
     bool there = false;
     for (unsigned number = 1; number <= segment->units; number++) {
         const struct segment_unit *unit = &segment->unit[number - 1u];
-        if (dnode != 0 && unit->unit.config.node != dnode)
+        if (dnode != 0 && segment->config.kind->node(unit->unit) != dnode)
             continue;
         if (unit->powered)
             return;

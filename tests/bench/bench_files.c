@@ -16,6 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "device/rkm04_device.h"
 #include "sim/sim.h"
 #include "trace/trace_file.h"
 #include "trace/wire_file.h"
@@ -112,7 +113,7 @@ int main(int count, char **arguments)
         printf("{\"format\":\"%s\",\"virtual_s\":%lu,\"cpu_s\":%.3f,\"times_real_time\":%.0f,\"overhead\":%.6f,\"mb\":%.1f,"
                "\"messages\":%" PRIu64 ",\"pulses\":%" PRId64 "}\n",
                formats[i], seconds, spent, (double)seconds / spent, (spent - bare) / (double)seconds, size / 1e6, 2 * polls,
-               4 * (int64_t)sim_core(&sim, 1)->motor[0].position);
+               4 * (int64_t)rkm04_of(sim_core(&sim, 1))->motor[0].position);
         sim_end(&sim);
     }
     return 0;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "condition/condition.h"
 #include "core/rig.h"
 
@@ -41,14 +42,14 @@ static void teardown(void)
 
 static void program(unsigned number, char motor, const char *text)
 {
-    ck_assert_int_eq(rkm04_set_command(sim_core(sim, number), motor, text, strlen(text), NULL), 0);
+    ck_assert_int_eq(rkm04_set_command(rkm04_of(sim_core(sim, number)), motor, text, strlen(text), NULL), 0);
 }
 
 /* Of motor 1. */
 static int32_t position(void)
 {
     struct rkm04_motor_state state;
-    rkm04_motor_state(sim_core(sim, 1), 1, &state);
+    rkm04_motor_state(rkm04_of(sim_core(sim, 1)), 1, &state);
     return state.position;
 }
 

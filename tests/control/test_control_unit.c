@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "plant/plant_rig.h"
 #include "record/record.h"
 
@@ -170,12 +171,12 @@ END_TEST
 START_TEST(P7_a_request_that_waits_is_not_obeyed_by_looking)
 {
     static const uint8_t get_and_reset[] = {1, 0, 2, 5, '1', 1, 0, 3, 2, '1', '\\'};
-    struct sim_config config = {.unit = {.framing = &rkm04_plain}};
+    struct sim_config config = {.unit = rkm04_device_config(&(struct rkm04_config){.framing = &rkm04_plain})};
     plant_rig_end(&rig);
     memset(&rig, 0, sizeof rig);
     ck_assert(node_list_read(&config.nodes, "1"));
     ck_assert(sim_begin(&rig.sim, &config));
-    struct rkm04_unit *core = sim_core(&rig.sim, 1);
+    struct rkm04_unit *core = rkm04_of(sim_core(&rig.sim, 1));
     program("S100 F1000 R");
     run(SECOND);
     rkm04_receive(core, get_and_reset, sizeof get_and_reset); /* the second one waits for the end of the answer */
@@ -202,7 +203,7 @@ START_TEST(U5_the_state_shows_what_is_in_flash)
     uint8_t answer[4];
     program("T03");
     ck_assert_str_eq(motor("slot"), "\"empty\"");
-    ck_assert_uint_eq(rkm04_exchange(sim_core(&rig.sim, 1), (const uint8_t *)"\3\61", 2, answer, sizeof answer), 3);
+    ck_assert_uint_eq(rkm04_exchange(rkm04_of(sim_core(&rig.sim, 1)), (const uint8_t *)"\3\61", 2, answer, sizeof answer), 3);
     ck_assert_str_eq(motor("slot"), "\"stored\"");
     command("reset", NULL);
     run(2000);

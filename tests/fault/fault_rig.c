@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "device/rkm04_device.h"
 #include "fault_rig.h"
 
 #include <stdarg.h>
@@ -50,7 +51,7 @@ static void see(void *context, const struct watch_event *event)
 void rig_begin_with(bool timed, unsigned units, uint64_t seed, const struct rkm04_framing *framing)
 {
     struct sim_config config = {
-        .unit = {.framing = framing},
+        .unit = rkm04_device_config(&(struct rkm04_config){.framing = framing}),
         .nodes = {.count = units},
         .timed = timed,
         .turnaround = timed ? SEGMENT_TURNAROUND : 0,
@@ -126,7 +127,7 @@ uint32_t inject(const char *format, ...)
 
 static const struct rkm04_framing *framing(void)
 {
-    return rig.sim.config.unit.framing ? rig.sim.config.unit.framing : &rkm04_hdlc;
+    return sim_device(&rig.sim)->framing(&rig.sim.config.unit);
 }
 
 size_t ask(uint8_t dnode, const void *message, size_t length)
@@ -196,5 +197,5 @@ void run(uint64_t ticks)
 
 struct rkm04_counters counters(unsigned number)
 {
-    return rkm04_counters(sim_core(&rig.sim, number));
+    return rkm04_counters(rkm04_of(sim_core(&rig.sim, number)));
 }

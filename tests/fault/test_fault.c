@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "fault_rig.h"
 
 #define BYTES 2000u
@@ -157,10 +158,10 @@ START_TEST(a_spell_ends_with_its_window)
     inject("{'kind': 'input', 'input': 1, 'level': 1, 'duration': '10s', 'for': '3s'}");
     run(2999999);
     assert_state(0, "active", 1);
-    ck_assert_uint_eq(rkm04_inputs(sim_core(&rig.sim, 1)), 1);
+    ck_assert_uint_eq(rkm04_inputs(rkm04_of(sim_core(&rig.sim, 1))), 1);
     run(1);
     assert_state(0, "spent", 1);
-    ck_assert_uint_eq(rkm04_inputs(sim_core(&rig.sim, 1)), 0);
+    ck_assert_uint_eq(rkm04_inputs(rkm04_of(sim_core(&rig.sim, 1))), 0);
     rig_end();
 }
 END_TEST
@@ -178,7 +179,7 @@ START_TEST(clearing_ends_what_is_in_force_at_once)
     json_t *result = obeyed("fault.clear", "{}");
     ck_assert_int_eq((int)json_integer_value(json_object_get(result, "cleared")), 5);
     json_decref(result);
-    ck_assert_uint_eq(rkm04_inputs(sim_core(&rig.sim, 1)), 0);
+    ck_assert_uint_eq(rkm04_inputs(rkm04_of(sim_core(&rig.sim, 1))), 0);
     ck_assert_uint_eq(rig.plugs, 2);
     ck_assert_ptr_null(listed(0));
     run(10);

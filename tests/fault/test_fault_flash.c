@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "fault_rig.h"
 
 #define STORE "\3" "1"
@@ -38,7 +39,7 @@ static const char *found_after_reset(void)
     struct rkm04_motor_state state;
     sim_power(&rig.sim, 1, true);
     run(1);
-    ck_assert(rkm04_motor_state(sim_core(&rig.sim, 1), 1, &state));
+    ck_assert(rkm04_motor_state(rkm04_of(sim_core(&rig.sim, 1)), 1, &state));
     if (state.slot == RKM04_SLOT_LOADED)
         return state.commands == 3 && has_program(NEW) ? "new" : state.commands == 2 && has_program(OLD) ? "old" : "mixed";
     ck_assert_uint_eq(state.commands, 0);
@@ -208,7 +209,7 @@ END_TEST
 
 static uint8_t di(unsigned number)
 {
-    return rkm04_inputs(sim_core(&rig.sim, number));
+    return rkm04_inputs(rkm04_of(sim_core(&rig.sim, number)));
 }
 
 START_TEST(U2_a_stuck_input_stays_whatever_is_done_to_it)

@@ -101,7 +101,10 @@ static void pass(const uint8_t *text, size_t length)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const char *const nodes[] = {"1", "3,3", "1,2,7", "16"};
-    struct sim_config config = {.unit = {.framing = &rkm04_hdlc}, .turnaround = SEGMENT_TURNAROUND, .seed = 1, .out = hear};
+    struct sim_config config = {
+        .unit = rkm04_device_config(&(struct rkm04_config){.framing = &rkm04_hdlc}),
+        .turnaround = SEGMENT_TURNAROUND, .seed = 1, .out = hear,
+    };
     struct fuzz fuzz = {data, size};
     uint8_t mode = fuzz_byte(&fuzz);
     config.timed = mode & 4;

@@ -3,6 +3,7 @@
  * report their state, and take the same text again or say why not. */
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "command/command.h"
 #include "fuzz.h"
 
@@ -13,7 +14,7 @@ static void run_programs(void)
     static const char *const programs[] = {"S300 (01 C100 F90 R W5 B40 R", "V9000 A60000 F300 R H", "G+", "X02 L9 F5 R D E"};
     for (unsigned number = 1; number <= sim_units(&sim); number++)
         for (unsigned i = 0; i < RKM04_MOTORS; i++)
-            rkm04_set_command(sim_core(&sim, number), (char)('1' + i), programs[i], strlen(programs[i]), NULL);
+            rkm04_set_command(rkm04_of(sim_core(&sim, number)), (char)('1' + i), programs[i], strlen(programs[i]), NULL);
     sim_advance(&sim, sim_now(&sim) + 400000);
 }
 
@@ -31,7 +32,10 @@ static void check_state(void)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    struct sim_config config = {.unit = {.framing = &rkm04_hdlc}, .timed = true, .turnaround = SEGMENT_TURNAROUND, .seed = 1};
+    struct sim_config config = {
+        .unit = rkm04_device_config(&(struct rkm04_config){.framing = &rkm04_hdlc}),
+        .timed = true, .turnaround = SEGMENT_TURNAROUND, .seed = 1,
+    };
     char *said = NULL;
     size_t length;
     FILE *errors = open_memstream(&said, &length);

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "device/rkm04_device.h"
 #include "command/command.h"
 #include "fuzz.h"
 #include "record/snapshot.h"
@@ -28,7 +29,10 @@ static json_t *command(const char *method, json_t *params, struct refusal *refus
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    struct sim_config config = {.unit = {.framing = &rkm04_hdlc}, .timed = true, .turnaround = SEGMENT_TURNAROUND, .seed = 1};
+    struct sim_config config = {
+        .unit = rkm04_device_config(&(struct rkm04_config){.framing = &rkm04_hdlc}),
+        .timed = true, .turnaround = SEGMENT_TURNAROUND, .seed = 1,
+    };
     struct refusal refusal = {0};
     char path[40];
     int file = memfd_create("snapshot", 0);
@@ -37,7 +41,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memset(&sim, 0, sizeof sim);
     FUZZ_CHECK(node_list_read(&config.nodes, "1") && sim_begin(&sim, &config) && snapshots_attach(&sim), "no memory");
     FUZZ_CHECK(snapshots_keep_journal(&sim), "no memory");
-    rkm04_set_command(sim_core(&sim, 1), '1', "L5 F20 R W3 E", 13, NULL);
+    rkm04_set_command(rkm04_of(sim_core(&sim, 1)), '1', "L5 F20 R W3 E", 13, NULL);
     sim_advance(&sim, 30000);
     unsigned looks = 0;
     sim.interrupted = is_enough;

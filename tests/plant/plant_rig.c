@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "device/rkm04_device.h"
 #include "plant_rig.h"
 
 #include <check.h>
@@ -55,7 +56,7 @@ void plant_rig_end(struct plant_rig *rig)
 void plant_rig_program(struct plant_rig *rig, unsigned number, char motor, const char *text)
 {
     uint8_t character;
-    ck_assert_int_eq(rkm04_set_command(sim_core(&rig->sim, number), motor, text, strlen(text), &character), 0);
+    ck_assert_int_eq(rkm04_set_command(rkm04_of(sim_core(&rig->sim, number)), motor, text, strlen(text), &character), 0);
 }
 
 void plant_rig_run(struct plant_rig *rig, uint64_t ticks)
@@ -73,13 +74,13 @@ int64_t true_position(const struct plant_rig *rig, unsigned motor)
 int32_t counter(struct plant_rig *rig, unsigned motor)
 {
     struct rkm04_motor_state state;
-    ck_assert(rkm04_motor_state(sim_core(&rig->sim, 1), motor, &state));
+    ck_assert(rkm04_motor_state(rkm04_of(sim_core(&rig->sim, 1)), motor, &state));
     return state.position;
 }
 
 uint8_t inputs(struct plant_rig *rig)
 {
-    return rkm04_inputs(sim_core(&rig->sim, 1));
+    return rkm04_inputs(rkm04_of(sim_core(&rig->sim, 1)));
 }
 
 const char *plant_rig_command(struct plant_rig *rig, const char *method, const char *params)

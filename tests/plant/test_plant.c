@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "plant_rig.h"
 
 #define SECOND UINT64_C(1000000)
@@ -369,7 +370,7 @@ START_TEST(a_wait_for_an_input_sees_a_bounce_that_lasts_into_a_slot)
     plant_rig_program(&rig, 1, '2', "L5 O01 Z01 E"); /* counts it as five */
     run("S100 F10 R");
     struct rkm04_motor_state state;
-    rkm04_motor_state(sim_core(&rig.sim, 1), 2, &state);
+    rkm04_motor_state(rkm04_of(sim_core(&rig.sim, 1)), 2, &state);
     ck_assert_str_eq(rkm04_state_name(state.state), "idle");
 }
 END_TEST

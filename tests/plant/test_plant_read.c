@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "plant_rig.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -29,8 +30,8 @@ START_TEST(with_several_units_each_has_its_own_plant)
     ck_assert(plant_position(rig.sim.unit[0].plant, 1, &position));
     ck_assert_int_eq(position, 35);
     ck_assert_ptr_null(rig.sim.unit[1].plant);
-    ck_assert_uint_eq(rkm04_inputs(sim_core(&rig.sim, 2)), 0);
-    ck_assert_uint_eq(rkm04_inputs(sim_core(&rig.sim, 3)), 8);
+    ck_assert_uint_eq(rkm04_inputs(rkm04_of(sim_core(&rig.sim, 2))), 0);
+    ck_assert_uint_eq(rkm04_inputs(rkm04_of(sim_core(&rig.sim, 3))), 8);
 }
 END_TEST
 

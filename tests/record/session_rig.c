@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "device/rkm04_device.h"
 #include "session_rig.h"
 
 #include <inttypes.h>
@@ -149,7 +150,7 @@ static void take(struct session *session, const uint8_t *bytes, size_t length)
 
 void session_ask(struct session *session, uint8_t node, const void *message, size_t length)
 {
-    const struct rkm04_framing *framing = session->sim.config.unit.framing;
+    const struct rkm04_framing *framing = sim_device(&session->sim)->framing(&session->sim.config.unit);
     uint8_t frame[1024];
     struct rkm04_sender sender = {0};
     ck_assert_uint_lt(length, 400);
@@ -223,7 +224,7 @@ static void act_command(struct session *session, unsigned number)
 void session_act(struct session *session)
 {
     unsigned number = 1u + (unsigned)session_draw(session, sim_units(&session->sim));
-    uint8_t node = sim_core(&session->sim, number)->config.node;
+    uint8_t node = rkm04_of(sim_core(&session->sim, number))->config.node;
     uint8_t message[2] = {(uint8_t)(1 + session_draw(session, 8)), (uint8_t)('0' + session_draw(session, 5))};
     switch (session_draw(session, 8)) {
     case 0:
@@ -276,8 +277,8 @@ void session_live(struct session *session, unsigned acts, uint64_t ticks, uint64
 
 void session_begin(struct session *session, const struct session_kind *kind)
 {
+    struct rkm04_config settings = {.framing = kind->plain ? &rkm04_plain : &rkm04_hdlc};
     struct sim_config config = {
-        .unit = {.framing = kind->plain ? &rkm04_plain : &rkm04_hdlc},
         .timed = kind->timed,
         .turnaround = kind->timed ? SEGMENT_TURNAROUND : 0,
         .seed = 1,
@@ -286,7 +287,8 @@ void session_begin(struct session *session, const struct session_kind *kind)
     };
     char error[READINGS_ERROR_SIZE];
     readings_set named = 0;
-    ck_assert(!kind->readings || readings_read(&config.unit.readings, &named, kind->readings, error));
+    ck_assert(!kind->readings || readings_read(&settings.readings, &named, kind->readings, error));
+    rkm04_settings_put(&config.unit, &settings);
     *session = (struct session){.dice = 88172645463325252u};
     ck_assert(node_list_read(&config.nodes, kind->nodes));
     ck_assert(sim_begin(&session->sim, &config));

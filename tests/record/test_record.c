@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "device/rkm04_device.h"
 #include "core/rig.h"
 #include "session_rig.h"
 #include "record/record.h"
@@ -146,7 +147,7 @@ START_TEST(a_record_of_before_the_readings_has_a_latency)
     FILE *in = fmemopen((void *)text, sizeof text - 1, "r");
     struct replay *replay = replay_open("x", in);
     replay_run(replay, NULL, NULL);
-    ck_assert_uint_eq(sim_core(replay_sim(replay), 1)->config.readings.speed_change, 300);
+    ck_assert_uint_eq(rkm04_of(sim_core(replay_sim(replay), 1))->config.readings.speed_change, 300);
     replay_free(replay);
     fclose(in);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "device/rkm04_device.h"
 #include "core/rig.h"
 #include "session_rig.h"
 #include "record/journal.h"
@@ -107,7 +108,7 @@ START_TEST(in_the_middle_of_a_motion_its_pulses_follow)
     char *pulses = strdup(session_seen(&here));
     ck_assert_ptr_nonnull(strstr(pulses, "step 1000\n"));
     restore(snapshot);
-    ck_assert(rkm04_motor_state(sim_core(&here.sim, 1), 1, &state));
+    ck_assert(rkm04_motor_state(rkm04_of(sim_core(&here.sim, 1)), 1, &state));
     ck_assert_int_lt(state.position, 1000);
     session_forget(&here);
     sim_advance(&here.sim, 8 * SECOND);
@@ -195,7 +196,7 @@ END_TEST
 static int32_t counter(unsigned motor)
 {
     struct rkm04_motor_state state;
-    ck_assert(rkm04_motor_state(sim_core(&here.sim, 1), motor, &state));
+    ck_assert(rkm04_motor_state(rkm04_of(sim_core(&here.sim, 1)), motor, &state));
     return state.position;
 }
 
@@ -216,7 +217,7 @@ START_TEST(a_name_can_be_come_back_to_again_and_again_and_be_used_anew)
     session_command(&here, "di.set", "{\"mask\": 3}");
     session_command(&here, "restore", "{\"name\": \"home\"}");
     ck_assert_int_eq(counter(1), 5);
-    ck_assert_uint_eq(rkm04_inputs(sim_core(&here.sim, 1)), 0);
+    ck_assert_uint_eq(rkm04_inputs(rkm04_of(sim_core(&here.sim, 1))), 0);
 }
 END_TEST
 

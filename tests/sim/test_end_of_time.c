@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "device/rkm04_device.h"
 #include "core/rig.h"
 #include "record/session_rig.h"
 #include "condition/condition.h"
@@ -32,7 +33,7 @@ START_TEST(time_stops_at_its_end)
     ck_assert(sim_time_is_over(&session.sim));
     sim_advance(&session.sim, SIM_TIME_MAX + 1000u);
     ck_assert_uint_eq(sim_now(&session.sim), SIM_TIME_MAX);
-    ck_assert_uint_eq(rkm04_now(sim_core(&session.sim, 1)), SIM_TIME_MAX);
+    ck_assert_uint_eq(rkm04_now(rkm04_of(sim_core(&session.sim, 1))), SIM_TIME_MAX);
     session_end(&session);
 }
 END_TEST

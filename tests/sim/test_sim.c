@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "core/rig.h"
 #include "command/command.h"
 #include "sim/sim.h"
@@ -55,7 +56,7 @@ static struct seen *line(bool timed, unsigned units, uint32_t kinds)
 {
     struct seen *seen = calloc(1, sizeof *seen);
     struct sim_config config = {
-        .unit = {.framing = &rkm04_hdlc},
+        .unit = rkm04_device_config(&(struct rkm04_config){.framing = &rkm04_hdlc}),
         .nodes = {.count = units, .node = {1, 2, 3}},
         .timed = timed,
         .turnaround = timed ? SEGMENT_TURNAROUND : 0,
@@ -218,7 +219,7 @@ START_TEST(U5_inputs_stay_when_the_power_goes_and_comes)
     sim_advance(&one->sim, 2000);
     sim_power(&one->sim, 1, true);
     sim_advance(&one->sim, 3000);
-    ck_assert_uint_eq(rkm04_inputs(sim_core(&one->sim, 1)), 0x81);
+    ck_assert_uint_eq(rkm04_inputs(rkm04_of(sim_core(&one->sim, 1))), 0x81);
     ck_assert_str_eq(one->text, "0 inputs 1 0 129\n1000 power 1 0 0\n2000 power 1 0 1\n2000 inputs 1 0 129\n");
     line_ends(one);
 }
@@ -258,7 +259,7 @@ START_TEST(pulses_cost_nothing_while_nobody_wants_them)
     ck_assert_msg(strstr(one->text, "100000 step 1 1 ") || strstr(one->text, "101000 step 1 1 "), "%s", one->text);
     ck_assert_ptr_null(strstr(one->text, "102000 step"));
     struct rkm04_motor_state state;
-    rkm04_motor_state(sim_core(&one->sim, 1), 1, &state);
+    rkm04_motor_state(rkm04_of(sim_core(&one->sim, 1)), 1, &state);
     ck_assert_int_eq(state.position, 1000);
     line_ends(one);
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "device/rkm04_device.h"
 #include "soak.h"
 
 #include <inttypes.h>
@@ -281,7 +282,7 @@ void counters_begin(struct soak *soak)
 {
     for (unsigned i = 0; i < UNITS; i++) {
         struct soak_unit *unit = &soak->unit[i];
-        unit->begin = rkm04_counters(sim_core(&soak->sim, i + 1u));
+        unit->begin = rkm04_counters(rkm04_of(sim_core(&soak->sim, i + 1u)));
         unit->requests = unit->answers = unit->others = unit->dropped = 0;
     }
     soak->line_begin = segment_counters(&soak->sim.segment).bytes;
@@ -299,7 +300,7 @@ void counters_check(struct soak *soak)
     master_finish(soak);
     for (unsigned i = 0; i < UNITS; i++) {
         const struct soak_unit *unit = &soak->unit[i];
-        struct rkm04_counters now = rkm04_counters(sim_core(&soak->sim, i + 1u));
+        struct rkm04_counters now = rkm04_counters(rkm04_of(sim_core(&soak->sim, i + 1u)));
         check_counter(soak, i, "requests", now.requests - unit->begin.requests, unit->requests);
         check_counter(soak, i, "answers", now.answers - unit->begin.answers, unit->answers);
         check_counter(soak, i, "frames for others", now.others - unit->begin.others, unit->others);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "device/rkm04_device.h"
 #include "soak.h"
 
 #include <inttypes.h>
@@ -13,7 +14,7 @@
 static struct rkm04_motor_state motor_state(struct soak *soak, unsigned unit, unsigned motor)
 {
     struct rkm04_motor_state state = {0};
-    rkm04_motor_state(sim_core(&soak->sim, unit + 1u), motor + 1u, &state);
+    rkm04_motor_state(rkm04_of(sim_core(&soak->sim, unit + 1u)), motor + 1u, &state);
     return state;
 }
 
@@ -182,7 +183,7 @@ static void check_unit(struct soak *soak, unsigned unit)
         outputs |= motor->end.outputs;
         variables |= motor->end.variables;
     }
-    struct rkm04_unit *core = sim_core(&soak->sim, unit + 1u);
+    struct rkm04_unit *core = rkm04_of(sim_core(&soak->sim, unit + 1u));
     if (rkm04_outputs(core) != outputs || rkm04_variables(core) != variables)
         soak_fail(soak, "unit %u: outputs %02X, variables %04X; expected %02X, %04X", unit + 1u, rkm04_outputs(core),
                   rkm04_variables(core), outputs, variables);

@@ -78,7 +78,7 @@ void soak_fail(const struct soak *soak, const char *format, ...)
 static void begin(struct soak *soak)
 {
     struct sim_config config = {
-        .unit = {.framing = &rkm04_hdlc},
+        .unit = rkm04_device_config(&(struct rkm04_config){.framing = &rkm04_hdlc}),
         .timed = true,
         .turnaround = SEGMENT_TURNAROUND,
         .seed = options.seed,

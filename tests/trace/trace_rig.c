@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "device/rkm04_device.h"
 #include "trace_rig.h"
 
 #include <check.h>
@@ -53,7 +54,7 @@ struct sim *trace_rig_sim(void)
 
 void trace_rig_set(unsigned number, char motor, const char *program)
 {
-    ck_assert_int_eq(rkm04_set_command(sim_core(&sim, number), motor, program, strlen(program), NULL), 0);
+    ck_assert_int_eq(rkm04_set_command(rkm04_of(sim_core(&sim, number)), motor, program, strlen(program), NULL), 0);
 }
 
 void happens(uint64_t tick, enum watch_phase phase, unsigned motor, enum watch_kind kind, int32_t value)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "wire/segment.h"
 
 #define UNITS SEGMENT_UNITS
@@ -30,21 +31,23 @@ static struct {
     uint64_t polls, right, bytes;
 } load;
 
-static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
+static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward)
 {
     (void)context;
-    load.lost += position != (int32_t)++load.pulses[motor - 1]; /* an assertion each would cost more than the pulses */
-    load.last[motor - 1] = tick;
+    (void)forward;
+    load.lost += position != (int32_t)load.pulses[motor - 1] + 1; /* an assertion each would cost more than the pulses */
+    load.pulses[motor - 1] += count;
+    load.last[motor - 1] = tick[count - 1];
 }
 
-static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_event what, uint32_t value)
+static void on_event(void *context, uint64_t tick, unsigned motor, enum device_event what, uint32_t value)
 {
     (void)context;
-    if (what == RKM04_EVENT_MOTION && value == 1 && motor == 1)
+    if (what == DEVICE_EVENT_MOTION && value == 1 && motor == 1)
         load.begun = tick;
 }
 
-static const struct rkm04_port watched = {.step = on_step, .event = on_event}, unwatched = {0};
+static const struct device_port watched = {.steps = on_steps, .event = on_event}, unwatched = {0};
 
 static void hear(void *context, const uint8_t *bytes, size_t length)
 {
@@ -100,7 +103,7 @@ static void poll_unit(uint8_t node)
     uint64_t arrived = 0;
     while (!load.answered && segment_due(&line) != RKM04_NEVER) {
         segment_advance(&line, segment_due(&line));
-        if (arrived == 0 && rkm04_sending(segment_unit(&line, node)))
+        if (arrived == 0 && rkm04_sending(rkm04_of(segment_unit(&line, node))))
             arrived = segment_now(&line);
     }
     ck_assert(load.answered);
@@ -111,7 +114,7 @@ START_TEST(U3_U7_sixteen_units_at_full_speed_polled_without_a_pause_lose_no_step
 {
     segment_begin(&line, &(struct segment_config){.timed = true, .turnaround = SEGMENT_TURNAROUND, .out = hear});
     for (unsigned node = 1; node <= UNITS; node++)
-        segment_add_unit(&line, &(struct rkm04_config){.node = (uint8_t)node}, node == 1 ? &watched : &unwatched, NULL);
+        segment_add_unit(&line, &(struct device_config){.node = (uint8_t)node}, node == 1 ? &watched : &unwatched, NULL);
     send(0, PROGRAM, sizeof PROGRAM - 1);
     segment_advance(&line, 100 * RKM04_TICKS_PER_SECOND / 1000);
     uint64_t start = segment_now(&line);
@@ -127,7 +130,7 @@ START_TEST(U3_U7_sixteen_units_at_full_speed_polled_without_a_pause_lose_no_step
     for (unsigned node = 1; node <= UNITS; node++)
         for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
             struct rkm04_motor_state state;
-            rkm04_motor_state(segment_unit(&line, node), motor, &state);
+            rkm04_motor_state(rkm04_of(segment_unit(&line, node)), motor, &state);
             ck_assert_int_eq(state.position, STEPS);
         }
     for (unsigned motor = 0; motor < RKM04_MOTORS; motor++) {

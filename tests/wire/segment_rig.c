@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "device/rkm04_device.h"
 #include "segment_rig.h"
 
 #include <string.h>
@@ -31,16 +32,17 @@ struct segment_config line_timed(void)
 
 void line_begin(const struct segment_config *config, const uint8_t *nodes, const struct rkm04_framing *framing)
 {
-    static const struct rkm04_port nothing;
+    static const struct device_port nothing;
     struct segment_config mine = *config;
     mine.out = keep;
     mine.monitor = watch;
     mine.context = &line_rig;
     line_rig.framing = framing ? framing : &rkm04_hdlc;
     line_rig.master.count = line_rig.monitored = 0;
+    segment_end(&line_rig.segment);
     segment_begin(&line_rig.segment, &mine);
     for (unsigned number = 1; *nodes != 0; number++) {
-        struct rkm04_config unit = {.node = *nodes++, .framing = framing};
+        const struct device_config unit = rkm04_device_config(&(struct rkm04_config){.node = *nodes++, .framing = framing});
         ck_assert_uint_eq(segment_add_unit(&line_rig.segment, &unit, &nothing, NULL), number);
     }
 }
@@ -117,12 +119,12 @@ struct line_count line_count(void)
 
 struct rkm04_counters line_unit_counters(unsigned number)
 {
-    return rkm04_counters(segment_unit(&line_rig.segment, number));
+    return rkm04_counters(rkm04_of(segment_unit(&line_rig.segment, number)));
 }
 
 struct rkm04_motor_state line_motor(unsigned number, unsigned motor)
 {
     struct rkm04_motor_state state;
-    ck_assert(rkm04_motor_state(segment_unit(&line_rig.segment, number), motor, &state));
+    ck_assert(rkm04_motor_state(rkm04_of(segment_unit(&line_rig.segment, number)), motor, &state));
     return state;
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "segment_rig.h"
 
 #define line (&line_rig.segment)
@@ -181,10 +182,10 @@ END_TEST
 
 START_TEST(two_units_of_one_address_with_different_answers_destroy_them)
 {
-    static const struct rkm04_port nothing;
-    struct rkm04_config other = {.node = 5, .version_text = "02.01,06.03.2010"};
+    static const struct device_port nothing;
+    struct device_config other = rkm04_device_config(&(struct rkm04_config){.node = 5, .version_text = "02.01,06.03.2010"});
     begin(one);
-    struct rkm04_config first = {.node = 5};
+    struct device_config first = {.node = 5};
     segment_add_unit(line, &first, &nothing, NULL);
     segment_add_unit(line, &other, &nothing, NULL);
     line_ask(5, VERSION, 1, 0);
@@ -201,8 +202,8 @@ END_TEST
 START_TEST(two_units_of_one_address_with_different_programs_destroy_their_answers)
 {
     begin(twins);
-    ck_assert_int_eq(rkm04_set_command(segment_unit(line, 1), '1', "F100 W2000", 10, NULL), 0);
-    ck_assert_int_eq(rkm04_set_command(segment_unit(line, 2), '1', "F200", 4, NULL), 0);
+    ck_assert_int_eq(rkm04_set_command(rkm04_of(segment_unit(line, 1)), '1', "F100 W2000", 10, NULL), 0);
+    ck_assert_int_eq(rkm04_set_command(rkm04_of(segment_unit(line, 2)), '1', "F200", 4, NULL), 0);
     line_ask(5, "\0051", 2, 0);
     line_ask(5, VERSION, 1, line_settle());
     line_settle();
@@ -300,7 +301,7 @@ START_TEST(a_unit_without_power_is_silent_and_the_others_work_on)
     line_settle();
     ck_assert_uint_eq(line_count().whole, 1);
     ck_assert_uint_eq(line_answers(7, 1), 1);
-    ck_assert_uint_eq(rkm04_now(segment_unit(line, 2)), 0);
+    ck_assert_uint_eq(rkm04_now(rkm04_of(segment_unit(line, 2))), 0);
 }
 END_TEST
 
@@ -345,7 +346,7 @@ START_TEST(U8_power_up_begins_anew_with_a_time_of_its_own)
     ck_assert_int_eq(line_motor(2, 1).position, 0);
     ck_assert_uint_eq(line_motor(2, 1).commands, 0);
     line_ask(2, VERSION, 1, 3 * SECOND);
-    ck_assert_uint_eq(rkm04_now(segment_unit(line, 2)), SECOND - 777);
+    ck_assert_uint_eq(rkm04_now(rkm04_of(segment_unit(line, 2))), SECOND - 777);
     line_settle();
     ck_assert_uint_eq(line_answers(2, 1), 1);
 }
@@ -357,8 +358,8 @@ START_TEST(next_events_count_in_the_time_of_the_line)
     ck_assert_uint_eq(segment_next_event(line), RKM04_NEVER);
     segment_advance(line, 12345);
     segment_power(line, 2, true);
-    ck_assert_int_eq(rkm04_set_command(segment_unit(line, 2), '1', "W5", 2, NULL), 0);
-    ck_assert_uint_eq(segment_next_event(line), 12345 + rkm04_next_event(segment_unit(line, 2)));
+    ck_assert_int_eq(rkm04_set_command(rkm04_of(segment_unit(line, 2)), '1', "W5", 2, NULL), 0);
+    ck_assert_uint_eq(segment_next_event(line), 12345 + rkm04_next_event(rkm04_of(segment_unit(line, 2))));
 }
 END_TEST
 
@@ -486,8 +487,8 @@ END_TEST
 
 START_TEST(U4_there_is_room_for_sixteen_units)
 {
-    static const struct rkm04_port nothing;
-    struct rkm04_config config = {.node = 1};
+    static const struct device_port nothing;
+    struct device_config config = {.node = 1};
     begin(all);
     ck_assert_uint_eq(segment_add_unit(line, &config, &nothing, NULL), 0);
     ck_assert_uint_eq(line->units, 16);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "segment_rig.h"
 
 #define line (&line_rig.segment)
@@ -225,7 +226,9 @@ START_TEST(K3_how_the_time_is_cut_makes_no_difference)
     for (enum way way = 0; way < WAYS; way++) {
         tell_story(way, _i, framing);
         if (way == 0) {
-            first = line_rig;
+            segment_end(&first.segment);
+            first = line_rig; /* its units, too */
+            memset(line_rig.segment.unit, 0, sizeof line_rig.segment.unit);
             continue;
         }
         ck_assert_uint_eq(heard->count, first.master.count);
@@ -239,10 +242,11 @@ START_TEST(K3_how_the_time_is_cut_makes_no_difference)
             ck_assert_uint_eq(line_rig.monitor[i].senders, first.monitor[i].senders);
         }
         for (unsigned number = 1; number <= 4; number++) {
-            struct rkm04_counters now = line_unit_counters(number), then = rkm04_counters(&first.segment.unit[number - 1].unit);
+            struct rkm04_unit *unit = rkm04_of(segment_unit(&first.segment, number));
+            struct rkm04_counters now = line_unit_counters(number), then = rkm04_counters(unit);
             ck_assert_mem_eq(&now, &then, sizeof now);
             struct rkm04_motor_state state;
-            rkm04_motor_state(&first.segment.unit[number - 1].unit, 1, &state);
+            rkm04_motor_state(unit, 1, &state);
             ck_assert_int_eq(line_motor(number, 1).position, state.position);
             ck_assert_int_eq(line_motor(number, 1).state, state.state);
         }
@@ -304,19 +308,21 @@ static void poll(uint8_t node, unsigned motor)
 
 START_TEST(U3_sixteen_units_at_full_speed_are_polled_for_a_minute_without_loss)
 {
-    static const struct rkm04_port nothing;
+    static const struct rkm04_port nowhere;
+    static const struct device_port nothing;
     static struct rkm04_unit alone; /* what the first unit would be on a line of its own */
     struct segment_config config = line_timed();
     config.out = take_answer;
     memset(&load.receiver, 0, sizeof load.receiver);
     load.polls = load.answers = load.bytes = 0;
     uint64_t sent = 0;
+    segment_end(&load.segment);
     segment_begin(&load.segment, &config);
     line_rig.framing = &rkm04_hdlc;
     struct rkm04_config unit = {.node = 1};
-    rkm04_init(&alone, &unit, &nothing, NULL);
+    rkm04_init(&alone, &unit, &nowhere, NULL);
     for (; unit.node <= 16; unit.node++)
-        segment_add_unit(&load.segment, &unit, &nothing, NULL);
+        segment_add_unit(&load.segment, &(struct device_config){.node = unit.node}, &nothing, NULL);
 
     static const char go[] = "\0020S2000 A60000 V16000 G+";
     uint8_t bytes[80];

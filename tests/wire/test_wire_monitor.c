@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/rkm04_device.h"
 #include "wire/wire_words.h"
 #include "core/rig.h"
 #include "wire_rig.h"
@@ -409,7 +410,7 @@ START_TEST(noise_is_told_as_often_as_the_unit_drops_it)
             wire_rig_settle();
         }
     }
-    const struct rkm04_receiver *monitor = &sim->monitor.requests.receiver, *unit = &sim_core(sim, 1)->receiver;
+    const struct rkm04_receiver *monitor = &sim->monitor.requests.receiver, *unit = &rkm04_of(sim_core(sim, 1))->receiver;
     ck_assert_uint_gt(unit->bad_check, 100);
     ck_assert_uint_gt(unit->malformed, 100);
     ck_assert_uint_eq(monitor->bad_check, unit->bad_check);

@@ -26,7 +26,10 @@ static void see(void *context, const struct watch_event *event)
 
 static void begin(const char *nodes, const struct rkm04_framing *framing, bool timed, uint32_t turnaround)
 {
-    struct sim_config config = {.unit = {.framing = framing}, .timed = timed, .turnaround = turnaround};
+    struct sim_config config = {
+        .unit = rkm04_device_config(&(struct rkm04_config){.framing = framing}),
+        .timed = timed, .turnaround = turnaround,
+    };
     wire_rig_end();
     ck_assert(node_list_read(&config.nodes, nodes));
     ck_assert(sim_begin(&wire_rig.sim, &config));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "exec_repeat.h"
+#include "rkm04_repeat.h"
 
 #include <string.h>
 
@@ -80,7 +80,7 @@ static uint64_t key_of(const struct rkm04_unit *unit)
     return key;
 }
 
-uint64_t exec_repeat_look(struct exec_repeat *repeat, const struct rkm04_unit *unit)
+uint64_t rkm04_repeat_look(struct rkm04_repeat *repeat, const struct rkm04_unit *unit)
 {
     uint64_t key = key_of(unit);
     if (repeat->power > 0 && key == repeat->key) {
