@@ -195,6 +195,9 @@ struct device_kind {
     size_t repeat_size;
     uint64_t (*find_repeat)(void *memory, const struct device_unit *unit);
 
+    /* Is the axis in a motion without an end of its own? Then the text says so: "is in an endless motion". */
+    bool (*is_endless)(const struct device_unit *unit, unsigned axis, char text[DEVICE_ERROR_SIZE]);
+
     bool has_coverage;       /* coverage.h knows its messages and commands */
 };
 

@@ -325,6 +325,16 @@ static uint64_t find_repeat(void *memory, const struct device_unit *unit)
     return rkm04_repeat_look(memory, core_of(unit));
 }
 
+static bool is_endless(const struct device_unit *unit, unsigned motor, char text[DEVICE_ERROR_SIZE])
+{
+    const struct rkm04_motion *motion = &core_of(unit)->motor[motor - 1].motion;
+    if (motion->kind == RKM04_MOTION_ENDLESS)
+        snprintf(text, DEVICE_ERROR_SIZE, "is in an endless motion");
+    else if (motion->kind == RKM04_MOTION_LIMIT)
+        snprintf(text, DEVICE_ERROR_SIZE, "moves until input %02u is 1, which no stimulus sets", motion->input + 0u);
+    return motion->kind == RKM04_MOTION_ENDLESS || motion->kind == RKM04_MOTION_LIMIT;
+}
+
 static json_t *state(const struct device_unit *unit, uint64_t t_us)
 {
     return rkm04_json_state(core_of(unit), t_us);
@@ -388,5 +398,6 @@ const struct device_kind rkm04_device = {
     .framing = rkm04_settings_framing,
     .repeat_size = sizeof(struct rkm04_repeat),
     .find_repeat = find_repeat,
+    .is_endless = is_endless,
     .has_coverage = true,
 };

@@ -273,17 +273,15 @@ static bool is_running(struct exec_run *run)
 }
 
 /* What repeats from slot to slot are motions: a program takes more than one for a turn. */
-static void say_endless(const struct rkm04_unit *unit, uint64_t period)
+static void say_endless(struct exec_run *run)
 {
+    const uint64_t period = run->period, slot = run->device->slot;
+    char text[DEVICE_ERROR_SIZE];
     fputs("rkm04 exec: the program never ends: ", stderr);
-    for (unsigned i = 0; period == RKM04_SLOT_TICKS && i < RKM04_MOTORS; i++) {
-        const struct rkm04_motion *motion = &unit->motor[i].motion;
-        if (motion->kind == RKM04_MOTION_ENDLESS)
-            fprintf(stderr, "motor %u is in an endless motion; ", i + 1u);
-        if (motion->kind == RKM04_MOTION_LIMIT)
-            fprintf(stderr, "motor %u moves until input %02u is 1, which no stimulus sets; ", i + 1u, motion->input + 0u);
-    }
-    if (period != RKM04_SLOT_TICKS)
+    for (unsigned motor = 1; period == slot && motor <= run->device->axes; motor++)
+        if (run->device->is_endless(exec_run_unit(run), motor, text))
+            fprintf(stderr, "motor %u %s; ", motor, text);
+    if (period != slot)
         fprintf(stderr, "its state repeats every %" PRIu64 ".%06" PRIu64 " s; ", period / RKM04_TICKS_PER_SECOND,
                 period % RKM04_TICKS_PER_SECOND);
     fputs("set an end with --until\n", stderr);
@@ -300,7 +298,7 @@ static int exit_status(struct exec_run *run, const struct options *options, enum
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
     if (end == EXEC_ENDLESS) {
-        say_endless(unit, run->period);
+        say_endless(run);
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
     if (end == EXEC_INTERRUPTED)
