@@ -19,13 +19,13 @@ static const char help[] =
     "Usage: rkm04 serve [OPTION...]\n"
     "  or:  rkm04 exec [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 test [OPTION...] SCENARIO...\n"
-    "  or:  rkm04 replay [OPTION...] RECORD\n"
+    "  or:  rkm04 replay [OPTION...] RECORDING\n"
     "A virtual RKM04, the unit for four stepper motors on RS485.\n"
     "\n"
-    "  serve      units on a line: pseudo terminal, serial device or TCP, in real time\n"
+    "  serve      units on a bus (pseudo terminal, serial device or TCP), in real time\n"
     "  exec       run programs in virtual time, as fast as the machine can\n"
-    "  test       run scenarios in virtual time and say which expectations hold\n"
-    "  replay     do again what a record of `serve' or `test' holds, and compare\n"
+    "  test       run scenarios in virtual time and report which pass\n"
+    "  replay     repeat a recording of `serve' or `test' and compare\n"
     "\n"
     "      --help      give this help; `rkm04 serve --help' tells more about serve\n"
     "      --version   print the program's version\n"
@@ -37,7 +37,7 @@ static const char help[] =
     "  rkm04 test --junit report.xml homing.yaml\n"
     "  rkm04 replay --trace pulses.vcd session.record\n"
     "\n"
-    "Exit status: 0 well, 1 failure at run time, 2 usage, 3 a scenario has failed, 4 less than --min-coverage "
+    "Exit status: 0 success, 1 failure at run time, 2 usage, 3 a scenario has failed, 4 less than --min-coverage "
     "of serve, 124 --until of exec reached with a motor still running.\n";
 
 static const struct {

@@ -35,7 +35,7 @@ enum {
 };
 
 static const struct argp_option option_table[] = {
-    {NULL, 0, NULL, 0, "A unit on the line:", 1},
+    {NULL, 0, NULL, 0, "A unit on the bus:", 1},
     {"port", 'p', "PORT", 0, "Serial device, pseudo terminal, or tcp:HOST:PORT", 0},
     {"node", 'n', "NODE", 0, "Address of the unit, 1 to 16; 0: all units, which do not answer (default 1)", 0},
     {"motor", 'm', "MOTOR", 0, "Motor 1 to 4; 0: all four (default 1)", 0},
@@ -46,12 +46,12 @@ static const struct argp_option option_table[] = {
     {NULL, 0, NULL, 0, "The emulator:", 2},
     {"control", 'c', "PATH", 0,
      "Its control socket (default: RKM04_CONTROL of the environment, else that of an `rkm04 serve' without --link)", 0},
-    {"unit", 'u', "UNIT", 0, "The unit, as in 3 or, the second one with that address, 3-2; not needed where there is one", 0},
-    {"line", KEY_LINE, "N", 0, "The line of an emulator with several, 0 to 255 (default 0)", 0},
+    {"unit", 'u', "UNIT", 0, "The unit, as in 3; 3-2: the second unit with address 3; not needed if there is only one", 0},
+    {"line", KEY_LINE, "N", 0, "The bus of an emulator with several, 0 to 255 (default 0)", 0},
     {"limit", KEY_LIMIT, "TIME", 0,
      "How long to wait, advance or listen, in virtual time, as in 10s, 250ms or a number of us", 0},
-    {"advance", KEY_ADVANCE, NULL, 0, "wait: with a stepped clock let time go on until the condition holds", 0},
-    {"force", KEY_FORCE, NULL, 0, "snapshot, trace start: overwrite a file of another kind, too", 0},
+    {"advance", KEY_ADVANCE, NULL, 0, "wait: with a stepped clock advance time until the condition holds", 0},
+    {"force", KEY_FORCE, NULL, 0, "snapshot, trace start: also overwrite a file of another kind", 0},
     {"once", KEY_ONCE, NULL, 0, "watch: print one picture as text", 0},
     {NULL, 0, NULL, 0, "Both:", 3},
     {"timeout", KEY_TIMEOUT, "MS", 0,
@@ -68,8 +68,8 @@ static const char arguments[] =
     "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]";
 
 static const char doc[] =
-    "Send one request to an RKM04, real or virtual, and show the answer; or look into an emulator, `rkm04 serve', and drive what "
-    "is around its units."
+    "Send one request to an RKM04, real or virtual, and show the answer; or inspect and control an emulator, `rkm04 serve': its "
+    "units, inputs, time, faults and plant."
     "\v"
     "Commands to a unit, with --port:\n"
     "  version      the unit's version text\n"
@@ -89,13 +89,13 @@ static const char doc[] =
     "  wait         until a condition holds; exit status 3 if not within --limit\n"
     "  advance      a stepped clock by a time, or until a condition holds\n"
     "  events       what happens, a line each: kinds, motor=N, count=N\n"
-    "  snapshot     keep everything as it is, under a NAME or in a file\n"
-    "  restore      go back to that\n"
-    "  reset        power off and on; flash stays\n"
+    "  snapshot     save the state of everything, under a NAME or in a file\n"
+    "  restore      return to a snapshot\n"
+    "  reset        power off and on; flash is kept\n"
     "  power        the power switch\n"
     "  switch       the address switch S1\n"
-    "  fault        list faults on demand; inject KIND NAME=VALUE...; clear [ID]\n"
-    "  plant        show what the motors move; set FILE; none; motor=N jammed=true ...\n"
+    "  fault        list injected faults; inject KIND NAME=VALUE...; clear [ID]\n"
+    "  plant        show the simulated mechanics; set FILE; none; motor=N jammed=true ...\n"
     "  clock        show or set it: real, xN, max, stepped\n"
     "  trace        start FILE (.vcd, .csv, .jsonl, .log, .pcapng), stop [NUMBER]\n"
     "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"
@@ -103,7 +103,7 @@ static const char doc[] =
     "\n"
     "Conditions: m1.position>=5000, m1.true<0, m1.steps>9, m1.state=idle, m1.idle, m1.led=blink, m1.fault!=none, idle, "
     "powered=1, do3=1, di08=0, var80=1, message=4, master.message, unit.message, dropped, t>=2.5s; u3. in front: of unit 3. "
-    "Several have to hold together, of those with `or' between them one is enough.\n"
+    "Several conditions must all hold; with `or' between them, one is enough.\n"
     "\n"
     "Examples:\n"
     "  rkmctl -p /dev/ttyUSB0 version\n"
@@ -204,7 +204,7 @@ static enum exit_status do_request(struct options *options)
     const struct client_job *job = &options->job;
     if (job->path != NULL || job->unit != NULL || job->line >= 0 || job->limit != NULL || job->once || job->advance ||
         job->force)
-        return client_usage("%s goes to a unit on the line: expected --port, --node and --motor", options->command);
+        return client_usage("%s goes to a unit on the bus: expected --port, --node and --motor", options->command);
     request->json = options->json;
     request->words = options->words;
     request->count = options->count;

@@ -40,20 +40,20 @@ enum option_key { KEY_FORCE = 256, KEY_READINGS };
 
 static const struct argp_option option_table[] = {
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
-    {"stimulus", 's', "FILE", 0, "What comes from outside while the programs run", 0},
-    {"trace", 't', "FILE", 0, "Write all that happens: .vcd, .jsonl, any other name CSV; - is standard output, CSV", 0},
+    {"stimulus", 's', "FILE", 0, "Inputs and messages that come while the programs run", 0},
+    {"trace", 't', "FILE", 0, "Record every event: .vcd, .jsonl, any other name CSV; - is standard output, CSV", 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
     {"force", KEY_FORCE, NULL, 0,
-     "Overwrite a file of another kind with the trace, too; never one that is also read or written otherwise", 0},
+     "Also overwrite a file of another kind with the trace; never one that is also read or written otherwise", 0},
     {0},
 };
 
 static const char doc[] =
     "Run programs of the RKM04 in virtual time, as fast as the machine can, until every motor is idle, stopped, or waits "
-    "for an input that no stimulus sets; without --until also until the state repeats, so that it would go on for ever. M is "
-    "the motor, 1 to 4 or 0 for all; without it 1. FILE is a program text (.rks), - standard input. Several files for one motor "
-    "are sent to it one after the other."
+    "for an input that no stimulus sets; without --until also until the state repeats, because the program would never end. M is "
+    "the motor, 1 to 4 or 0 for all; without it 1. FILE is a program text (.rks), - standard input. Several files for the same "
+    "motor are sent in order."
     "\v"
     "Lines of a stimulus file (times as in --until, from the start of the run):\n"
     "  TIME di NN 0|1        input 01 to 08\n"
@@ -74,7 +74,7 @@ static const char doc[] =
     "  echo 'F1000 R' | rkm04 exec --json -\n"
     "  rkm04 exec --readings planning=20ms drill.rks\n"
     "\n"
-    "Exit status: 0 well; 1 a text was refused, a motor ended in a fault, a file could not be read or written, or the run was "
+    "Exit status: 0 success; 1 a text was refused, a motor ended in a fault, a file could not be read or written, or the run was "
     "interrupted; 2 wrong usage; 124 --until was reached with a motor still running, or without it "
     "the program never ends: its state repeats.";
 

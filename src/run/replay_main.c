@@ -35,21 +35,21 @@ struct options {
 enum option_key { KEY_FORCE = 256 };
 
 static const struct argp_option option_table[] = {
-    {"trace", 't', "FILE", 0, "Write what happens: FILE.vcd for GTKWave and PulseView, FILE.csv or FILE.jsonl; may be repeated",
+    {"trace", 't', "FILE", 0, "Record every event: FILE.vcd for GTKWave and PulseView, FILE.csv or FILE.jsonl; may be repeated",
      0},
-    {"wire", 'w', "FILE", 0, "Write what passes on the wires: FILE.log, or FILE.pcapng for Wireshark; may be repeated", 0},
+    {"wire", 'w', "FILE", 0, "Record the frames on the bus: FILE.log, or FILE.pcapng for Wireshark; may be repeated", 0},
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"json", 'j', NULL, 0, "Print the result as JSON", 0},
-    {"force", KEY_FORCE, NULL, 0, "Overwrite files of another kind, too; never one that is also read or written otherwise", 0},
+    {"force", KEY_FORCE, NULL, 0, "Also overwrite files of another kind; never one that is also read or written otherwise", 0},
     {0},
 };
 
 static const char doc[] =
-    "Run a record, as written by `rkm04 serve --record', again in virtual time, as fast as the machine can, and compare what "
-    "goes out with what went out then. FILE - is standard input."
+    "Repeat a recording of `rkm04 serve --record' in virtual time, as fast as the machine can, and compare the "
+    "outputs with the recorded ones. FILE - is standard input."
     "\v"
-    "The first difference is named with unit, motor and time. Nothing that a record says makes this command read or write "
-    "another file. docs/RECORD.md describes records.\n"
+    "The first difference is named with unit, motor and time. A recording can never make this command read or write "
+    "another file. docs/RECORD.md describes recordings.\n"
     "\n"
     "Examples:\n"
     "  rkm04 replay session.record\n"
@@ -57,8 +57,8 @@ static const char doc[] =
     "  rkm04 replay --until 2.5s --trace run.csv session.record\n"
     "  xz -dc session.record.xz | rkm04 replay --json -\n"
     "\n"
-    "Exit status: 0 everything went out as recorded; 1 something did not, a trace could not be written, or the run was "
-    "interrupted; 2 wrong usage, or FILE is no record.";
+    "Exit status: 0 all outputs are as recorded; 1 some differ, a trace could not be written, or the run was "
+    "interrupted; 2 wrong usage, or FILE is not a recording.";
 
 /* ---- Command line --------------------------------------------------------------------------------------------------- */
 

@@ -31,21 +31,21 @@ struct options {
 static const struct argp_option option_table[] = {
     {"junit", 'x', "FILE", 0, "Write the results as JUnit XML", 0},
     {"json", 'j', NULL, 0, "Print the results as JSON, instead of a line for each scenario", 0},
-    {"records", 'r', "FOLDER", 0, "Where the records of failed scenarios are kept; the default is the present folder", 0},
-    {"no-records", KEY_NO_RECORDS, NULL, 0, "Keep no records", 0},
+    {"records", 'r', "FOLDER", 0, "Folder for the recordings of failed scenarios; default: the working directory", 0},
+    {"no-records", KEY_NO_RECORDS, NULL, 0, "Keep no recordings", 0},
     {"force", KEY_FORCE, NULL, 0,
-     "Overwrite files of another kind with the report and records, too; never one that is also read or written otherwise", 0},
+     "Also overwrite files of another kind with the report and recordings; never one that is also read or written otherwise", 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0,
      "Run under these readings (docs/READINGS.md). `all': run under the defaults and under each other value of each reading, one "
-     "at a time, and tell on which the result depends; `pairs': and under each two; `list' lists them. May be given several "
+     "at a time, and report on which the result depends; `pairs': also under each two; `list' lists them. May be given several "
      "times: what is named is kept, the others change. What a scenario names itself is kept, too", 0},
     {"strict", KEY_STRICT, NULL, 0, "With --readings all or pairs: a scenario that depends on a reading has failed", 0},
     {0},
 };
 
 static const char doc[] =
-    "Run scenarios in virtual time, as fast as the machine can, and say which pass. A scenario is a text file with programs and "
-    "messages to send, inputs, faults and a plant, and with what must come of it; - is standard input. "
+    "Run scenarios in virtual time, as fast as the machine can, and report which pass. A scenario is a text with programs and "
+    "messages to send, inputs, faults and a plant, and with the expected results; - is standard input. "
     "docs/SCENARIOS.md describes the format."
     "\v"
     "A scenario, in YAML:\n"
@@ -60,8 +60,8 @@ static const char doc[] =
     "    - wait: {motor: 1, state: idle, position: 0}\n"
     "    - pulses: {motor: 1, forward: 5000, back: 5000}\n"
     "\n"
-    "A line for each, \"pass FILE: NAME (TIME)\" or \"FAIL FILE:LINE:COLUMN: NAME: expected ...; seen ...; at tick ...\". What "
-    "went in and out of a scenario that fails is kept in NAME.record, which `rkm04 replay' repeats.\n"
+    "A line for each, \"pass FILE: NAME (TIME)\" or \"FAIL FILE:LINE:COLUMN: NAME: expected ...; seen ...; at tick ...\". The "
+    "inputs and outputs of a scenario that fails are kept in NAME.record; `rkm04 replay' repeats them.\n"
     "\n"
     "With --readings all a second line says \"FILE: passes under 22 of 23; depends on hold-exit\", and one for each run that "
     "ended otherwise says how. A scenario that means one reading names it: readings: {hold-exit: latch}.\n"
@@ -73,7 +73,7 @@ static const char doc[] =
     "  rkm04 replay --trace homing.vcd homing.record\n"
     "\n"
     "Exit status: 0 all passed; 3 any failed, or, with --strict, depends on a reading; 1 a file could not be read or "
-    "written, or the run was interrupted; 2 wrong usage, or a file that is no scenario: each error is a line "
+    "written, or the run was interrupted; 2 wrong usage, or a file that is not a scenario: each error is a line "
     "FILE:LINE:COLUMN: error: ..., and nothing is run.";
 
 /* ---- Command line --------------------------------------------------------------------------------------------------- */

@@ -60,79 +60,79 @@ enum key {
 static const struct argp_option table[] = {
     {NULL, 0, NULL, 0, "The units:", 1},
     {"node", KEY_NODE, "LIST", 0,
-     "Addresses (DNode) of the units on the line, 1 to 16, as in 3 or 1,2,5-8; default 1. The same address may be given twice",
+     "Addresses (DNode) of the units on the bus, 1 to 16, as in 3 or 1,2,5-8; default 1. The same address may be given twice",
      0},
     {"flash", KEY_FLASH, "FILE", 0,
-     "Flash image of a unit; made if it is not there. %n in it stands for the unit's address, %l for the number of the bus. "
-     "Without it stored programs live as long as the emulator", 0},
+     "Flash image of a unit; created if it does not exist. %n in it stands for the unit's address, %l for the number of the bus. "
+     "Without it stored programs are lost when the emulator ends", 0},
     {"version-text", KEY_VERSION_TEXT, "TEXT", 0,
      "What the units answer to Version, up to 255 characters; default " RKM04_VERSION_TEXT, 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {"speed-change-latency", KEY_LATENCY, "MS", 0, "The same as --readings speed-change=MS", 0},
-    {NULL, 0, NULL, 0, "The line:", 2},
+    {NULL, 0, NULL, 0, "The bus:", 2},
     {"link", KEY_LINK, "PATH", 0,
      "Name of the symbolic link to the pty; default $XDG_RUNTIME_DIR/rkm04/bus0, else rkm04-UID/bus0 in the temporary "
      "directory. %l in it stands for the number of the bus", 0},
-    {"port", KEY_PORT, "DEVICE", 0, "Use this serial device or pty instead of a pty of our own", 0},
+    {"port", KEY_PORT, "DEVICE", 0, "Use this serial device or pty instead of creating a pty", 0},
     {"rts", KEY_RTS, "WHO", 0,
      "Who turns the driver of an RS485 device on while units send: driver (default), the kernel's if it can, else the adapter; "
      "toggles: RTS is on while bytes go out", 0},
     {"tcp", KEY_TCP, "HOST:PORT", 0,
-     "Offer the line over TCP, raw; default host 127.0.0.1, port 0 for a free one. Then there is no pty unless --link is given",
+     "Offer the bus over TCP as plain bytes; default host 127.0.0.1, port 0: a free one. No pty without --link",
      0},
-    {"rfc2217", KEY_RFC2217, "HOST:PORT", 0, "The same with settings, purge, break and modem lines by RFC 2217", 0},
+    {"rfc2217", KEY_RFC2217, "HOST:PORT", 0, "The same with RFC 2217: settings, purge, break and modem lines", 0},
     {"framing", KEY_FRAMING, "NAME", 0, "hdlc (default) or plain", 0},
-    {"baud", KEY_BAUD, "RATE", 0, "19200 (default): each byte takes its 520.8 us, both ways; 0: bytes take no time", 0},
+    {"baud", KEY_BAUD, "RATE", 0, "19200 (default): each byte takes 520.8 us in both directions; 0: bytes take no time", 0},
     {"turnaround", KEY_TURNAROUND, "US", 0,
-     "From the end of a request to the beginning of the answer, 0 to 1000000 us; default 521, one character", 0},
+     "Time from the end of a request to the start of the answer, 0 to 1000000 us; default 521, one character", 0},
     {"strict-line", KEY_STRICT_LINE, NULL, 0,
-     "A client that has set another speed or form of characters than 19200 8N1 gets what it would get: silence and garbage", 0},
+     "A client with another speed or character format than 19200 8N1 gets what a real bus gives: silence or garbage", 0},
     {"lines", KEY_LINES, "N", 0,
-     "So many lines, 1 to 256, each with all these units and a pty (bus0, bus1, ...) or TCP port (PORT, PORT+1, ...) of its "
+     "Number of buses, 1 to 256, each with all these units and a pty (bus0, bus1, ...) or TCP port (PORT, PORT+1, ...) of its "
      "own; default 1", 0},
     {NULL, 0, NULL, 0, "Time:", 3},
     {"clock", KEY_CLOCK, "CLOCK", 0,
-     "real (default); xN: N times as fast, 0.001 to 10000; max: as real, but what is due comes at once, bytes first, without "
-     "waiting for its time; stepped: time stands until it is advanced through the control socket, and bytes take none", 0},
+     "real (default); xN: N times as fast, 0.001 to 10000; max: no pacing; time runs as fast as the machine "
+     "allows; stepped: time is stopped until a client advances it; bytes take no time", 0},
     {"late", KEY_LATE, "WHAT", 0,
-     "What happens after the process was stopped for a while: catch-up (default), the units make up for it; skip: their time has "
-     "stood", 0},
-    {NULL, 0, NULL, 0, "From a test:", 4},
+     "What happens after the process was stopped for a while: catch-up (default), the units catch up; skip: the units' clock was "
+     "paused", 0},
+    {NULL, 0, NULL, 0, "For tests:", 4},
     {"control", KEY_CONTROL, "PATH", 0,
-     "Unix socket through which a test sees and changes everything (JSON-RPC; rkmctl --control); default: the link's name and "
-     ".control; without a link, a name made of the device or address, in the folder of default links", 0},
+     "Unix socket to read and change the state of all units (JSON-RPC; rkmctl --control); default: the link's name and "
+     ".control; without a link, a name from the device or address, in the folder of default links", 0},
     {"no-control", KEY_NO_CONTROL, NULL, 0, "No control socket", 0},
-    {"plant", KEY_PLANT, "FILE", 0, "What the motors move: true positions, end stops, switches that drive inputs", 0},
+    {"plant", KEY_PLANT, "FILE", 0, "Attach simulated mechanics: true positions, end stops, switches that drive inputs", 0},
     {"trace", KEY_TRACE, "FILE", 0,
-     "Take down pulses, inputs, outputs and all that happens: FILE.vcd for GTKWave and PulseView, FILE.csv, FILE.jsonl; may be "
+     "Record every pulse, input, output and other event: FILE.vcd for GTKWave and PulseView, FILE.csv, FILE.jsonl; may be "
      "given up to eight times. %l in it stands for the number of the bus", 0},
-    {"wire", KEY_WIRE, "FILE", 0, "Take down what passes on the wires: FILE.log to read, FILE.pcapng for Wireshark; likewise", 0},
-    {"record", KEY_RECORD, "FILE", 0, "Record all that comes in, so that `rkm04 replay FILE' does it again", 0},
+    {"wire", KEY_WIRE, "FILE", 0, "Record the frames on the bus: FILE.log as text, FILE.pcapng for Wireshark; as --trace", 0},
+    {"record", KEY_RECORD, "FILE", 0, "Record all inputs, so that `rkm04 replay FILE' can repeat the run", 0},
     {"force", KEY_FORCE, NULL, 0,
-     "Overwrite files of another kind with traces, logs, recordings and reports, too; never one that is also read or written "
+     "Also overwrite files of another kind with traces, logs, recordings and reports; never one that is also read or written "
      "otherwise", 0},
-    {"seed", KEY_SEED, "N", 0, "Of faults on demand that have a probability; default 1", 0},
-    {NULL, 0, NULL, 0, "Begin, end and report:", 5},
+    {"seed", KEY_SEED, "N", 0, "Seed for injected faults with a probability; default 1", 0},
+    {NULL, 0, NULL, 0, "Start, end and reports:", 5},
     {"verbose", KEY_VERBOSE, NULL, 0, "Also log each client that opens or closes the bus", 0},
     {"allow-folder", KEY_ALLOW_FOLDER, "DIR", 0,
-     "Control clients may also have files read and written below this folder; may be given up to 16 times. Without it: below the "
+     "Let control clients also read and write files below this folder; may be given up to 16 times. Without it: below the "
      "working directory (unless that is / or your home), and in the folders of the files named here", 0},
     {"no-sandbox", KEY_NO_SANDBOX, NULL, 0,
-     "Keep all files and system calls within reach; default: those that are needed (Landlock, seccomp)", 0},
-    {"ready-fd", KEY_READY_FD, "FD", 0, "Write the READY line to this file descriptor, too, and close it", 0},
+     "Allow all files and system calls; default: only those that are needed (Landlock, seccomp)", 0},
+    {"ready-fd", KEY_READY_FD, "FD", 0, "Also write the READY line to this file descriptor, then close it", 0},
     {"exit-when-idle", KEY_EXIT_WHEN_IDLE, "SECONDS", OPTION_ARG_OPTIONAL,
-     "End when nobody has had the line open for so many seconds of real time, 0 to 86400; default 10. With --port: when "
+     "End when no client has had the bus open for this many seconds of real time, 0 to 86400; default 10. With --port: when "
      "nothing has come in", 0},
     {"coverage", KEY_COVERAGE, "FILE", 0,
-     "At the end write what clients have exercised out of all messages, commands, flags and faults, as text, and to FILE.json",
+     "At the end write which messages, commands, flags and faults clients have used, as text, and to FILE.json",
      0},
-    {"min-coverage", KEY_MIN_COVERAGE, "PERCENT", 0, "Exit status 4 if they have exercised less, 0 to 100, as in 72.5", 0},
+    {"min-coverage", KEY_MIN_COVERAGE, "PERCENT", 0, "Exit status 4 if clients have used less, 0 to 100, as in 72.5", 0},
     {0},
 };
 
 static const char doc[] =
-    "Serve virtual RKM04 units on a serial line until SIGINT or SIGTERM.\v"
-    "When everything is ready one line appears on stdout: READY {\"pty\":...,\"link\":...,\"node\":...}. Logs go to stderr, "
+    "Serve virtual RKM04 units on a bus until SIGINT or SIGTERM.\v"
+    "When everything is ready, one line is printed to stdout: READY {\"pty\":...,\"link\":...,\"node\":...}. Logs go to stderr, "
     "with the units' own time in seconds.\n"
     "\n"
     "Examples:\n"
