@@ -301,6 +301,7 @@ static bool begin_sim(struct bus *bus)
 {
     const struct bus_options *options = bus->options;
     struct sim_config config = {
+        .device = options->device,
         .nodes = options->nodes,
         .timed = bus->time.timed && !bus_is_stepped(bus),
         .turnaround = options->turnaround,
@@ -309,7 +310,8 @@ static bool begin_sim(struct bus *bus)
         .adapter = unplug,
         .context = bus,
     };
-    rkm04_settings_put(&config.unit, &options->config);
+    if (!options->device || options->device == device_kind_at(0))
+        rkm04_settings_put(&config.unit, &options->config);
     if (options->flash)
         config.flash = (struct sim_flash){.read = flash_read, .erase = flash_erase, .program = flash_program, .context = bus};
     if (sim_begin(&bus->sim, &config) && snapshots_attach(&bus->sim))

@@ -5,7 +5,6 @@
 
 #include <stdbool.h>
 
-#include <rkm04/unit.h>
 
 #include "line/line.h"
 #include "text/text.h"
@@ -18,8 +17,11 @@
 
 struct bus_options {
     struct rkm04_config config; /* --framing, --version-text, --readings; node: of the first unit */
+    bool is_rkm04;              /* one of these was given */
     readings_set readings_named; /* by --readings and --speed-change-latency */
-    struct node_list nodes;     /* --node */
+    const struct device_kind *device; /* --device; NULL: rkm04 */
+    const char *nodes_text;     /* --node as given; NULL: the default */
+    struct node_list nodes;     /* the same */
     unsigned lines;             /* --lines */
     bool pty;                   /* lines have a pty of their own */
     const char *link;           /* NULL: the default */

@@ -87,7 +87,7 @@ unsigned param_unit(struct sim *sim, const json_t *params, struct refusal *refus
     char name[NODE_NAME_SIZE] = "", units[160];
     if (!value && sim_units(sim) == 1)
         return 1;
-    if (json_is_integer(value) && json_integer_value(value) >= 1 && json_integer_value(value) <= RKM04_NODE_MAX)
+    if (json_is_integer(value) && json_integer_value(value) >= 1 && json_integer_value(value) <= sim_device(sim)->addresses)
         snprintf(name, sizeof name, "%d", (int)json_integer_value(value));
     else if (json_is_string(value) && json_string_length(value) < sizeof name &&
              json_string_length(value) == strlen(json_string_value(value)))

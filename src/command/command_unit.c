@@ -6,15 +6,16 @@
 #include "methods.h"
 #include "unit_state.h"
 
-/* "1", "01", … "08" -> 1..8; 0: no input. */
-static unsigned input_named(const char *name)
+/* "1", "01", … -> 1..inputs; 0: no input. */
+static unsigned input_named(const char *name, unsigned inputs)
 {
     size_t length = strlen(name);
-    if (length == 2 && name[0] == '0')
-        name++;
-    else if (length != 1)
+    unsigned number = 0;
+    if (length < 1 || length > 2 || strspn(name, "0123456789") != length)
         return 0;
-    return name[0] >= '1' && name[0] < '1' + (int)RKM04_INPUTS ? (unsigned)(name[0] - '0') : 0;
+    for (; *name != '\0'; name++)
+        number = number * 10 + (unsigned)(*name - '0');
+    return number <= inputs ? number : 0;
 }
 
 /* 0, 1, false, true -> 0, 1; -1: none of these. */
@@ -40,15 +41,15 @@ static json_t *command_state(struct sim *sim, const json_t *params, struct refus
 /* ---- Inputs --------------------------------------------------------------------------------------------------------- */
 
 /* Read the inputs named in `di` into `given`, and their levels. */
-static bool read_inputs(const json_t *di, uint8_t *given, uint8_t *levels, struct refusal *refusal)
+static bool read_inputs(const json_t *di, unsigned inputs, uint8_t *given, uint8_t *levels, struct refusal *refusal)
 {
     const char *name;
     const json_t *value;
     json_object_foreach((json_t *)di, name, value) {
-        unsigned input = input_named(name);
+        unsigned input = input_named(name, inputs);
         int level = level_of(value);
         if (input == 0) {
-            refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': expected 1 to %u", name, RKM04_INPUTS);
+            refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': expected 1 to %u", name, inputs);
             return false;
         }
         uint8_t bit = (uint8_t)(1u << (input - 1));
@@ -66,17 +67,17 @@ static bool read_inputs(const json_t *di, uint8_t *given, uint8_t *levels, struc
     return true;
 }
 
-static bool read_di(const json_t *params, uint8_t *given, uint8_t *levels, struct refusal *refusal)
+static bool read_di(const json_t *params, unsigned inputs, uint8_t *given, uint8_t *levels, struct refusal *refusal)
 {
     const json_t *di = json_object_get(params, "di"), *mask = json_object_get(params, "mask");
     int64_t value;
     if (json_is_object(di) && json_object_size(di) > 0 && !mask)
-        return read_inputs(di, given, levels, refusal);
+        return read_inputs(di, inputs, given, levels, refusal);
     if (di || !mask) {
         refuse(refusal, REFUSED_PARAMS, "expected either di, an object as in {\"3\": 1, \"08\": 0}, or mask, a number");
         return false;
     }
-    if (!param_integer(params, "mask", 0, UINT8_MAX, &value, refusal))
+    if (!param_integer(params, "mask", 0, (INT64_C(1) << inputs) - 1, &value, refusal))
         return false;
     *given = UINT8_MAX;
     *levels = (uint8_t)value;
@@ -90,7 +91,7 @@ static json_t *command_di_set(struct sim *sim, const json_t *params, struct refu
     if (number == 0)
         return NULL;
     uint8_t given = 0, levels = sim->unit[number - 1].di;
-    if (!read_di(params, &given, &levels, refusal))
+    if (!read_di(params, sim_device(sim)->inputs, &given, &levels, refusal))
         return NULL;
     sim_set_di(sim, number, levels);
     uint8_t inputs = (uint8_t)sim_device(sim)->inputs_of(sim_core(sim, number));

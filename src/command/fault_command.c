@@ -133,8 +133,7 @@ static bool read_power(const json_t *params, struct fault *fault, struct refusal
 
 static bool read_input(const json_t *params, struct fault *fault, struct refusal *refusal)
 {
-    return read_number(params, "input", 1, 8, -1, fault, refusal) &&
-           read_truth(params, "level", -1, &fault->level, refusal);
+    return read_truth(params, "level", -1, &fault->level, refusal);
 }
 
 /* ---- Reading: what several kinds have ------------------------------------------------------------------------------- */
@@ -277,6 +276,8 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
     if (!check_names(params, kind, refusal) || !read_occasions(params, &fault, refusal) ||
         !read_window(sim, params, &fault, refusal) || !read_spell(params, kind->takes, &fault, refusal) ||
         !read_whose(sim, params, kind->takes, &fault, refusal) || !kind->read(params, &fault, refusal))
+        return NULL;
+    if (fault.kind == FAULT_INPUT && !read_number(params, "input", 1, sim_device(sim)->inputs, -1, &fault, refusal))
         return NULL;
     if (fault.kind == FAULT_WRONG_FCS && !sim_device(sim)->has_check_value(&sim->config.unit))
         return refuse(refusal, REFUSED_STATE, "wrong_fcs: framing `%s' has no check value",

@@ -190,9 +190,12 @@ static bool read_bits(struct reader *r, struct term *group, struct term term, co
     bool variables = term.kind == TERM_VARIABLE;
     const struct device_kind *device = sim_device(r->sim);
     unsigned low = variables ? device->first_variable : 1;
-    unsigned high = low - 1 + (variables ? device->variables : term.kind == TERM_OUTPUT ? device->outputs : device->inputs);
+    unsigned count = variables ? device->variables : term.kind == TERM_OUTPUT ? device->outputs : device->inputs;
+    unsigned high = low + count - 1;
     const char *name;
     json_t *level;
+    if (count == 0)
+        return REFUSE("%s: the device %s has none", key, device->name);
     if (!json_is_object(json) || json_object_size(json) == 0)
         return REFUSE("%s: expected numbers with levels, as in {\"%02u\": 1}", key, low);
     json_object_foreach((json_t *)json, name, level) {

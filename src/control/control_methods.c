@@ -48,12 +48,14 @@ static json_t *units(struct control_context *context, struct refusal *refusal)
     if (!params_known(context->request->params, none, refusal))
         return NULL;
     struct sim *sim = bus_sim(context->bus);
-    const struct rkm04_config settings = rkm04_settings(&sim->config.unit);
-    json_t *list = json_array();
+    json_t *settings = json_object(), *list = json_array();
+    sim_device(sim)->put_settings(&sim->config.unit, settings);
+    json_t *readings = json_incref(json_object_get(settings, "readings")); /* NULL: none, and left out */
+    json_decref(settings);
     for (unsigned number = 1; number <= sim_units(sim); number++)
         json_array_append_new(list, json_string(sim->unit[number - 1].name));
-    return json_pack("{s:I, s:i, s:o, s:o}", "t_us", (json_int_t)sim_now(sim), "lines", (int)context->client->control->lines,
-                     "units", list, "readings", readings_json(&settings.readings));
+    return json_pack("{s:I, s:i, s:o, s:o*}", "t_us", (json_int_t)sim_now(sim), "lines", (int)context->client->control->lines,
+                     "units", list, "readings", readings);
 }
 
 /* Of one line, or of all: then of none if one of them is being advanced. */

@@ -70,12 +70,12 @@ static bool read_kinds(const json_t *kinds, uint32_t *chosen, struct refusal *re
 
 static bool add_motor(struct sim *sim, const json_t *motor, uint32_t *chosen, struct refusal *refusal)
 {
-    (void)sim;
-    if (json_is_integer(motor) && json_integer_value(motor) >= 1 && json_integer_value(motor) <= (json_int_t)RKM04_MOTORS) {
+    const unsigned axes = sim_device(sim)->axes;
+    if (json_is_integer(motor) && json_integer_value(motor) >= 1 && json_integer_value(motor) <= axes) {
         *chosen |= 1u << (unsigned)json_integer_value(motor);
         return true;
     }
-    refuse(refusal, REFUSED_PARAMS, "motor: expected a number from 1 to %u, or a list of them", RKM04_MOTORS);
+    refuse(refusal, REFUSED_PARAMS, "motor: expected a number from 1 to %u, or a list of them", axes);
     return false;
 }
 

@@ -9,9 +9,8 @@ static const struct device_kind *const device_kinds[] = {&rkm04_device};
 
 #define KINDS (sizeof device_kinds / sizeof device_kinds[0])
 
-/* Kinds of a program that is linked with more of them; ends with NULL. This one has none. */
+/* Kinds of a program that is linked with more of them; ends with NULL. */
 extern const struct device_kind *const device_kinds_added[];
-const struct device_kind *const device_kinds_added[] __attribute__((weak)) = {NULL};
 
 const struct device_kind *device_kind_at(unsigned at)
 {

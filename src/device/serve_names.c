@@ -11,22 +11,22 @@
 #define PORT_MAX 65535ul
 
 /* Read an address and step over it. Returns 0 if there is none. */
-static unsigned read_node(const char **text)
+static unsigned read_node(const char **text, unsigned addresses)
 {
     unsigned node = 0;
-    for (; **text >= '0' && **text <= '9' && node <= RKM04_NODE_MAX; ++*text)
+    for (; **text >= '0' && **text <= '9' && node <= addresses; ++*text)
         node = node * 10 + (unsigned)(**text - '0');
-    return node <= RKM04_NODE_MAX ? node : 0;
+    return node <= addresses ? node : 0;
 }
 
-bool node_list_read(struct node_list *list, const char *text)
+bool node_list_read_up_to(struct node_list *list, const char *text, unsigned addresses)
 {
     list->count = 0;
     for (;; text++) {
-        unsigned first = read_node(&text), last = first;
+        unsigned first = read_node(&text, addresses), last = first;
         if (*text == '-') {
             text++;
-            last = read_node(&text);
+            last = read_node(&text, addresses);
         }
         if (first == 0 || last < first || last - first >= NODE_LIST_MAX - list->count)
             return false;
@@ -37,6 +37,11 @@ bool node_list_read(struct node_list *list, const char *text)
         if (*text != ',')
             return false;
     }
+}
+
+bool node_list_read(struct node_list *list, const char *text)
+{
+    return node_list_read_up_to(list, text, RKM04_NODE_MAX);
 }
 
 void node_list_name(const struct node_list *list, unsigned at, char name[NODE_NAME_SIZE])

@@ -12,6 +12,7 @@
 
 #define NODE_LIST_MAX 16u /* units on a line (U4) */
 #define NODE_LIST_EXPECTED "addresses from 1 to 16, as set with switch S1, as in 3 or 1,2,5-8, at most 16 units"
+#define NODE_LIST_FORMAT "expected addresses from 1 to %u, as in 3 or 1,2,5-8, at most 16 units" /* of another kind */
 #define NODE_NAME_SIZE 8u
 
 /* The addresses of the units of a line, in the order given. An address may occur more than once, as on a bus on which two
@@ -23,6 +24,9 @@ struct node_list {
 
 /* Read "3", "1,2,5-8". Returns false if it is none of NODE_LIST_EXPECTED. */
 bool node_list_read(struct node_list *list, const char *text);
+
+/* The same for a kind of device with addresses 1..addresses, at most 247. */
+bool node_list_read_up_to(struct node_list *list, const char *text, unsigned addresses);
 
 /* The name of unit `at` (from 0): its address, "3"; of the second with the same address "3-2", of the third "3-3". */
 void node_list_name(const struct node_list *list, unsigned at, char name[NODE_NAME_SIZE]);

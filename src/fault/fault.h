@@ -97,7 +97,7 @@ struct fault_calls {
     void (*power)(void *context, unsigned unit, bool on);
     void (*adapter)(void *context, bool plugged);
     const char *(*unit_name)(void *context, unsigned unit);
-    /* The flash as it is, as in struct rkm04_port. */
+    /* The flash as it is, as in struct device_port. */
     int (*flash_read)(void *context, unsigned unit, unsigned block, unsigned offset, void *data, unsigned length);
     int (*flash_erase)(void *context, unsigned unit, unsigned block);
     int (*flash_program)(void *context, unsigned unit, unsigned block, unsigned offset, const void *data, unsigned length);

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <rkm04/unit.h>
+#include <rkm04/limits.h>
 
 #define FLASH_FILE_SIZE (RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE)
 
@@ -35,7 +35,7 @@ bool flash_file_sync(struct flash_file *flash);
 /* Sync and close. Returns as flash_file_sync(). */
 bool flash_file_close(struct flash_file *flash);
 
-/* As in struct rkm04_port. Failures are reported. */
+/* As in struct device_port. Failures are reported. */
 int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, void *data, unsigned length);
 int flash_file_erase(struct flash_file *flash, unsigned block);
 int flash_file_program(struct flash_file *flash, unsigned block, unsigned offset, const void *data, unsigned length);

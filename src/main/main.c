@@ -11,7 +11,7 @@
 #include "run/run.h"
 #include "serve/serve.h"
 
-#define NAMES "serve, exec, test or replay"
+#define NAMES "serve, exec, test, replay or devices"
 
 const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
@@ -20,12 +20,14 @@ static const char help[] =
     "  or:  rkm04 exec [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 test [OPTION...] SCENARIO...\n"
     "  or:  rkm04 replay [OPTION...] RECORDING\n"
+    "  or:  rkm04 devices [--json]\n"
     "A virtual RKM04, the unit for four stepper motors on RS485.\n"
     "\n"
     "  serve      units on a bus (pseudo terminal, serial device or TCP), in real time\n"
     "  exec       run programs in virtual time, as fast as the machine can\n"
     "  test       run scenarios in virtual time and report which pass\n"
     "  replay     repeat a recording of `serve' or `test' and compare\n"
+    "  devices    list the devices that serve and scenarios know\n"
     "\n"
     "      --help      give this help; `rkm04 serve --help' tells more about serve\n"
     "      --version   print the program's version\n"
@@ -48,6 +50,7 @@ static const struct {
     {"exec", "rkm04 exec", exec_main},
     {"test", "rkm04 test", test_main},
     {"replay", "rkm04 replay", replay_main},
+    {"devices", "rkm04 devices", devices_main},
 };
 
 int main(int argc, char **argv)

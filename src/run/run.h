@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* run.h: `rkm04 exec`, `test` and `replay`: runs in virtual time, from the options to the exit status; the face of the room.
+/* run.h: `rkm04 exec`, `test`, `replay`: runs in virtual time, from the options to the exit status; the face of the room.
  *
  *     exec, exec_*, stimulus    programs of a unit and what is done to its inputs meanwhile
  *     test, test_*              scenarios, under one or several sets of readings; reports
  *     replay_main               a recording again, compared with what was recorded
+ *     devices                   the list of the kinds of devices
  *
  * argv[0] is the name for messages ("rkm04 exec"), the rest the command's own arguments. Each returns the exit status
  * (text/exit_status.h), or ends the program with it. */
@@ -13,5 +14,6 @@
 int exec_main(int argc, char **argv);   /* programs in virtual time */
 int test_main(int argc, char **argv);   /* scenarios in virtual time */
 int replay_main(int argc, char **argv); /* a recording, again in virtual time */
+int devices_main(int argc, char **argv); /* the kinds of devices */
 
 #endif

@@ -13,8 +13,8 @@
 #define VERSION_MAX 255u
 
 static const char *const known[] = {
-    "name",  "description", "units", "framing", "baud", "turnaround", "speed_change_latency", "readings", "version_text",
-    "seed", "plant",   "di",          "timeout", "allow_faults", "always", "stimuli", "steps", NULL,
+    "name",  "description", "device", "units", "framing", "baud", "turnaround", "speed_change_latency", "readings",
+    "version_text", "seed", "plant",   "di",          "timeout", "allow_faults", "always", "stimuli", "steps", NULL,
 };
 
 /* ---- Values --------------------------------------------------------------------------------------------------------- */
@@ -28,6 +28,12 @@ static const char *text_of(const struct config_node *map, const char *key, bool 
         return config_text(node);
     *well = config_error(node, "expected %s, a text", key);
     return NULL;
+}
+
+static void put_settings(struct scenario *scenario)
+{
+    if (scenario->config.device == device_kind_at(0))
+        rkm04_settings_put(&scenario->config.unit, &scenario->settings);
 }
 
 static bool read_time_up_to(const struct config_node *map, const char *key, uint64_t most, uint64_t *ticks)
@@ -61,15 +67,36 @@ static bool read_readings(struct scenario *scenario, const struct config_node *r
     return well;
 }
 
+/* The kind of all units. What is a setting of the RKM04 alone stands in a scenario for it alone. */
+static bool read_device(struct scenario *scenario, const struct config_node *root)
+{
+    static const char *const own[] = {"framing", "readings", "speed_change_latency", "version_text"};
+    bool well = true;
+    const char *name = text_of(root, "device", &well);
+    const struct device_kind *kind = name ? device_kind_named(name) : device_kind_at(0);
+    if (!kind)
+        return config_error(config_get(root, "device"), "expected a device, one that `rkm04 devices' lists, found \"%.40s\"",
+                            name);
+    for (size_t i = 0; kind != device_kind_at(0) && i < sizeof own / sizeof own[0]; i++)
+        if (config_get(root, own[i]))
+            well = config_error(config_get(root, own[i]), "the device %s has no %s", kind->name, own[i]);
+    scenario->config.device = kind;
+    return well;
+}
+
 static bool read_line(struct scenario *scenario, const struct config_node *root)
 {
-    bool well = true;
+    bool well = read_device(scenario, root);
+    if (!well)
+        return false;
     uint64_t turnaround = SEGMENT_TURNAROUND;
     struct sim_config *config = &scenario->config;
     const char *units = text_of(root, "units", &well), *framing = text_of(root, "framing", &well);
     const char *baud = text_of(root, "baud", &well);
-    if (!node_list_read(&config->nodes, units != NULL ? units : "1"))
-        well = config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED);
+    if (!node_list_read_up_to(&config->nodes, units != NULL ? units : "1", config->device->addresses))
+        well = config->device == device_kind_at(0)
+                   ? config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED)
+                   : config_error(config_get(root, "units"), NODE_LIST_FORMAT, config->device->addresses);
     scenario->settings.framing = rkm04_framing_named(framing != NULL ? framing : "hdlc");
     if (scenario->settings.framing == NULL)
         well = config_error(config_get(root, "framing"), "expected framing, hdlc or plain, found \"%.20s\"", framing);
@@ -92,7 +119,7 @@ static bool read_rest(struct scenario *scenario, const struct config_node *root)
     scenario->settings.version_text = text_of(root, "version_text", &well);
     if (scenario->settings.version_text != NULL && strlen(scenario->settings.version_text) > VERSION_MAX)
         well = config_error(config_get(root, "version_text"), "expected version_text of up to %u bytes", VERSION_MAX);
-    rkm04_settings_put(&scenario->config.unit, &scenario->settings);
+    put_settings(scenario);
     if (node != NULL)
         well = config_integer(node, "seed", 0, INT64_MAX, &seed) && well;
     scenario->config.seed = (uint64_t)seed;
@@ -325,7 +352,7 @@ void scenario_set_readings(struct scenario *scenario, const struct rkm04_reading
     for (unsigned at = 0; at < READINGS; at++)
         if (!(scenario->named >> at & 1u))
             readings_put(&scenario->settings.readings, at, readings_get(readings, at));
-    rkm04_settings_put(&scenario->config.unit, &scenario->settings);
+    put_settings(scenario);
 }
 
 readings_set scenario_named(const struct scenario *scenario)

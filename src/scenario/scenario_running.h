@@ -50,7 +50,7 @@ struct running {
     struct watcher watcher;
     struct running_fault fault;
     uint8_t forward[SEGMENT_UNITS]; /* direction outputs, bit 0: motor 1 */
-    struct pulse_count count[SEGMENT_UNITS][RKM04_MOTORS], last[SEGMENT_UNITS][RKM04_MOTORS];
+    struct pulse_count count[SEGMENT_UNITS][DEVICE_AXES_MAX], last[SEGMENT_UNITS][DEVICE_AXES_MAX];
 };
 
 /* The run has failed, at `tick` and because of what stands in `step`. `expected` and `seen` are taken over; NULL: memory was

@@ -183,8 +183,10 @@ static bool take_program(struct scenario_reader *reader, const struct config_nod
 {
     const struct config_node *motor_node = config_get(node, "motor"), *flag_node = config_get(node, "flag");
     int64_t motor = 1, flag = 0;
+    if (sim_device(reader->sim)->program == 0)
+        return config_error(node, "the device %s has no programs: expected message", sim_device(reader->sim)->name);
     if (!read_unit(reader, node, true, &step->unit) || !read_within(reader, node, step) ||
-        (motor_node != NULL && !config_integer(motor_node, "motor", 0, RKM04_MOTORS, &motor)) ||
+        (motor_node != NULL && !config_integer(motor_node, "motor", 0, sim_device(reader->sim)->axes, &motor)) ||
         (flag_node != NULL && !config_integer(flag_node, "flag", 0, 3, &flag)))
         return false;
     if (length > RKM04_MESSAGE_MAX - 2)
@@ -284,14 +286,15 @@ static bool read_pulses(struct scenario_reader *reader, const struct config_node
     const struct config_node *map = config_get(node, "pulses");
     struct scenario_pulses *pulses = &step->pulses;
     int64_t motor;
+    const unsigned axes = sim_device(reader->sim)->axes;
     if (config_type(map) != CONFIG_MAP)
         return config_error(map, "expected a map, as in {motor: 1, count: 5000}");
     const struct config_node *since = config_get(map, "since"), *motor_node = config_get(map, "motor");
     if (!config_keys(map, known) || !read_unit(reader, node, false, &step->unit))
         return false;
     if (motor_node == NULL)
-        return config_error(map, "expected motor, 1 to 4");
-    if (!config_integer(motor_node, "motor", 1, RKM04_MOTORS, &motor) || !read_bounds(map, "count", &pulses->count) ||
+        return config_error(map, "expected motor, 1 to %u", axes);
+    if (!config_integer(motor_node, "motor", 1, axes, &motor) || !read_bounds(map, "count", &pulses->count) ||
         !read_bounds(map, "forward", &pulses->forward) || !read_bounds(map, "back", &pulses->back))
         return false;
     if (pulses->count.count + pulses->forward.count + pulses->back.count == 0)

@@ -28,6 +28,7 @@ enum key {
     KEY_PORT = 'p',
     KEY_VERBOSE = 'v',
     KEY_FRAMING = 256,
+    KEY_DEVICE,
     KEY_FLASH,
     KEY_BAUD,
     KEY_CLOCK,
@@ -62,6 +63,7 @@ static const struct argp_option table[] = {
     {"node", KEY_NODE, "LIST", 0,
      "Addresses (DNode) of the units on the bus, 1 to 16, as in 3 or 1,2,5-8; default 1. The same address may be given twice",
      0},
+    {"device", KEY_DEVICE, "NAME", 0, "What the units are: one of those that `rkm04 devices' lists; default rkm04", 0},
     {"flash", KEY_FLASH, "FILE", 0,
      "Flash image of a unit; created if it does not exist. %n in it stands for the unit's address, %l for the number of the bus. "
      "Without it stored programs are lost when the emulator ends", 0},
@@ -331,17 +333,24 @@ static error_t read_unit_option(int key, char *text, struct argp_state *state)
     struct bus_options *options = state->input;
     switch (key) {
     case KEY_NODE:
-        if (!node_list_read(&options->nodes, text))
-            argp_error(state, "--node: `%s' is wrong: expected " NODE_LIST_EXPECTED, text);
+        options->nodes_text = text;
+        return 0;
+    case KEY_DEVICE:
+        options->device = device_kind_named(text);
+        if (!options->device)
+            argp_error(state, "--device: `%s' is unknown: expected one that `rkm04 devices' lists", text);
         return 0;
     case KEY_READINGS:
+        options->is_rkm04 = true;
         readings_option_read(&options->config.readings, &options->readings_named, text, state);
         return 0;
     case KEY_LATENCY:
+        options->is_rkm04 = true;
         readings_option_latency(&options->config.readings, &options->readings_named, text, state);
         return 0;
     case KEY_FRAMING:
         set_framing(options, text, state);
+        options->is_rkm04 = true;
         return 0;
     case KEY_FLASH:
         options->flash = read_pattern("flash", text, state);
@@ -353,6 +362,7 @@ static error_t read_unit_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_VERSION_TEXT:
         options->config.version_text = text;
+        options->is_rkm04 = true;
         if (strlen(text) > VERSION_TEXT_MAX)
             argp_error(state, "--version-text: %zu characters: expected at most %d", strlen(text), VERSION_TEXT_MAX);
         return 0;
@@ -441,6 +451,24 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
     }
 }
 
+/* The addresses, and what is an option of the RKM04 alone. */
+static void check_device(struct bus_options *options, const struct argp_state *state)
+{
+    const struct device_kind *device = options->device;
+    if (options->nodes_text && !node_list_read_up_to(&options->nodes, options->nodes_text, device->addresses)) {
+        if (device == device_kind_at(0))
+            argp_error(state, "--node: `%s' is wrong: expected " NODE_LIST_EXPECTED, options->nodes_text);
+        argp_error(state, "--node: `%s' is wrong: " NODE_LIST_FORMAT, options->nodes_text, device->addresses);
+    }
+    if (device == device_kind_at(0))
+        return;
+    if (options->is_rkm04)
+        argp_error(state, "--framing, --version-text and --readings are options of an rkm04: expected none with --device %s",
+                   device->name);
+    if ((options->coverage || options->min_coverage >= 0) && !device->has_coverage)
+        argp_error(state, "--coverage: not known for the device %s", device->name);
+}
+
 static error_t read_option(int key, char *text, struct argp_state *state)
 {
     struct bus_options *options = state->input;
@@ -467,6 +495,7 @@ static error_t read_option(int key, char *text, struct argp_state *state)
         argp_error(state, "`%s': expected options only", text);
         return 0;
     case ARGP_KEY_END:
+        check_device(options, state);
         check_together(options, state);
         return 0;
     default:
@@ -479,6 +508,7 @@ void serve_options_read(struct bus_options *options, int argc, char **argv)
     static const struct argp argp = {.options = table, .parser = read_option, .doc = doc};
     *options = (struct bus_options){
         .config = {.framing = &rkm04_hdlc, .version_text = RKM04_VERSION_TEXT},
+        .device = device_kind_at(0),
         .nodes = {.count = 1, .node = {1}},
         .lines = 1,
         .clock_text = "real",

@@ -58,6 +58,13 @@ static void tell_flash(struct bus *bus)
     }
 }
 
+static const char *framing_name(const struct bus_options *options)
+{
+    if (options->device == device_kind_at(0))
+        return options->config.framing->name;
+    return options->device->framing(&(struct device_config){.node = options->nodes.node[0]})->name;
+}
+
 void serve_report_start(const struct bus_options *options, struct bus *const *buses)
 {
     char readings[READINGS_TEXT_SIZE];
@@ -66,9 +73,9 @@ void serve_report_start(const struct bus_options *options, struct bus *const *bu
     if (readings_text(&options->config.readings, readings)[0] != '\0')
         log_at(0, "readings %s", readings);
     if (options->baud == 0 || options->clock.stands)
-        log_at(0, "framing %s, bytes take no time, clock %s", options->config.framing->name, options->clock_text);
+        log_at(0, "framing %s, bytes take no time, clock %s", framing_name(options), options->clock_text);
     else
-        log_at(0, "framing %s, bytes paced at 19200 baud, turnaround %" PRIu32 " us, clock %s", options->config.framing->name,
+        log_at(0, "framing %s, bytes paced at 19200 baud, turnaround %" PRIu32 " us, clock %s", framing_name(options),
                options->turnaround, options->clock_text);
     if (!options->flash)
         log_at(0, "no flash image: stored programs are lost when the emulator ends (--flash FILE keeps them)");
@@ -105,11 +112,14 @@ static json_t *ready_json(const struct bus_options *options, struct bus *const *
 {
     json_t *ready = ports_json(buses[0]), *lines = NULL;
     json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:o, s:s?, s:s?}", "node", (int)options->config.node, "nodes",
-                             nodes_json(&options->nodes), "framing", options->config.framing->name, "baud", (int)options->baud,
+                             nodes_json(&options->nodes), "framing", framing_name(options), "baud", (int)options->baud,
                              "turnaround", (int)options->turnaround, "clock", options->clock_text, "readings",
                              readings_json(&options->config.readings), "flash", options->flash, "control", control);
     bool well = ready && rest && json_object_update(ready, rest) == 0;
     json_decref(rest);
+    if (well && options->device != device_kind_at(0)) /* without it: rkm04 */
+        well = json_object_set_new(ready, "device", json_string(options->device->name)) == 0 &&
+               json_object_del(ready, "readings") == 0;
     if (well && options->lines > 1) {
         lines = json_array();
         for (unsigned i = 0; well && i < options->lines; i++)

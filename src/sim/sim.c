@@ -36,12 +36,20 @@ void sim_report_text(struct sim *sim, enum watch_phase phase, const struct watch
     watch_add(&sim->watch, phase, copy);
 }
 
+/* The us of the bus in which `tick` of a unit lies. */
+static uint64_t us_of(const struct sim_unit *unit, uint64_t tick)
+{
+    const struct segment *segment = &unit->sim->segment;
+    const unsigned per_us = segment_kind(segment)->ticks_per_us;
+    return segment_since(segment, unit->number) + (per_us == 1 ? tick : tick / per_us);
+}
+
 /* What a unit does at `tick` of its own time. */
 static void tell(const struct sim_unit *unit, uint64_t tick, enum watch_phase phase, enum watch_kind kind, unsigned motor,
                  int32_t value)
 {
     struct watch_event event = {
-        .tick = segment_since(&unit->sim->segment, unit->number) + tick,
+        .tick = us_of(unit, tick),
         .value = value,
         .kind = (uint8_t)kind,
         .unit = (uint8_t)unit->number,
@@ -60,20 +68,19 @@ static enum watch_phase phase_of(const struct sim_unit *unit)
 static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward)
 {
     struct sim_unit *unit = context;
-    const uint64_t since = segment_since(&unit->sim->segment, unit->number);
     for (size_t i = 0; i < count; i++) {
         uint32_t way = forward ? (uint32_t)i : 0u - (uint32_t)i;
         tell(unit, tick[i], WATCH_PULSES, WATCH_STEP, motor, (int32_t)((uint32_t)position + way));
         if (unit->plant)
-            plant_step(unit->plant, since + tick[i], motor, forward);
+            plant_step(unit->plant, us_of(unit, tick[i]), motor, forward);
     }
 }
 
 static void on_direction(void *context, uint64_t tick, unsigned motor, bool forward)
 {
     struct sim_unit *unit = context;
-    uint8_t bit = (uint8_t)(1u << (motor - 1u));
-    unit->forward = forward ? (uint8_t)(unit->forward | bit) : (uint8_t)(unit->forward & ~bit);
+    uint32_t bit = UINT32_C(1) << (motor - 1u);
+    unit->forward = forward ? unit->forward | bit : unit->forward & ~bit;
     tell(unit, tick, phase_of(unit), WATCH_DIRECTION, motor, forward);
 }
 
@@ -141,9 +148,9 @@ static void set_inputs(struct sim *sim, struct sim_unit *unit, uint64_t tick)
     uint8_t levels = inputs_of(sim, unit);
     if (levels == kind->inputs_of(core))
         return;
-    kind->set_inputs(core, levels);
     struct watch_event event = {.tick = tick, .value = levels, .kind = WATCH_INPUTS, .unit = (uint8_t)unit->number};
     watch_add(&sim->watch, WATCH_DELIVERED, event);
+    kind->set_inputs(core, levels); /* what comes of it follows */
 }
 
 void sim_update_inputs(struct sim *sim, unsigned number)

@@ -65,7 +65,7 @@ struct sim_unit {
     char name[NODE_NAME_SIZE];  /* its address, as in "3"; with a suffix if it is not the only one with it, "3-2" */
     struct device_port port;    /* `steps` is set while somebody wants pulses */
     uint8_t di;                 /* inputs set by hand: DI 01 in bit 0 */
-    uint8_t forward;            /* direction outputs: motor 1 in bit 0 */
+    uint32_t forward;           /* direction outputs: motor 1 in bit 0 */
     struct plant *plant;        /* NULL: none. Who changes it calls sim_update_inputs() */
     uint8_t *memory;            /* flash without a file, the device's flash_blocks, inverted; NULL: not used yet */
 };

@@ -36,7 +36,7 @@ test_the_manual_pages_know_every_option_and_no_other() {
     local pages
     pages=$(dirname "$0")/../../docs/man
     in_page() { sed 's/\\//g' "$pages/$1" | grep -o -E -e '--[a-z][a-z-]+' | grep -v -x -e --help -e --version | sort -u; }
-    same "$(for sub in serve exec test replay; do long_options "$RKM04" "$sub"; done | sort -u)" "$(in_page rkm04.1)" \
+    same "$(for sub in serve exec test replay devices; do long_options "$RKM04" "$sub"; done | sort -u)" "$(in_page rkm04.1)" \
         "options in rkm04.1"
     same "$(long_options "$RKMCTL")" "$(in_page rkmctl.1)" "options in rkmctl.1"
 }

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+/* rkm04 devices: the kinds of devices there are. */
+#include <argp.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "device/device.h"
+#include "options/options.h"
+#include "run.h"
+#include "text/text.h"
+
+enum { KEY_JSON = 256 };
+
+static error_t read_option(int key, char *text, struct argp_state *state)
+{
+    bool *is_json = state->input;
+    if (key == KEY_JSON)
+        *is_json = true;
+    else if (key == ARGP_KEY_ARG)
+        argp_error(state, "`%s': expected options only", text);
+    else
+        return ARGP_ERR_UNKNOWN;
+    return 0;
+}
+
+static int print_json(void)
+{
+    json_t *list = json_array();
+    const struct device_kind *kind;
+    for (unsigned at = 0; (kind = device_kind_at(at)); at++)
+        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:i, s:i, s:i, s:i}", "name", kind->name, "description",
+                                              kind->description, "axes", (int)kind->axes, "inputs", (int)kind->inputs, "outputs",
+                                              (int)kind->outputs, "variables", (int)kind->variables, "addresses",
+                                              (int)kind->addresses));
+    char *text = json_dumps(list, JSON_INDENT(2));
+    json_decref(list);
+    if (!text) {
+        fputs("rkm04 devices: memory is short\n", stderr);
+        return STATUS_FAILURE;
+    }
+    puts(text);
+    free(text);
+    return arguments_printed();
+}
+
+int devices_main(int argc, char **argv)
+{
+    static const struct argp_option table[] = {{"json", KEY_JSON, NULL, 0, "As a JSON array of objects", 0}, {0}};
+    static const struct argp argp = {
+        .options = table,
+        .parser = read_option,
+        .doc = "List the devices that `rkm04 serve --device' and scenarios know, a line each. The first one is the default.",
+    };
+    bool is_json = false;
+    const struct device_kind *kind;
+    arguments_parse(&argp, argc, argv, &is_json);
+    if (is_json)
+        return print_json();
+    for (unsigned at = 0; (kind = device_kind_at(at)); at++)
+        printf("%-8s %s\n", kind->name, kind->description);
+    return arguments_printed();
+}

@@ -1,0 +1,435 @@
+/* SPDX-License-Identifier: MIT */
+/* The fake device as a kind of device: all that the rooms around it know of it. */
+#include "fake_device.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "fake.h"
+
+/* A unit: what struct device_unit is for this kind. */
+struct fake_device {
+    struct fake_unit core;
+    const struct device_port *port; /* what the unit reports to */
+    void *context;                  /* of the port */
+};
+
+static struct fake_device *device_of(struct device_unit *unit)
+{
+    return (struct fake_device *)unit;
+}
+
+static const struct fake_unit *core_of(const struct device_unit *unit)
+{
+    return &((const struct fake_device *)unit)->core;
+}
+
+/* ---- What the core reports ------------------------------------------------------------------------------------------ */
+
+static void on_step(void *context, uint64_t tick, int32_t position, bool forward)
+{
+    const struct fake_device *device = context;
+    if (device->port->steps)
+        device->port->steps(device->context, 1, &tick, 1, position, forward);
+}
+
+static void on_direction(void *context, uint64_t tick, bool forward)
+{
+    const struct fake_device *device = context;
+    if (device->port->direction)
+        device->port->direction(device->context, tick, 1, forward);
+}
+
+static void report(const struct fake_device *device, uint64_t tick, enum device_event what, uint32_t value)
+{
+    if (device->port->event)
+        device->port->event(device->context, tick, 1, what, value);
+}
+
+static void on_motion(void *context, uint64_t tick, bool moving)
+{
+    report(context, tick, DEVICE_EVENT_MOTION, moving);
+    report(context, tick, DEVICE_EVENT_LED, moving ? DEVICE_LED_ON : DEVICE_LED_OFF);
+}
+
+static void on_position(void *context, uint64_t tick, int32_t position)
+{
+    report(context, tick, DEVICE_EVENT_POSITION, (uint32_t)position);
+}
+
+static void on_limit(void *context, uint64_t tick, bool hit)
+{
+    report(context, tick, DEVICE_EVENT_FAULT, hit);
+}
+
+static void on_output(void *context, uint64_t tick, bool on)
+{
+    const struct fake_device *device = context;
+    if (device->port->outputs)
+        device->port->outputs(device->context, tick, on);
+}
+
+static bool on_load(void *context, uint8_t data[4])
+{
+    const struct fake_device *device = context;
+    return device->port->flash_read && device->port->flash_read(device->context, 0, 0, data, 4) == 0;
+}
+
+static bool on_save(void *context, const uint8_t data[4])
+{
+    const struct fake_device *device = context;
+    const struct device_port *port = device->port;
+    return port->flash_erase && port->flash_program && port->flash_erase(device->context, 0) == 0 &&
+           port->flash_program(device->context, 0, 0, data, 4) == 0;
+}
+
+static const struct fake_calls calls = {
+    .step = on_step, .direction = on_direction, .motion = on_motion, .position = on_position,
+    .limit = on_limit, .output = on_output, .load = on_load, .save = on_save,
+};
+
+/* ---- Power, time, bytes --------------------------------------------------------------------------------------------- */
+
+static void begin(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context)
+{
+    struct fake_device *device = device_of(unit);
+    device->port = port;
+    device->context = context;
+    fake_begin(&device->core, config->node, &calls, device);
+}
+
+/* A copy reports to its own surroundings, not to those of the original. */
+static void attach(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context)
+{
+    struct fake_device *device = device_of(unit);
+    (void)config;
+    device->port = port;
+    device->context = context;
+    device->core.context = device;
+}
+
+static uint64_t now(const struct device_unit *unit)
+{
+    return core_of(unit)->now / FAKE_TICKS_PER_US;
+}
+
+static void advance(struct device_unit *unit, uint64_t us)
+{
+    fake_advance(&device_of(unit)->core, us * FAKE_TICKS_PER_US);
+}
+
+static uint64_t next_event(const struct device_unit *unit)
+{
+    uint64_t tick = core_of(unit)->due;
+    return tick == FAKE_NEVER ? DEVICE_NEVER : tick / FAKE_TICKS_PER_US;
+}
+
+static uint64_t next_report(const struct device_unit *unit)
+{
+    const struct fake_device *device = (const struct fake_device *)unit;
+    uint64_t tick = fake_end(&device->core);
+    if (device->port->steps)
+        return next_event(unit);
+    return tick == FAKE_NEVER ? DEVICE_NEVER : tick / FAKE_TICKS_PER_US;
+}
+
+static size_t receive(struct device_unit *unit, const uint8_t *bytes, size_t length)
+{
+    return fake_receive(&device_of(unit)->core, bytes, length);
+}
+
+static size_t send(struct device_unit *unit, uint8_t *bytes, size_t room)
+{
+    return fake_send(&device_of(unit)->core, bytes, room);
+}
+
+static bool has_answer(const struct device_unit *unit)
+{
+    return core_of(unit)->answer_length > 0;
+}
+
+static uint64_t answer_wait(const struct device_unit *unit)
+{
+    (void)unit;
+    return 0;
+}
+
+static struct device_counters counters_of(const struct device_unit *unit)
+{
+    const struct fake_unit *core = core_of(unit);
+    return (struct device_counters){
+        .requests = core->requests, .others = core->frames - core->requests, .answers = core->answers};
+}
+
+/* A text without address and CR. Returns the answer, NULL: it is too long. */
+static const char *obey(struct device_unit *unit, const void *bytes, size_t length)
+{
+    char text[FAKE_TEXT_MAX + 1];
+    if (length > FAKE_TEXT_MAX)
+        return NULL;
+    memcpy(text, bytes, length);
+    text[length] = '\0';
+    return fake_obey(&device_of(unit)->core, text);
+}
+
+static size_t exchange(struct device_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room)
+{
+    const char *text = obey(unit, message, length);
+    size_t answer_length = text ? strlen(text) : 0;
+    if (text)
+        memcpy(answer, text, answer_length < room ? answer_length : room);
+    return answer_length;
+}
+
+/* ---- Framing: how messages stand in bytes ------------------------------------------------------------------------------ */
+
+static bool receive_byte(struct rkm04_receiver *receiver, uint8_t byte, uint64_t us, uint8_t *buffer, size_t room)
+{
+    receiver->last = us;
+    if (receiver->phase == 0) { /* a message begins */
+        receiver->length = 0;
+        receiver->dnode = 0;
+    }
+    receiver->phase = byte != '\r';
+    if (byte >= 0x80) {
+        receiver->length = 0;
+        receiver->dnode = byte & 0x7f;
+    } else if (byte == '\r') {
+        return receiver->length > 0;
+    } else if (receiver->length < room) {
+        buffer[receiver->length++] = byte;
+    }
+    return false;
+}
+
+static size_t begin_frame(struct rkm04_sender *sender, uint8_t to, uint8_t from, size_t length, bool answer, uint8_t *out)
+{
+    (void)sender;
+    (void)from;
+    (void)length;
+    out[0] = 0x80 | to;
+    return answer ? 0 : 1;
+}
+
+static size_t put_byte(struct rkm04_sender *sender, uint8_t byte, uint8_t *out)
+{
+    (void)sender;
+    out[0] = byte;
+    return 1;
+}
+
+static size_t end_frame(struct rkm04_sender *sender, uint8_t *out)
+{
+    return put_byte(sender, '\r', out);
+}
+
+static const struct rkm04_framing fake_lines = {
+    .name = "lines", .receive = receive_byte, .begin = begin_frame, .put = put_byte, .end = end_frame};
+
+static const struct rkm04_framing *framing(const struct device_config *config)
+{
+    (void)config;
+    return &fake_lines;
+}
+
+static bool has_check_value(const struct device_config *config)
+{
+    (void)config;
+    return false;
+}
+
+/* ---- State ---------------------------------------------------------------------------------------------------------- */
+
+static void set_inputs(struct device_unit *unit, uint32_t mask)
+{
+    fake_set_inputs(&device_of(unit)->core, (uint8_t)mask);
+}
+
+static uint32_t inputs_of(const struct device_unit *unit)
+{
+    return core_of(unit)->inputs;
+}
+
+static uint32_t outputs_of(const struct device_unit *unit)
+{
+    return core_of(unit)->output;
+}
+
+static uint32_t variables_of(const struct device_unit *unit)
+{
+    (void)unit;
+    return 0;
+}
+
+static unsigned node(const struct device_unit *unit)
+{
+    return core_of(unit)->address;
+}
+
+static const char *state_name(unsigned state)
+{
+    static const char *const names[] = {"idle", "moving"};
+    return state < 2 ? names[state] : NULL;
+}
+
+static const char *fault_name(unsigned fault)
+{
+    static const char *const names[] = {"none", "limit"};
+    return fault < 2 ? names[fault] : NULL;
+}
+
+static const char *led_name(unsigned led)
+{
+    static const char *const names[] = {"off", "on"};
+    return led < 2 ? names[led] : NULL;
+}
+
+static void axis(const struct device_unit *unit, unsigned number, struct device_axis *state)
+{
+    const struct fake_unit *core = core_of(unit);
+    bool moving = core->due != FAKE_NEVER;
+    (void)number; /* there is one */
+    *state = (struct device_axis){
+        .position = core->position,
+        .steps = moving ? core->done : 0,
+        .speed = moving ? core->rate : 0,
+        .state = moving,
+        .fault = core->limit,
+        .led = moving ? DEVICE_LED_ON : DEVICE_LED_OFF,
+        .lit = moving,
+        .idle = !moving,
+        .running = moving,
+        .moving = moving,
+        .forward = core->forward,
+    };
+}
+
+static int set_text(struct device_unit *unit, unsigned number, const char *text, size_t length, char error[DEVICE_ERROR_SIZE])
+{
+    const char *answer = obey(unit, text, length);
+    (void)number;
+    if (answer && answer[0] != 'E')
+        return 0;
+    snprintf(error, DEVICE_ERROR_SIZE, "the unit answers %s", answer ? answer : "nothing: the text is too long");
+    return answer ? answer[1] - '0' : 1;
+}
+
+static bool check_text(const struct device_config *config, const char *name, const char *text, size_t length, FILE *out)
+{
+    (void)config;
+    (void)text;
+    if (length > FAKE_TEXT_MAX && out)
+        fprintf(out, "%s:1:%u: error: expected a request of at most %u bytes\n", name, FAKE_TEXT_MAX + 1, FAKE_TEXT_MAX);
+    return length > FAKE_TEXT_MAX;
+}
+
+static bool is_stuck(const struct device_unit *unit, unsigned number, char text[DEVICE_ERROR_SIZE])
+{
+    (void)number;
+    if (core_of(unit)->limit)
+        snprintf(text, DEVICE_ERROR_SIZE, "the limit switch has ended the motion");
+    return core_of(unit)->limit;
+}
+
+/* Every motion has an end. */
+static bool is_endless(const struct device_unit *unit, unsigned number, char text[DEVICE_ERROR_SIZE])
+{
+    (void)unit;
+    (void)number;
+    (void)text;
+    return false;
+}
+
+static json_t *state(const struct device_unit *unit, uint64_t t_us)
+{
+    const struct fake_unit *core = core_of(unit);
+    bool moving = core->due != FAKE_NEVER;
+    json_t *motor = json_pack("{s:i, s:i, s:s, s:i, s:s, s:s?}", "motor", 1, "position", (int)core->position, "state",
+                              state_name(moving), "index", 0, "led", led_name(moving), "fault",
+                              core->limit ? fault_name(1) : NULL);
+    return json_pack("{s:I, s:[o], s:i, s:i, s:i}", "t_us", (json_int_t)t_us, "motors", motor, "di", (int)core->inputs, "do",
+                     (int)core->output, "var", 0);
+}
+
+static json_t *describe(const struct device_unit *unit, uint64_t t_us)
+{
+    json_t *all = state(unit, t_us);
+    json_object_set_new(json_array_get(json_object_get(all, "motors"), 0), "true_position", json_null());
+    json_object_set_new(all, "node", json_integer(core_of(unit)->address));
+    json_object_set_new(all, "rate", json_integer(core_of(unit)->rate));
+    return all;
+}
+
+/* It has no settings of its own. */
+static const char *const settings[] = {NULL};
+
+static void put_settings(const struct device_config *config, json_t *object)
+{
+    (void)config;
+    (void)object;
+}
+
+static bool read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE])
+{
+    (void)config;
+    (void)value;
+    snprintf(error, DEVICE_ERROR_SIZE, "unknown setting \"%.64s\"", name);
+    return false;
+}
+
+static const char *unlike(const struct device_config *a, const struct device_config *b)
+{
+    (void)a;
+    (void)b;
+    return NULL;
+}
+
+const struct device_kind fake_device = {
+    .name = "fake",
+    .description = "one axis at constant speed, two inputs, one output (example)",
+    .size = sizeof(struct fake_device),
+    .axes = 1,
+    .inputs = 2,
+    .outputs = 1,
+    .addresses = FAKE_ADDRESSES,
+    .ticks_per_us = FAKE_TICKS_PER_US,
+    .slot = 1,
+    .pulse = FAKE_PULSE,
+    .flash_blocks = 1,
+    .flash_block_size = FAKE_FLASH_SIZE,
+    .request_max = FAKE_TEXT_MAX,
+    .answer_max = FAKE_TEXT_MAX,
+    .begin = begin,
+    .attach = attach,
+    .now = now,
+    .advance = advance,
+    .next_event = next_event,
+    .next_report = next_report,
+    .receive = receive,
+    .send = send,
+    .has_answer = has_answer,
+    .answer_wait = answer_wait,
+    .counters = counters_of,
+    .exchange = exchange,
+    .framing = framing,
+    .has_check_value = has_check_value,
+    .set_inputs = set_inputs,
+    .inputs_of = inputs_of,
+    .outputs_of = outputs_of,
+    .variables_of = variables_of,
+    .node = node,
+    .axis = axis,
+    .set_text = set_text,
+    .check_text = check_text,
+    .is_stuck = is_stuck,
+    .is_endless = is_endless,
+    .state_name = state_name,
+    .fault_name = fault_name,
+    .led_name = led_name,
+    .state = state,
+    .describe = describe,
+    .settings = settings,
+    .put_settings = put_settings,
+    .read_setting = read_setting,
+    .unlike = unlike,
+};

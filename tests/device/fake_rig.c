@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT */
+#include "fake_rig.h"
+
+#include <check.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command/command.h"
+#include "fake_device.h"
+#include "record/record.h"
+
+static void see(void *context, const struct watch_event *event)
+{
+    struct fake_rig *rig = context;
+    if (event->kind == WATCH_BYTE || event->kind == WATCH_MESSAGE)
+        return;
+    fprintf(rig->stream, "%" PRIu64 " unit %u motor %u %s %" PRId32 "\n", event->tick, event->unit, event->motor,
+            watch_kind_name((enum watch_kind)event->kind), event->value);
+}
+
+static void hear(void *context, const uint8_t *bytes, size_t length)
+{
+    struct fake_rig *rig = context;
+    for (size_t i = 0; i < length; i++)
+        fprintf(rig->stream, "%" PRIu64 " heard %02x\n", sim_now(&rig->sim), bytes[i]);
+}
+
+static void open_text(struct fake_rig *rig)
+{
+    rig->stream = open_memstream(&rig->text, &rig->length);
+    ck_assert_ptr_nonnull(rig->stream);
+}
+
+void fake_rig_begin(struct fake_rig *rig, const char *nodes, bool timed)
+{
+    struct sim_config config = {
+        .device = &fake_device,
+        .timed = timed,
+        .turnaround = timed ? SEGMENT_TURNAROUND : 0,
+        .seed = 1,
+        .out = hear,
+        .context = rig,
+    };
+    memset(rig, 0, sizeof *rig);
+    ck_assert(node_list_read_up_to(&config.nodes, nodes, fake_device.addresses));
+    open_text(rig);
+    ck_assert(sim_begin(&rig->sim, &config));
+    ck_assert(snapshots_attach(&rig->sim));
+    rig->watcher = (struct watcher){.kinds = WATCH_ALL, .see = see, .context = rig};
+    sim_watch(&rig->sim, &rig->watcher);
+}
+
+void fake_rig_end(struct fake_rig *rig)
+{
+    sim_end(&rig->sim);
+    fclose(rig->stream);
+    free(rig->text);
+}
+
+void fake_rig_ask(struct fake_rig *rig, unsigned address, const char *text)
+{
+    uint8_t bytes[64];
+    size_t length = strlen(text);
+    ck_assert_uint_lt(length, sizeof bytes - 2);
+    bytes[0] = (uint8_t)(0x80 + address);
+    memcpy(bytes + 1, text, length);
+    bytes[length + 1] = '\r';
+    sim_take(&rig->sim, bytes, length + 2, sim_now(&rig->sim));
+}
+
+const char *fake_rig_seen(struct fake_rig *rig)
+{
+    static char seen[65536];
+    fclose(rig->stream);
+    snprintf(seen, sizeof seen, "%s", rig->text);
+    free(rig->text);
+    open_text(rig);
+    return seen;
+}
+
+void fake_rig_expect_answer(struct fake_rig *rig, unsigned address, const char *text, const char *answer)
+{
+    char heard[64];
+    size_t length = 0;
+    fake_rig_seen(rig);
+    fake_rig_ask(rig, address, text);
+    sim_advance(&rig->sim, sim_now(&rig->sim) + 1);
+    const char *at = fake_rig_seen(rig);
+    unsigned byte;
+    for (; (at = strstr(at, " heard ")) != NULL && length < sizeof heard - 1 && sscanf(at, " heard %2x", &byte) == 1; at++)
+        if (byte != '\r')
+            heard[length++] = (char)byte;
+    heard[length] = '\0';
+    ck_assert_msg(strcmp(heard, answer) == 0, "%s: answer `%s', expected `%s'", text, heard, answer);
+}
+
+json_t *fake_rig_command(struct fake_rig *rig, const char *method, const char *params)
+{
+    struct refusal refusal;
+    json_t *json = json_loads(params, 0, NULL), *result = sim_command(&rig->sim, method, json, &refusal);
+    ck_assert_msg(result != NULL, "%s %s: %s", method, params, refusal.text);
+    json_decref(json);
+    return result;
+}
+
+void fake_rig_do(struct fake_rig *rig, const char *method, const char *params)
+{
+    json_decref(fake_rig_command(rig, method, params));
+}
+
+void fake_rig_expect_refusal(struct fake_rig *rig, const char *method, const char *params, const char *expected)
+{
+    struct refusal refusal;
+    json_t *json = json_loads(params, 0, NULL), *result = sim_command(&rig->sim, method, json, &refusal);
+    ck_assert_msg(result == NULL, "%s %s is obeyed", method, params);
+    ck_assert_msg(strstr(refusal.text, expected) != NULL, "%s %s: %s", method, params, refusal.text);
+    json_decref(json);
+}
+
+void fake_rig_expect_state(struct fake_rig *rig, const char *name, const char *value)
+{
+    char params[32], part[32];
+    snprintf(params, sizeof params, "{\"unit\": \"%s\"}", rig->sim.unit[0].name);
+    json_t *all = fake_rig_command(rig, "state", params), *at = all;
+    for (const char *rest = name; *rest; rest += strcspn(rest, "."), rest += *rest == '.') {
+        snprintf(part, sizeof part, "%.*s", (int)strcspn(rest, "."), rest);
+        at = json_is_array(at) ? json_array_get(at, (size_t)atoi(part)) : json_object_get(at, part);
+    }
+    char *text = json_dumps(at, JSON_ENCODE_ANY | JSON_COMPACT);
+    ck_assert_msg(text != NULL && strcmp(text, value) == 0, "%s is %s, expected %s", name, text ? text : "missing", value);
+    free(text);
+    json_decref(all);
+}

@@ -1,0 +1,135 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# A second kind of device, tests/device, in a build of rkm04 that has it: pty, control socket, recording, traces, scenarios.
+. "${0%/*}/lib.sh"
+: "${RKM04_FAKE:=}"
+[[ -n $RKM04_FAKE ]] || skip_all "RKM04_FAKE does not name a build with the fake device"
+PRODUCT=$RKM04
+RKM04=$RKM04_FAKE
+
+# emulator OPTIONS...: units 5 and 100 whose time is advanced through the control socket; the bus is file descriptor 9.
+emulator() {
+    serve bus --device fake --node 5,100 --clock stepped "$@"
+    exec 9<>"$folder/bus"
+    export RKM04_CONTROL=$folder/bus.control
+}
+
+# value EXPRESSION: of `state` of unit 5, as Python writes it.
+value() {
+    call state '{"unit": "5"}'
+    python3 -c "import json, sys; state = json.load(sys.stdin)['result']; print($1)" <<<"$said"
+}
+
+# call METHOD PARAMS: a request on the control socket; the answer is in $said.
+call() {
+    said=$(python3 - "$RKM04_CONTROL" "$1" "$2" <<'END'
+import json, socket, sys
+control = socket.socket(socket.AF_UNIX)
+control.connect(sys.argv[1])
+request = {"jsonrpc": "2.0", "id": 1, "method": sys.argv[2], "params": json.loads(sys.argv[3])}
+control.sendall((json.dumps(request) + "\n").encode())
+for line in control.makefile():
+    answer = json.loads(line)
+    print(line.strip())
+    if answer.get("id") == 1:
+        break
+END
+    )
+}
+
+test_devices_are_listed_with_a_line_each() {
+    exits 0 "$RKM04" devices
+    same "rkm04    unit for four stepper motors on RS485 (SofCon RKM04)
+fake     one axis at constant speed, two inputs, one output (example)" "$said" "rkm04 devices"
+    exits 0 "$RKM04" devices --json
+    same "['rkm04', 'fake'] 1 2 1 100" \
+        "$(python3 -c 'import json, sys; all = json.load(sys.stdin); fake = all[1]; print([d["name"] for d in all], fake["axes"],
+fake["inputs"], fake["outputs"], fake["addresses"])' <<<"$said")" "rkm04 devices --json"
+    exits 0 "$PRODUCT" devices
+    same "rkm04    unit for four stepper motors on RS485 (SofCon RKM04)" "$said" "rkm04 devices of the product"
+    exits 2 "$RKM04" devices x
+}
+
+test_an_unknown_device_and_options_of_another_one_are_refused() {
+    exits 2 "$PRODUCT" serve --device fake
+    holds "$complained" "--device: \`fake' is unknown: expected one that \`rkm04 devices' lists" "stderr"
+    exits 2 "$RKM04" serve --device fake --framing plain
+    holds "$complained" "expected none with --device fake" "stderr"
+    exits 2 "$RKM04" serve --device fake --node 101
+    holds "$complained" "expected addresses from 1 to 100" "stderr"
+    exits 2 "$RKM04" serve --device rkm04 --node 17
+    holds "$complained" "expected addresses from 1 to 16, as set with switch S1" "stderr"
+}
+
+test_units_answer_over_a_pty() {
+    emulator
+    holds "$(<"$folder/bus.out")" '"nodes":[5,100]' READY
+    holds "$(<"$folder/bus.out")" '"device":"fake"' READY
+    dialogue 9 "85 50 4f 53 3f 0d" "30 0d" "POS? of unit 5"
+    dialogue 9 "e4 4d 4f 56 45 20 33 0d" "4f 4b 0d" "MOVE 3 of unit 100"
+    exits 0 "$RKMCTL" advance 1s
+    dialogue 9 "e4 50 4f 53 3f 0d" "33 0d" "POS? of unit 100"
+    dialogue 9 "85 50 4f 53 3f 0d" "30 0d" "POS? of unit 5"
+}
+
+test_the_control_socket_sees_and_sets() {
+    emulator
+    call di.set '{"unit": "5", "di": {"02": 1}}'
+    holds "$said" '"di":2' "di.set"
+    call di.set '{"unit": "5", "di": {"03": 1}}'
+    holds "$said" "expected 1 to 2" "di.set of input 3"
+    dialogue 9 "85 4d 4f 56 45 20 33 0d" "4f 4b 0d" "MOVE 3"
+    call advance '{"until": {"unit": "5", "motor": 1, "position": 2}, "limit": "1s"}'
+    holds "$said" '"t_us":20001' "advance to the second step"
+    same "2 moving None" "$(value 'state["motors"][0]["position"], state["motors"][0]["state"], state["motors"][0]["fault"]' |
+        tr -d "(),'")" "state"
+    call subscribe '{"kinds": ["step"], "motor": 2}'
+    holds "$said" "expected a number from 1 to 1" "subscribe to motor 2"
+    call state '{"unit": 100}'
+    holds "$said" '"node":100' "state of unit 100"
+}
+
+test_a_session_with_plant_faults_and_traces_replays() {
+    printf 'units: {5: {switches: [{input: 1, motor: 1, at_least: 4}]}}\n' >"$folder/plant.yaml"
+    emulator --plant "$folder/plant.yaml" --record "$folder/a.record" --trace "$folder/a.csv" \
+        --trace "$folder/a.vcd" --trace "$folder/a.jsonl"
+    dialogue 9 "85 4d 4f 56 45 20 39 0d" "4f 4b 0d" "MOVE 9"
+    call fault.inject '{"kind": "no_answer", "count": 1}'
+    holds "$said" '"id":1,"t_us":0' "fault.inject"
+    exits 0 "$RKMCTL" advance 1s
+    same "4 limit" "$(value 'state["motors"][0]["position"], state["motors"][0]["fault"]' | tr -d "(),'")" "at the switch"
+    exits 0 "$RKMCTL" shutdown
+    status_of "$started"
+    same 0 "$status" "exit status"
+    holds "$(<"$folder/a.csv")" "$(printf '\n40000,5.m1,step,4\n40001,5.unit,di,1\n')" "the trace"
+    exits 0 "$RKM04" replay --trace "$folder/b.csv" "$folder/a.record"
+    cmp -s "$folder/a.csv" "$folder/b.csv" || fail "the trace of the replay is another"
+    exits 2 "$PRODUCT" replay "$folder/a.record"
+    holds "$complained" "expected \"device\"" "the product"
+}
+
+test_flash_image_outlives_the_emulator() {
+    emulator --flash "$folder/%n.flash"
+    dialogue 9 "85 52 41 54 45 20 37 0d" "4f 4b 0d" "RATE 7"
+    dialogue 9 "85 53 41 56 45 0d" "4f 4b 0d" "SAVE"
+    exits 0 "$RKMCTL" shutdown
+    status_of "$started"
+    exec 9>&-
+    emulator --flash "$folder/%n.flash"
+    same 7 "$(value 'state["rate"]')" "rate"
+}
+
+test_a_scenario_names_its_device() {
+    cat >"$folder/a.yaml" <<'END'
+device: fake
+steps:
+  - {message: '"MOVE 2"', answer: '"OK"'}
+  - wait: {idle: true}
+  - expect: {motor: 1, position: 2}
+END
+    exits 0 "$RKM04" test "$folder/a.yaml"
+    exits 2 "$PRODUCT" test "$folder/a.yaml"
+    holds "$complained" "expected a device, one that \`rkm04 devices' lists, found \"fake\"" "the product"
+}
+
+run_cases "$@"
