@@ -35,7 +35,7 @@ static int print_json(void)
     char *text = json_dumps(list, JSON_INDENT(2));
     json_decref(list);
     if (!text) {
-        fputs("rkm04 devices: memory is short\n", stderr);
+        fputs("rkm04 devices: out of memory\n", stderr);
         return STATUS_FAILURE;
     }
     puts(text);
