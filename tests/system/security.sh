@@ -98,7 +98,7 @@ test_the_client_does_not_believe_the_emulator_of_another_user() {
     start foreign "${other[@]}" "$RKM04" serve --link "$shared/rkm04-0/bus0" --control "$shared/rkm04-0/bus0.control"
     soon "the other user's emulator is ready" ready foreign
     exits 1 env -u XDG_RUNTIME_DIR -u RKM04_CONTROL TMPDIR="$shared" "$RKMCTL" state
-    holds "$complained" "not yours" "the message"
+    holds "$complained" "another user's emulator" "the message"
     exits 0 "$RKMCTL" -c "$shared/rkm04-0/bus0.control" state # whoever names it means it
 }
 
