@@ -310,7 +310,7 @@ static bool begin_sim(struct bus *bus)
         .adapter = unplug,
         .context = bus,
     };
-    if (!options->device || options->device == device_kind_at(0))
+    if (!options->device || options->device == &rkm04_device)
         rkm04_settings_put(&config.unit, &options->config);
     if (options->flash)
         config.flash = (struct sim_flash){.read = flash_read, .erase = flash_erase, .program = flash_program, .context = bus};

@@ -66,7 +66,7 @@ static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
         if (json_array_append_new(nodes, json_integer(config->nodes.node[at])) != 0)
             return json_decref(nodes), false;
     return put(head, "rkm04_record", json_integer(RECORD_VERSION)) && put(head, "program", json_string("rkm04 " RKM04_VERSION)) &&
-           (kind == device_kind_at(0) || put(head, "device", json_string(kind->name))) && put(head, "nodes", nodes) &&
+           (kind == &rkm04_device || put(head, "device", json_string(kind->name))) && put(head, "nodes", nodes) &&
            put_device(head, kind, &config->unit) &&
            put(head, "timed", json_boolean(config->timed)) && put(head, "turnaround", json_integer(config->turnaround)) &&
            put(head, "seed", json_string(seed)) && (!sim->plant_text || put_string(head, "plant", sim->plant_text)) &&

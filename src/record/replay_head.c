@@ -92,7 +92,7 @@ static bool read_nodes(struct replay *replay, struct node_list *nodes)
 /* Recordings that name no device are an RKM04's. */
 static bool read_device(struct replay *replay, struct sim_config *config)
 {
-    const char *name = json_object_get(replay->json, "device") ? replay_string(replay, "device") : device_kind_at(0)->name;
+    const char *name = json_object_get(replay->json, "device") ? replay_string(replay, "device") : rkm04_device.name;
     config->device = replay->device = name ? device_kind_named(name) : NULL;
     return replay->device || !name ||
            replay_wrong(replay, "device", "expected \"device\", one of those that rkm04 devices lists");

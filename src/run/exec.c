@@ -382,7 +382,7 @@ static int run_traced(struct exec_run *run, const struct options *options, const
 int exec_main(int argc, char **argv)
 {
     static struct exec_run run;
-    struct options options = {.until = RKM04_NEVER, .device = device_kind_at(0), .config.node = 1};
+    struct options options = {.until = RKM04_NEVER, .device = &rkm04_device, .config.node = 1};
     struct inputs inputs = {0};
     int status = STATUS_FAILURE;
 

@@ -32,7 +32,7 @@ static const char *text_of(const struct config_node *map, const char *key, bool 
 
 static void put_settings(struct scenario *scenario)
 {
-    if (scenario->config.device == device_kind_at(0))
+    if (scenario->config.device == &rkm04_device)
         rkm04_settings_put(&scenario->config.unit, &scenario->settings);
 }
 
@@ -73,11 +73,11 @@ static bool read_device(struct scenario *scenario, const struct config_node *roo
     static const char *const own[] = {"framing", "readings", "speed_change_latency", "version_text"};
     bool well = true;
     const char *name = text_of(root, "device", &well);
-    const struct device_kind *kind = name ? device_kind_named(name) : device_kind_at(0);
+    const struct device_kind *kind = name ? device_kind_named(name) : &rkm04_device;
     if (!kind)
         return config_error(config_get(root, "device"), "expected a device, one that `rkm04 devices' lists, found \"%.40s\"",
                             name);
-    for (size_t i = 0; kind != device_kind_at(0) && i < sizeof own / sizeof own[0]; i++)
+    for (size_t i = 0; kind != &rkm04_device && i < sizeof own / sizeof own[0]; i++)
         if (config_get(root, own[i]))
             well = config_error(config_get(root, own[i]), "the device %s has no %s", kind->name, own[i]);
     scenario->config.device = kind;
@@ -94,7 +94,7 @@ static bool read_line(struct scenario *scenario, const struct config_node *root)
     const char *units = text_of(root, "units", &well), *framing = text_of(root, "framing", &well);
     const char *baud = text_of(root, "baud", &well);
     if (!node_list_read_up_to(&config->nodes, units != NULL ? units : "1", config->device->addresses))
-        well = config->device == device_kind_at(0)
+        well = config->device == &rkm04_device
                    ? config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED)
                    : config_error(config_get(root, "units"), NODE_LIST_FORMAT, config->device->addresses);
     scenario->settings.framing = rkm04_framing_named(framing != NULL ? framing : "hdlc");

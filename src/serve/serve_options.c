@@ -456,11 +456,11 @@ static void check_device(struct bus_options *options, const struct argp_state *s
 {
     const struct device_kind *device = options->device;
     if (options->nodes_text && !node_list_read_up_to(&options->nodes, options->nodes_text, device->addresses)) {
-        if (device == device_kind_at(0))
+        if (device == &rkm04_device)
             argp_error(state, "--node: `%s' is wrong: expected " NODE_LIST_EXPECTED, options->nodes_text);
         argp_error(state, "--node: `%s' is wrong: " NODE_LIST_FORMAT, options->nodes_text, device->addresses);
     }
-    if (device == device_kind_at(0))
+    if (device == &rkm04_device)
         return;
     if (options->is_rkm04)
         argp_error(state, "--framing, --version-text and --readings are options of an rkm04: expected none with --device %s",
@@ -508,7 +508,7 @@ void serve_options_read(struct bus_options *options, int argc, char **argv)
     static const struct argp argp = {.options = table, .parser = read_option, .doc = doc};
     *options = (struct bus_options){
         .config = {.framing = &rkm04_hdlc, .version_text = RKM04_VERSION_TEXT},
-        .device = device_kind_at(0),
+        .device = &rkm04_device,
         .nodes = {.count = 1, .node = {1}},
         .lines = 1,
         .clock_text = "real",

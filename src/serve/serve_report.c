@@ -60,7 +60,7 @@ static void tell_flash(struct bus *bus)
 
 static const char *framing_name(const struct bus_options *options)
 {
-    if (options->device == device_kind_at(0))
+    if (options->device == &rkm04_device)
         return options->config.framing->name;
     return options->device->framing(&(struct device_config){.node = options->nodes.node[0]})->name;
 }
@@ -117,7 +117,7 @@ static json_t *ready_json(const struct bus_options *options, struct bus *const *
                              readings_json(&options->config.readings), "flash", options->flash, "control", control);
     bool well = ready && rest && json_object_update(ready, rest) == 0;
     json_decref(rest);
-    if (well && options->device != device_kind_at(0)) /* without it: rkm04 */
+    if (well && options->device != &rkm04_device) /* without it: rkm04 */
         well = json_object_set_new(ready, "device", json_string(options->device->name)) == 0 &&
                json_object_del(ready, "readings") == 0;
     if (well && options->lines > 1) {
