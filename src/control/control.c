@@ -10,12 +10,12 @@
 
 #define BACKLOG 128
 #define BUDGET 500000u   /* ns a turn of the loop for the lines of all clients; a unit waits no longer */
-#define LOOK_MS 200      /* how soon it is noticed that a client which had ended its sending has gone */
+#define CHECK_MS 200     /* how soon it is noticed that a client which had ended its sending has gone */
 #define ENDING_MS 1000   /* how long the answer to shutdown waits to be read */
 
 /* ---- Turns of the loop ---------------------------------------------------------------------------------------------- */
 
-static void end_now(struct control *control)
+static void call_shutdown(struct control *control)
 {
     control->ender = NULL;
     control->calls.shutdown(control->calls.context);
@@ -26,17 +26,17 @@ static void on_turn(uv_prepare_t *handle)
     struct control *control = handle->data;
     for (struct control_client *client = control->clients, *next; client; client = next) {
         next = client->next;
-        peer_pump(&client->peer);
+        connection_flush(&client->connection);
     }
-    if (control->ender && peer_queue(&control->ender->peer) == 0)
-        end_now(control);
+    if (control->ender && connection_unread(&control->ender->connection) == 0)
+        call_shutdown(control);
 }
 
 static void on_ending(uv_timer_t *handle)
 {
     struct control *control = handle->data;
     if (control->ender)
-        end_now(control);
+        call_shutdown(control);
 }
 
 void control_end(struct control_client *client)
@@ -56,8 +56,8 @@ static void on_work(uv_idle_t *handle)
     bool more = false;
     for (struct control_client *client = control->clients, *next; client; client = next) {
         next = client->next;
-        client->peer.blocked = false;
-        if (peer_serve(&client->peer, BUDGET / count))
+        client->connection.blocked = false;
+        if (connection_serve(&client->connection, BUDGET / count))
             more = true;
     }
     if (more || !control->working)
@@ -66,7 +66,7 @@ static void on_work(uv_idle_t *handle)
     uv_idle_stop(&control->work);
 }
 
-void control_work(struct control *control)
+void control_schedule_lines(struct control *control)
 {
     if (!control->open)
         return;
@@ -74,37 +74,37 @@ void control_work(struct control *control)
     uv_idle_start(&control->work, on_work);
 }
 
-static void on_look(uv_timer_t *handle)
+static void on_check(uv_timer_t *handle)
 {
     struct control *control = handle->data;
     bool more = false;
     for (struct control_client *client = control->clients, *next; client; client = next) {
         next = client->next;
-        if (client->peer.leaving && peer_gone(&client->peer))
-            peer_close(&client->peer);
+        if (client->connection.leaving && connection_is_gone(&client->connection))
+            connection_close(&client->connection);
         else
-            more = more || client->peer.leaving;
+            more = more || client->connection.leaving;
     }
     if (!more)
-        uv_timer_stop(&control->look);
+        uv_timer_stop(&control->check);
 }
 
-static void look_for_gone(struct control *control)
+static void start_checking(struct control *control)
 {
-    if (control->open && !uv_is_active((uv_handle_t *)&control->look))
-        uv_timer_start(&control->look, on_look, LOOK_MS, LOOK_MS);
+    if (control->open && !uv_is_active((uv_handle_t *)&control->check))
+        uv_timer_start(&control->check, on_check, CHECK_MS, CHECK_MS);
 }
 
 /* ---- Clients -------------------------------------------------------------------------------------------------------- */
 
-static void forget(struct control_client *client)
+static void remove_client(struct control_client *client)
 {
     struct control *control = client->control;
-    control_time_forget(client);
-    control_subscribe_forget(client);
-    control_restore_forget(client);
+    control_time_remove_client(client);
+    control_subscribe_remove_client(client);
+    control_restore_remove_client(client);
     if (control->ender == client && control->open)
-        end_now(control);
+        call_shutdown(control);
     for (struct control_client **at = &control->clients; *at; at = &(*at)->next) {
         if (*at == client) {
             *at = client->next;
@@ -116,82 +116,82 @@ static void forget(struct control_client *client)
     }
 }
 
-/* One too many is told so, and let go. */
-static void turn_away(struct control_client *client)
+/* Tell a client beyond the limit so, and close its connection. */
+static void refuse_client(struct control_client *client)
 {
     struct refusal refusal;
     refuse(&refusal, REFUSED_STATE, "too many clients: expected at most %u at a time", CONTROL_CLIENTS);
     control_refuse(client, json_null(), &refusal);
-    peer_pump(&client->peer);
-    peer_close(&client->peer);
+    connection_flush(&client->connection);
+    connection_close(&client->connection);
 }
 
-/* The peer is the first member of its client. */
-static struct control_client *client_of(const struct peer *peer)
+/* The connection is the first member of its client. */
+static struct control_client *client_of(const struct connection *connection)
 {
-    return (struct control_client *)peer;
+    return (struct control_client *)connection;
 }
 
-static bool on_line(struct peer *peer, const char *line, size_t length)
+static bool on_line(struct connection *connection, const char *line, size_t length)
 {
-    return control_obey(client_of(peer), line, length);
+    return control_handle_line(client_of(connection), line, length);
 }
 
-static void on_bad_line(struct peer *peer, int code, const char *text)
+static void on_bad_line(struct connection *connection, int code, const char *text)
 {
-    control_refuse_line(client_of(peer), code, text);
+    control_refuse_line(client_of(connection), code, text);
 }
 
-static bool is_held(const struct peer *peer)
+static bool is_held(const struct connection *connection)
 {
-    return client_of(peer)->advance || client_of(peer)->restores;
+    return client_of(connection)->advance || client_of(connection)->restores;
 }
 
-static bool is_expecting(const struct peer *peer)
+static bool is_expecting(const struct connection *connection)
 {
-    const struct control_client *client = client_of(peer);
+    const struct control_client *client = client_of(connection);
     return client->calls || client->restores || client->subscriptions;
 }
 
-static bool is_queued(const struct peer *peer)
+static bool is_queued(const struct connection *connection)
 {
-    return client_of(peer)->control->working;
+    return client_of(connection)->control->working;
 }
 
-static void on_more(struct peer *peer)
+static void on_lines_left(struct connection *connection)
 {
-    control_work(client_of(peer)->control);
+    control_schedule_lines(client_of(connection)->control);
 }
 
-static void on_leaving(struct peer *peer)
+static void on_leaving(struct connection *connection)
 {
-    look_for_gone(client_of(peer)->control);
+    start_checking(client_of(connection)->control);
 }
 
-static void on_pumped(struct peer *peer)
+static void on_flushed(struct connection *connection)
 {
-    control_time_go_on(client_of(peer));
+    control_time_continue(client_of(connection));
 }
 
-static void on_gone(struct peer *peer)
+static void on_gone(struct connection *connection)
 {
-    forget(client_of(peer));
+    remove_client(client_of(connection));
 }
 
-static void on_closed(struct peer *peer)
+static void on_closed(struct connection *connection)
 {
-    free(client_of(peer));
+    free(client_of(connection));
 }
 
-static const struct peer_calls peer_calls = {
-    .obey = on_line,
+static const struct connection_calls connection_calls = {
+    .handle_line = on_line,
     .refuse = on_bad_line,
     .is_held = is_held,
     .is_expecting = is_expecting,
     .is_queued = is_queued,
-    .more = on_more,
+    .more = on_lines_left,
     .leaving = on_leaving,
-    .pumped = on_pumped,
+    .flushed = on_flushed,
     .gone = on_gone,
     .closed = on_closed,
 };
@@ -203,7 +203,7 @@ static struct control_client *accept_client(struct control *control, uv_stream_t
     if (!client)
         return NULL;
     client->control = control;
-    return peer_accept(&client->peer, control->loop, listener, &peer_calls) ? client : NULL;
+    return connection_accept(&client->connection, control->loop, listener, &connection_calls) ? client : NULL;
 }
 
 static void on_connection(uv_stream_t *listener, int status)
@@ -213,14 +213,14 @@ static void on_connection(uv_stream_t *listener, int status)
     if (!client)
         return;
     if (control->client_count == CONTROL_CLIENTS) {
-        turn_away(client);
+        refuse_client(client);
         return;
     }
     client->next = control->clients;
     control->clients = client;
     control->client_count++;
     control->calls.presence(control->calls.context);
-    peer_start(&client->peer);
+    connection_start(&client->connection);
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
@@ -240,15 +240,15 @@ static void make_handles(struct control *control)
     uv_prepare_init(control->loop, &control->turn);
     uv_idle_init(control->loop, &control->work);
     uv_idle_init(control->loop, &control->restoring);
-    uv_timer_init(control->loop, &control->look);
+    uv_timer_init(control->loop, &control->check);
     uv_timer_init(control->loop, &control->ending);
-    control->turn.data = control->work.data = control->restoring.data = control->look.data = control->ending.data = control;
+    control->turn.data = control->work.data = control->restoring.data = control->check.data = control->ending.data = control;
     control->open = true;
     uv_prepare_start(&control->turn, on_turn);
     uv_unref((uv_handle_t *)&control->turn);
 }
 
-static void on_abandoned(uv_handle_t *listener)
+static void on_listener_closed(uv_handle_t *listener)
 {
     free(listener->data);
 }
@@ -273,7 +273,7 @@ struct control *control_open(uv_loop_t *loop, const char *path, struct bus *cons
     control->listener.data = control;
     if (!listen_at(control, control->socket.fd)) {
         control_socket_release(&control->socket);
-        uv_close((uv_handle_t *)&control->listener, on_abandoned);
+        uv_close((uv_handle_t *)&control->listener, on_listener_closed);
         return NULL;
     }
     make_handles(control);
@@ -297,13 +297,13 @@ void control_close(struct control *control)
     control->open = false;
     control_socket_release(&control->socket);
     while (control->clients)
-        peer_close(&control->clients->peer);
+        connection_close(&control->clients->connection);
     control_trace_end(control);
     uv_close((uv_handle_t *)&control->listener, NULL);
     uv_close((uv_handle_t *)&control->turn, NULL);
     uv_close((uv_handle_t *)&control->work, NULL);
     uv_close((uv_handle_t *)&control->restoring, NULL);
-    uv_close((uv_handle_t *)&control->look, NULL);
+    uv_close((uv_handle_t *)&control->check, NULL);
     uv_close((uv_handle_t *)&control->ending, NULL);
 }
 

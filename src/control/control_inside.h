@@ -5,7 +5,7 @@
 
 #include "condition/condition.h"
 #include "control.h"
-#include "control_peer.h"
+#include "control_connection.h"
 #include "control_rpc.h"
 #include "control_socket.h"
 
@@ -39,7 +39,7 @@ struct control_restore {
 
 /* A client with what it waits for. */
 struct control_client {
-    struct peer peer; /* first: client_of() */
+    struct connection connection; /* first: client_of() */
     struct control *control;
     struct control_client *next;
     struct control_call *calls;   /* that it waits for (control_time.c, as the next two) */
@@ -58,35 +58,35 @@ struct control {
     struct control_socket socket;
 
     uv_pipe_t listener;
-    uv_prepare_t turn;  /* once a turn of the loop: what has been gathered for clients goes out */
-    uv_idle_t work;     /* runs while there are lines to be obeyed */
+    uv_prepare_t turn;   /* once a turn of the loop: sends what has been gathered for the clients */
+    uv_idle_t work;      /* runs while there are lines to be handled */
     uv_idle_t restoring; /* runs while there is a `restore` */
     struct control_restore restore;
-    uv_timer_t look;    /* runs while somebody has ended its sending: has it gone? */
+    uv_timer_t check;   /* runs while a client has closed its sending side: checks whether it is gone */
     uv_timer_t ending;  /* shutdown: the longest time for the answer to be read */
     bool open, working;
 
     struct control_client *clients;
     unsigned client_count;
-    struct control_client *ender; /* who asked for shutdown; NULL: nobody */
+    struct control_client *ender; /* who asked for shutdown; NULL: none */
     struct control_trace traces[CONTROL_TRACES];
     unsigned last_trace;
 };
 
-/* Obey a line of a client, or refuse it. Returns false if it cannot be obeyed yet: to be offered again when control_work() has
- * been called. */
-bool control_obey(struct control_client *client, const char *line, size_t length);
+/* Execute a client's line, or refuse it. Returns false if that is not possible yet: the line is passed again after
+ * control_schedule_lines() has been called. */
+bool control_handle_line(struct control_client *client, const char *line, size_t length);
 
-/* The emulator is to end when this client has read its answer. */
+/* End the emulator as soon as this client has read its answer. */
 void control_end(struct control_client *client);
 
 /* A line was too long, or has no newline. */
 void control_refuse_line(struct control_client *client, int code, const char *text);
 
-/* There may be lines to be obeyed. */
-void control_work(struct control *control);
+/* Schedule the handling of lines in the next turn of the loop. */
+void control_schedule_lines(struct control *control);
 
-/* Answer a request; `id` NULL: it wants none. Take the reference to `result`. */
+/* Answer a request; `id` NULL: the request wants no answer. Take the reference to `result`. */
 void control_answer(struct control_client *client, const json_t *id, json_t *result);
 void control_refuse(struct control_client *client, const json_t *id, const struct refusal *refusal);
 
@@ -96,7 +96,7 @@ struct control_context {
     struct bus *bus;
     const struct rpc_request *request;
     bool later; /* it has been answered by control_answer(), or is when it comes true */
-    bool again; /* it cannot be done yet: control_obey() returns false */
+    bool again; /* it cannot be done yet: control_handle_line() returns false */
 };
 typedef json_t *control_method(struct control_context *context, struct refusal *refusal);
 
@@ -108,13 +108,13 @@ control_method control_restore;                           /* control_restore.c: 
 /* Is a client moving this clock, perhaps between two slices? */
 bool control_time_is_moved(const struct control *control, const struct bus *bus);
 
-/* The client has read: an `advance` that waited for that goes on. */
-void control_time_go_on(struct control_client *client);
+/* The client has read: continue an `advance` that waited for that. */
+void control_time_continue(struct control_client *client);
 
-/* A client goes. */
-void control_time_forget(struct control_client *client);
-void control_subscribe_forget(struct control_client *client);
-void control_restore_forget(struct control_client *client);
+/* A client is being closed: drop what belongs to it. */
+void control_time_remove_client(struct control_client *client);
+void control_subscribe_remove_client(struct control_client *client);
+void control_restore_remove_client(struct control_client *client);
 
 /* The socket is closed: end all files. */
 void control_trace_end(struct control *control);

@@ -10,19 +10,19 @@
 
 /* ---- Answers -------------------------------------------------------------------------------------------------------- */
 
-static void say(struct control_client *client, char *text)
+static void send_text(struct control_client *client, char *text)
 {
     if (text)
-        peer_say(&client->peer, text, strlen(text));
+        connection_send(&client->connection, text, strlen(text));
     else
-        client->peer.failed = true; /* it waits for an answer that cannot be given */
+        client->connection.failed = true; /* it waits for an answer that cannot be given */
     free(text);
 }
 
 void control_answer(struct control_client *client, const json_t *id, json_t *result)
 {
     if (id)
-        say(client, rpc_result(id, result));
+        send_text(client, rpc_result(id, result));
     else
         json_decref(result);
 }
@@ -30,7 +30,7 @@ void control_answer(struct control_client *client, const json_t *id, json_t *res
 void control_refuse(struct control_client *client, const json_t *id, const struct refusal *refusal)
 {
     if (id)
-        say(client, rpc_error(id, refusal));
+        send_text(client, rpc_error(id, refusal));
 }
 
 void control_refuse_line(struct control_client *client, int code, const char *text)
@@ -42,7 +42,7 @@ void control_refuse_line(struct control_client *client, int code, const char *te
 
 /* ---- Methods -------------------------------------------------------------------------------------------------------- */
 
-static json_t *units(struct control_context *context, struct refusal *refusal)
+static json_t *units_result(struct control_context *context, struct refusal *refusal)
 {
     static const char *const none[] = {NULL};
     if (!params_known(context->request->params, none, refusal))
@@ -102,7 +102,7 @@ static const struct {
     const char *name;
     control_method *function;
 } methods[] = {
-    {"units", units},
+    {"units", units_result},
     {"clock", set_clock},
     {"shutdown", shut_down},
     {"wait", control_wait},
@@ -149,7 +149,7 @@ static void explain_denied(const struct control *control, struct refusal *refusa
              "; to use files in other folders, start the emulator with --allow-folder");
 }
 
-bool control_obey(struct control_client *client, const char *line, size_t length)
+bool control_handle_line(struct control_client *client, const char *line, size_t length)
 {
     struct control *control = client->control;
     struct rpc_request request;

@@ -14,19 +14,19 @@ static bool is_slice_over(void *context)
 }
 
 /* It is over. Returns what has to be known for the answer. */
-static struct control_restore take_off(struct control *control)
+static struct control_restore detach_restore(struct control *control)
 {
     struct control_restore over = control->restore;
     uv_idle_stop(&control->restoring);
     over.client->restores = false;
     control->restore = (struct control_restore){0};
-    control_work(control); /* those who want one, too, and what stands behind this one */
+    control_schedule_lines(control); /* those who want one, too, and what stands behind this one */
     return over;
 }
 
 static void finish(struct control *control)
 {
-    struct control_restore over = take_off(control);
+    struct control_restore over = detach_restore(control);
     struct refusal refusal;
     bus_sim(over.bus); /* brings it up to the present */
     json_t *result = restore_end(over.restore, &refusal);
@@ -73,11 +73,11 @@ json_t *control_restore(struct control_context *context, struct refusal *refusal
     return NULL;
 }
 
-void control_restore_forget(struct control_client *client)
+void control_restore_remove_client(struct control_client *client)
 {
     if (!client->restores)
         return;
-    struct control_restore over = take_off(client->control);
+    struct control_restore over = detach_restore(client->control);
     restore_cancel(over.restore);
     json_decref(over.id);
 }

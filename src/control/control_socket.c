@@ -59,7 +59,7 @@ static bool clear_stale(const struct control_socket *control, const struct socka
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
-static bool claim(struct control_socket *control, const struct sockaddr_un *address)
+static bool claim_socket(struct control_socket *control, const struct sockaddr_un *address)
 {
     char record[LOCK_RECORD_MAX];
     control->lock = lock_file_take(control->lock_path, record);
@@ -98,9 +98,9 @@ static bool bind_private(struct control_socket *control, const struct sockaddr_u
     return bound && write_record(control);
 }
 
-static bool make(struct control_socket *control, const struct sockaddr_un *address)
+static bool make_socket(struct control_socket *control, const struct sockaddr_un *address)
 {
-    if (!claim(control, address))
+    if (!claim_socket(control, address))
         return false;
     if (bind_private(control, address))
         return true;
@@ -121,7 +121,7 @@ bool control_socket_open(struct control_socket *control, const char *path)
                 snprintf(control->path, sizeof control->path, "%s", path) < (int)sizeof control->path &&
                 snprintf(control->lock_path, sizeof control->lock_path, "%s.lock", path) < (int)sizeof control->lock_path;
     if (well)
-        well = make(control, &address);
+        well = make_socket(control, &address);
     else
         log_error("--control: cannot use %.100s: expected the path of a socket, its name (after the last /) at most %u "
                   "characters long, in an existing folder", path[0] ? path : "an empty path", SOCKET_NAME_SURE);

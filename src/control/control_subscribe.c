@@ -23,20 +23,20 @@ struct subscription {
     struct subscription *next; /* of the same client */
 };
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct subscription *subscription = context;
     if ((event->motor && !(subscription->motors >> event->motor & 1u)) ||
         (event->unit && !(subscription->units >> event->unit & 1u)))
         return;
     size_t room = subscription->head_length + event_json_room(event) + sizeof TAIL;
-    char *at = peer_tell(&subscription->client->peer, room, event->tick);
+    char *at = connection_begin_event(&subscription->client->connection, room, event->tick);
     if (!at)
         return;
     memcpy(at, subscription->head, subscription->head_length);
     at = event_json(at + subscription->head_length, &subscription->bus->sim, event);
     memcpy(at, TAIL, sizeof TAIL - 1);
-    peer_told(&subscription->client->peer, at + sizeof TAIL - 1);
+    connection_end_event(&subscription->client->connection, at + sizeof TAIL - 1);
 }
 
 /* ---- What is chosen ------------------------------------------------------------------------------------------------- */
@@ -89,7 +89,7 @@ static bool add_unit(struct sim *sim, const json_t *unit, uint32_t *chosen, stru
 }
 
 /* One or a list of them; left out: all. */
-static bool read_some(struct sim *sim, const json_t *given,
+static bool read_one_or_list(struct sim *sim, const json_t *given,
                       bool (*add)(struct sim *sim, const json_t *one, uint32_t *chosen, struct refusal *refusal),
                       uint32_t *chosen, struct refusal *refusal)
 {
@@ -119,8 +119,8 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     unsigned count = 0;
     new.watcher.kinds = WATCH_ALL;
     if (!params_known(params, names, refusal) || !read_kinds(json_object_get(params, "kinds"), &new.watcher.kinds, refusal) ||
-        !read_some(sim, json_object_get(params, "motor"), add_motor, &new.motors, refusal) ||
-        !read_some(sim, json_object_get(params, "unit"), add_unit, &new.units, refusal))
+        !read_one_or_list(sim, json_object_get(params, "motor"), add_motor, &new.motors, refusal) ||
+        !read_one_or_list(sim, json_object_get(params, "unit"), add_unit, &new.units, refusal))
         return NULL;
     for (const struct subscription *other = client->subscriptions; other; other = other->next)
         count++;
@@ -134,7 +134,7 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     new.head_length = (size_t)snprintf(new.head, sizeof new.head, HEAD, new.number);
     new.next = client->subscriptions;
     *subscription = new;
-    subscription->watcher.see = see;
+    subscription->watcher.see = on_event;
     subscription->watcher.context = subscription;
     client->subscriptions = subscription;
     sim_watch(sim, &subscription->watcher);
@@ -146,7 +146,7 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     return NULL;
 }
 
-static void end(struct subscription **at)
+static void end_subscription(struct subscription **at)
 {
     struct subscription *subscription = *at;
     *at = subscription->next;
@@ -165,15 +165,15 @@ json_t *control_unsubscribe(struct control_context *context, struct refusal *ref
     for (struct subscription **at = &context->client->subscriptions; *at; at = &(*at)->next) {
         if ((*at)->number == number) {
             struct sim *sim = &(*at)->bus->sim;
-            end(at);
+            end_subscription(at);
             return json_pack("{s:I}", "t_us", (json_int_t)sim_now(sim));
         }
     }
     return refuse(refusal, REFUSED_PARAMS, "subscription: this connection has no subscription %lld", (long long)number);
 }
 
-void control_subscribe_forget(struct control_client *client)
+void control_subscribe_remove_client(struct control_client *client)
 {
     while (client->subscriptions)
-        end(&client->subscriptions);
+        end_subscription(&client->subscriptions);
 }

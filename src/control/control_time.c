@@ -25,7 +25,7 @@ struct control_call {
 
 /* ---- The end of a call ---------------------------------------------------------------------------------------------- */
 
-static void take_off(struct control_call *call)
+static void remove_call(struct control_call *call)
 {
     struct control_client *client = call->client;
     for (struct control_call **at = &client->calls; *at; at = &(*at)->next) {
@@ -38,7 +38,7 @@ static void take_off(struct control_call *call)
         client->advance = NULL;
     else
         client->waits--;
-    control_work(client->control); /* those who wanted to move the same clock, and what stands behind this call */
+    control_schedule_lines(client->control); /* those who wanted to move the same clock, and what stands behind this call */
 }
 
 static void free_call(struct control_call *call)
@@ -48,7 +48,7 @@ static void free_call(struct control_call *call)
     free(call);
 }
 
-static json_t *outcome(const struct control_call *call, bool holds)
+static json_t *call_result(const struct control_call *call, bool holds)
 {
     json_t *result = json_pack("{s:I}", "t_us", (json_int_t)sim_now(&call->bus->sim));
     struct condition *condition = call->waiter.condition;
@@ -63,20 +63,20 @@ static json_t *outcome(const struct control_call *call, bool holds)
     return result;
 }
 
-static void finish(struct control_call *call, bool holds)
+static void finish_call(struct control_call *call, bool holds)
 {
-    take_off(call);
-    control_answer(call->client, call->id, outcome(call, holds));
+    remove_call(call);
+    control_answer(call->client, call->id, call_result(call, holds));
     free_call(call);
 }
 
-void control_time_forget(struct control_client *client)
+void control_time_remove_client(struct control_client *client)
 {
     while (client->calls) {
         struct control_call *call = client->calls;
         if (!call->pausing)
             bus_cancel_wait(call->bus, &call->waiter);
-        take_off(call);
+        remove_call(call);
         free_call(call);
     }
 }
@@ -94,7 +94,7 @@ static uint64_t slice_end(const struct sim *sim)
 }
 
 /* Let time run: to the limit, or to the end of a slice. Returns false if the clock no longer stands. */
-static bool move_on(struct control_call *call)
+static bool continue_call(struct control_call *call)
 {
     uint64_t end = call->client->subscriptions ? slice_end(&call->bus->sim) : RKM04_NEVER;
     call->waiter.limit = end < call->limit ? end : call->limit;
@@ -106,22 +106,22 @@ static void on_done(struct bus_waiter *waiter, bool holds)
 {
     struct control_call *call = waiter->context;
     if (holds || sim_now(&call->bus->sim) >= call->limit) {
-        finish(call, holds);
+        finish_call(call, holds);
         return;
     }
     call->pausing = true;
-    if (peer_queue(&call->client->peer) <= PEER_QUEUE_SMALL && !move_on(call))
-        finish(call, false);
+    if (connection_unread(&call->client->connection) <= CONNECTION_QUEUE_SMALL && !continue_call(call))
+        finish_call(call, false);
 }
 
-void control_time_go_on(struct control_client *client)
+void control_time_continue(struct control_client *client)
 {
     struct control_call *call = client->advance;
-    if (!call || !call->pausing || peer_queue(&client->peer) > PEER_QUEUE_SMALL)
+    if (!call || !call->pausing || connection_unread(&client->connection) > CONNECTION_QUEUE_SMALL)
         return;
-    control_work(client->control); /* what this leads to is sent in the next turn */
-    if (!move_on(call))
-        finish(call, false);
+    control_schedule_lines(client->control); /* what this leads to is sent in the next turn */
+    if (!continue_call(call))
+        finish_call(call, false);
 }
 
 /* ---- The methods ---------------------------------------------------------------------------------------------------- */
@@ -231,7 +231,7 @@ json_t *control_advance(struct control_context *context, struct refusal *refusal
         return NULL;
     }
     context->later = true;
-    if (!move_on(call))
-        finish(call, false);
+    if (!continue_call(call))
+        finish_call(call, false);
     return NULL;
 }

@@ -8,7 +8,7 @@
 #include "trace/trace.h"
 
 /* End a file. Returns 0 or the errno of the first failure. */
-static int end(struct control_trace *trace)
+static int end_trace(struct control_trace *trace)
 {
     int error = trace->trace ? trace_file_end(trace->trace) : wire_file_end(trace->wire);
     free(trace->path);
@@ -24,7 +24,7 @@ void control_trace_end(struct control *control)
             continue;
         bus_sim(control->buses[trace->line]);
         char *path = strdup(trace->path);
-        int error = end(trace);
+        int error = end_trace(trace);
         if (error != 0)
             log_error("cannot write %s: %s", path ? path : "a trace", strerror(error));
         free(path);
@@ -33,7 +33,7 @@ void control_trace_end(struct control *control)
 
 /* ---- Begin ---------------------------------------------------------------------------------------------------------- */
 
-static struct control_trace *free_place(struct control *control)
+static struct control_trace *find_free_trace(struct control *control)
 {
     for (unsigned i = 0; i < CONTROL_TRACES; i++)
         if (control->traces[i].number == 0)
@@ -41,7 +41,7 @@ static struct control_trace *free_place(struct control *control)
     return NULL;
 }
 
-static bool begin(struct control_trace *trace, struct sim *sim, const char *path, unsigned flags,
+static bool begin_trace(struct control_trace *trace, struct sim *sim, const char *path, unsigned flags,
                   struct refusal *refusal)
 {
     char *error = NULL;
@@ -68,12 +68,12 @@ json_t *control_trace_start(struct control_context *context, struct refusal *ref
         return NULL;
     if (!trace_file_named(path) && !wire_file_named(path))
         return refuse(refusal, REFUSED_PARAMS, "file: expected %s, or %s", TRACE_FILE_EXPECTED, WIRE_FILE_EXPECTED);
-    struct control_trace *trace = free_place(control);
+    struct control_trace *trace = find_free_trace(control);
     if (!trace)
         return refuse(refusal, REFUSED_STATE, "too many traces: expected at most %u at a time", CONTROL_TRACES);
     char *copy = strdup(path);
     struct sim *sim = bus_sim(context->bus);
-    if (!copy || !begin(trace, sim, path, OUTPUT_REQUESTED | (force ? OUTPUT_FORCE : 0u), refusal)) {
+    if (!copy || !begin_trace(trace, sim, path, OUTPUT_REQUESTED | (force ? OUTPUT_FORCE : 0u), refusal)) {
         free(copy);
         return NULL;
     }
@@ -87,7 +87,7 @@ json_t *control_trace_start(struct control_context *context, struct refusal *ref
 /* ---- End ------------------------------------------------------------------------------------------------------------ */
 
 /* The trace that is meant: by its number, or the only one. */
-static struct control_trace *find(struct control *control, const json_t *params, struct refusal *refusal)
+static struct control_trace *find_trace(struct control *control, const json_t *params, struct refusal *refusal)
 {
     int64_t number;
     struct control_trace *found = NULL;
@@ -113,12 +113,12 @@ json_t *control_trace_stop(struct control_context *context, struct refusal *refu
     static const char *const names[] = {"trace", NULL};
     struct control *control = context->client->control;
     const json_t *params = context->request->params;
-    struct control_trace *trace = params_known(params, names, refusal) ? find(control, params, refusal) : NULL;
+    struct control_trace *trace = params_known(params, names, refusal) ? find_trace(control, params, refusal) : NULL;
     if (!trace)
         return NULL;
     struct sim *sim = bus_sim(control->buses[trace->line]);
     json_t *result = json_pack("{s:I, s:s}", "t_us", (json_int_t)sim_now(sim), "file", trace->path);
-    int error = end(trace);
+    int error = end_trace(trace);
     if (error == 0)
         return result;
     refuse(refusal, REFUSED_STATE, "cannot write %.200s: %s", json_string_value(json_object_get(result, "file")),

@@ -8,7 +8,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "control/control_peer.h"
+#include "control/control_connection.h"
 #include "control/control_rpc.h"
 #include "fuzz.h"
 #include "sim/watch.h"
@@ -90,7 +90,7 @@ static void sent(struct client *client, const char *text, size_t length)
     for (char *end; (end = memchr(client->part + at, '\n', client->part_length - at)) != NULL;) {
         size_t count = (size_t)(end - (client->part + at));
         *end = '\0';
-        if (!client->skipping && count > PEER_LINE_MAX)
+        if (!client->skipping && count > CONNECTION_LINE_MAX)
             expect_error(client);
         else if (!client->skipping)
             sent_line(client, client->part + at, count);
@@ -99,7 +99,7 @@ static void sent(struct client *client, const char *text, size_t length)
     }
     memmove(client->part, client->part + at, client->part_length - at);
     client->part_length -= at;
-    if (client->part_length > PEER_LINE_MAX && !client->skipping) {
+    if (client->part_length > CONNECTION_LINE_MAX && !client->skipping) {
         expect_error(client);
         client->skipping = true;
     }
