@@ -11,22 +11,16 @@
 
 #include "options/options.h"
 #include "text/text.h"
-#include "exec_program.h"
+#include "exec_inputs.h"
 #include "exec_report.h"
 #include "exec_run.h"
 #include "file/file.h"
-#include "stimulus.h"
 #include "run.h"
 #include "trace/trace.h"
 
 struct options {
-    struct argument {
-        char motor;
-        const char *path;
-    } *argument; /* in the order of the command line */
-    size_t arguments;
-    bool stdin_taken;
-    const char *stimulus, *trace, *until_text;
+    struct exec_inputs inputs;
+    const char *trace, *until_text;
     uint64_t until;
     bool json;
     unsigned output_flags; /* of output_file.h */
@@ -80,15 +74,6 @@ static const char doc[] =
 
 /* ---- Command line ------------------------------------------------------------------------------------------------- */
 
-static void take_path(struct argp_state *state, struct options *options, const char *path)
-{
-    if (strcmp(path, "-") != 0)
-        return;
-    if (options->stdin_taken)
-        argp_error(state, "standard input (-) can be read only once");
-    options->stdin_taken = true;
-}
-
 static void take_until(struct argp_state *state, struct options *options, const char *text)
 {
     size_t wrong;
@@ -96,14 +81,6 @@ static void take_until(struct argp_state *state, struct options *options, const 
     if (form != NULL)
         argp_error(state, "--until: expected %s, found '%s'", form, text);
     options->until_text = text;
-}
-
-static void take_argument(struct argp_state *state, struct options *options, const char *text)
-{
-    struct argument *argument = &options->argument[options->arguments++];
-    if (!exec_program_argument(text, &argument->motor, &argument->path))
-        argp_error(state, "%s: expected a motor 1 to 4, or 0 for all, before '='", text);
-    take_path(state, options, argument->path);
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state)
@@ -114,8 +91,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         take_until(state, options, text);
         return 0;
     case 's':
-        take_path(state, options, text);
-        options->stimulus = text;
+        exec_inputs_stimulus(&options->inputs, text, state);
         return 0;
     case 't':
         options->trace = text;
@@ -130,10 +106,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         options->output_flags |= OUTPUT_FORCE;
         return 0;
     case ARGP_KEY_ARG:
-        take_argument(state, options, text);
+        exec_inputs_argument(&options->inputs, text, state);
         return 0;
     case ARGP_KEY_END:
-        if (options->arguments == 0 && options->stimulus == NULL)
+        if (exec_inputs_are_none(&options->inputs))
             argp_error(state, "no program given");
         if (options->json && options->trace != NULL && strcmp(options->trace, "-") == 0)
             argp_error(state, "--json and --trace - cannot both use standard output");
@@ -150,107 +126,7 @@ static void parse_options(int argc, char **argv, struct options *options)
     arguments_parse(&argp, argc, argv, options);
 }
 
-/* ---- Texts -------------------------------------------------------------------------------------------------------- */
-
-struct inputs {
-    struct program {
-        char motor; /* '0'..'4' */
-        struct exec_file file;
-    } *program;
-    size_t programs;
-    struct exec_file stimulus_file;
-    struct stimuli stimuli;
-};
-
-/* Read a text, which is not to be overwritten. */
-static bool read_file(struct exec_file *file, const char *path)
-{
-    if (!exec_file_read(file, path))
-        return false;
-    if (output_file_spare(path))
-        return true;
-    fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
-    return false;
-}
-
-/* Report all that a unit with these readings refuses. Returns false if there is something. */
-static bool check_text(const struct options *options, const char *name, const char *text, size_t length)
-{
-    return !options->device->check_text(&options->config, name, text, length, stderr);
-}
-
-static bool read_programs(struct inputs *inputs, const struct options *options)
-{
-    bool well = true;
-    for (size_t i = 0; i < options->arguments; i++) {
-        struct program *program = &inputs->program[inputs->programs++];
-        struct exec_file *file = &program->file;
-        program->motor = options->argument[i].motor;
-        if (!read_file(file, options->argument[i].path))
-            well = false;
-        else if (!check_text(options, file->name, file->text.text, file->text.length))
-            well = false;
-    }
-    return well;
-}
-
-/* Report what is wrong with a text that stands in the middle of a file, by its place in the file. */
-static bool check_set(const struct options *options, const struct stimulus *s, const char *name)
-{
-    size_t before = s->line - 1 + s->column - 1;
-    char *padded = malloc(before + s->length + 1);
-    if (padded == NULL)
-        return false;
-    memset(padded, '\n', s->line - 1);
-    memset(padded + s->line - 1, ' ', s->column - 1);
-    memcpy(padded + before, s->data, s->length);
-    bool well = check_text(options, name, padded, before + s->length);
-    free(padded);
-    return well;
-}
-
-static bool is_refused(const struct stimulus *s, const struct options *options)
-{
-    return options->device->check_text(&options->config, NULL, (const char *)s->data, s->length, NULL);
-}
-
-static bool read_stimuli(struct inputs *inputs, const char *path, const struct options *options)
-{
-    struct exec_file *file = &inputs->stimulus_file;
-    if (!read_file(file, path))
-        return false;
-    int errors = stimuli_read(&inputs->stimuli, file->name, file->text.text, file->text.length, stderr);
-    if (errors < 0)
-        fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
-    bool well = errors == 0;
-    for (size_t i = 0; i < inputs->stimuli.count; i++) {
-        const struct stimulus *s = &inputs->stimuli.list[i];
-        if (s->kind == STIMULUS_SET && is_refused(s, options) && !check_set(options, s, file->name))
-            well = false;
-    }
-    return well;
-}
-
-static void free_inputs(struct inputs *inputs)
-{
-    for (size_t i = 0; i < inputs->programs; i++)
-        program_text_free(&inputs->program[i].file.text);
-    free(inputs->program);
-    program_text_free(&inputs->stimulus_file.text);
-    stimuli_free(&inputs->stimuli);
-}
-
 /* ---- Run ---------------------------------------------------------------------------------------------------------- */
-
-static void store_programs(struct exec_run *run, const struct inputs *inputs)
-{
-    for (size_t i = 0; i < inputs->programs; i++) {
-        const struct program *program = &inputs->program[i];
-        const struct exec_file *file = &program->file;
-        if (exec_run_set(run, program->motor, file->text.text, file->text.length) == 3)
-            fprintf(stderr, "%s: warning: more than the %d commands that a motor can hold\n", file->name, RKM04_PROGRAM_MAX);
-    }
-}
 
 /* A second signal ends the process at once. */
 static void catch_signals(void)
@@ -327,13 +203,13 @@ static bool begin_trace(struct exec_run *run, const struct options *options, FIL
 }
 
 /* Run with the trace open on `out`, or without. Returns the exit status. */
-static int run_programs(struct exec_run *run, const struct options *options, const struct inputs *inputs, FILE *out)
+static int run_programs(struct exec_run *run, const struct options *options, FILE *out)
 {
     struct report report;
     struct trace_file *trace;
 
-    run->stimuli = &inputs->stimuli;
-    run->stimulus_name = inputs->stimulus_file.name;
+    run->stimuli = &options->inputs.stimuli;
+    run->stimulus_name = options->inputs.stimulus_file.name;
     run->until = options->until;
     run->device = options->device;
     run->config = options->config;
@@ -346,7 +222,7 @@ static int run_programs(struct exec_run *run, const struct options *options, con
         return STATUS_FAILURE;
     }
     report_begin(&report, options->json);
-    store_programs(run, inputs);
+    exec_inputs_store(&options->inputs, run);
     enum exec_end end = exec_run(run);
 
     bool written = trace == NULL || tell_trace(options, trace_file_end(trace));
@@ -355,12 +231,12 @@ static int run_programs(struct exec_run *run, const struct options *options, con
     return exit_status(run, options, end, written);
 }
 
-static int run_traced(struct exec_run *run, const struct options *options, const struct inputs *inputs)
+static int run_traced(struct exec_run *run, const struct options *options)
 {
     if (options->trace == NULL)
-        return run_programs(run, options, inputs, NULL);
+        return run_programs(run, options, NULL);
     if (strcmp(options->trace, "-") == 0)
-        return run_programs(run, options, inputs, stdout);
+        return run_programs(run, options, stdout);
     enum trace_format format = trace_file_format(options->trace);
     const struct output_kind *kind = trace_file_kind(format == TRACE_FORMATS ? TRACE_CSV : format);
     char *why;
@@ -371,7 +247,7 @@ static int run_traced(struct exec_run *run, const struct options *options, const
         return STATUS_FAILURE;
     }
     setvbuf(file, NULL, _IONBF, 0); /* gathered in a buffer already */
-    int status = run_programs(run, options, inputs, file);
+    int status = run_programs(run, options, file);
     if (output_file_close(file) != 0 && status == STATUS_SUCCESS) {
         tell_trace(options, errno);
         status = STATUS_FAILURE;
@@ -383,24 +259,15 @@ int exec_main(int argc, char **argv)
 {
     static struct exec_run run;
     struct options options = {.until = RKM04_NEVER, .device = &rkm04_device, .config.node = 1};
-    struct inputs inputs = {0};
     int status = STATUS_FAILURE;
 
-    options.argument = calloc((size_t)argc, sizeof options.argument[0]);
-    inputs.program = calloc((size_t)argc, sizeof inputs.program[0]);
-    if (options.argument == NULL || inputs.program == NULL) {
-        fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
-    } else {
+    if (exec_inputs_begin(&options.inputs, "rkm04 exec", argc)) {
         parse_options(argc, argv, &options);
         rkm04_settings_put(&options.config, &(struct rkm04_config){.readings = options.readings});
-        bool well = read_programs(&inputs, &options);
-        if (options.stimulus != NULL && !read_stimuli(&inputs, options.stimulus, &options))
-            well = false;
-        if (well)
-            status = run_traced(&run, &options, &inputs);
+        if (exec_inputs_read(&options.inputs, options.device, &options.config))
+            status = run_traced(&run, &options);
     }
     exec_run_end(&run);
-    free_inputs(&inputs);
-    free(options.argument);
+    exec_inputs_free(&options.inputs);
     return status;
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* test_exec_program.c: the arguments [M=]FILE of `rkm04 exec`. One test alone: CK_RUN_CASE=arguments ./test_exec_program */
+/* test_exec_inputs.c: the arguments [M=]FILE of `rkm04 exec`. One test alone: CK_RUN_CASE=arguments ./test_exec_inputs */
 #include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "run/exec_program.h"
+#include "run/exec_inputs.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
@@ -42,7 +42,7 @@ END_TEST
 
 static Suite *program_suite(void)
 {
-    Suite *suite = suite_create("exec_program");
+    Suite *suite = suite_create("exec_inputs");
     TCase *arguments = tcase_create("arguments");
     tcase_add_test(arguments, an_argument_names_its_motor_or_means_motor_1);
     tcase_add_test(arguments, a_number_that_is_no_motor_is_refused);
@@ -57,6 +57,6 @@ int main(void)
     int failed = srunner_ntests_failed(runner);
     srunner_free(runner);
     if (failed > 0)
-        puts("one test case alone: CK_RUN_CASE=arguments ./test_exec_program");
+        puts("one test case alone: CK_RUN_CASE=arguments ./test_exec_inputs");
     return failed > 0;
 }
