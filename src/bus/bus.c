@@ -9,11 +9,11 @@
 #include "line/line.h"
 #include "record/record.h"
 
-#define INJECTED_TOLD 100u /* acts of faults on demand in the log */
+#define INJECTED_LOGGED 100u /* acts of faults on demand in the log */
 
 /* ---- The log -------------------------------------------------------------------------------------------------------- */
 
-static void tell_fault(struct bus *bus, const struct watch_event *event)
+static void log_fault(struct bus *bus, const struct watch_event *event)
 {
     unsigned fault = (unsigned)event->value;
     if (fault == 0)
@@ -26,20 +26,20 @@ static void tell_fault(struct bus *bus, const struct watch_event *event)
 }
 
 /* A fault on every byte must not fill the log. */
-static void tell_injected(struct bus *bus, const struct watch_event *event)
+static void log_injected_fault(struct bus *bus, const struct watch_event *event)
 {
-    if (++bus->injected <= INJECTED_TOLD)
+    if (++bus->injected <= INJECTED_LOGGED)
         bus_log_at(&bus->log, event->tick, "fault %d: %s", (int)event->value, event->text);
-    if (bus->injected == INJECTED_TOLD)
+    if (bus->injected == INJECTED_LOGGED)
         bus_log_at(&bus->log, event->tick, "injected faults act often: further ones are not logged; fault.list counts them");
 }
 
-static void on_news(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct bus *bus = context;
     const char *unit = event->unit > 0 ? bus->sim.unit[event->unit - 1u].name : "";
     if (event->kind == WATCH_FAULT)
-        tell_fault(bus, event);
+        log_fault(bus, event);
     else if (event->kind == WATCH_MESSAGE)
         bus_coverage_message(bus->coverage, event->message);
     else if (event->kind == WATCH_POWER)
@@ -47,7 +47,7 @@ static void on_news(void *context, const struct watch_event *event)
     else if (event->kind == WATCH_PLANT)
         bus_log_at(&bus->log, event->tick, "unit %s: plant: %s", unit, event->text);
     else
-        tell_injected(bus, event);
+        log_injected_fault(bus, event);
 }
 
 static void watch_for_log(struct bus *bus)
@@ -55,7 +55,7 @@ static void watch_for_log(struct bus *bus)
     bus->news = (struct watcher){
         .kinds = WATCH_BIT(WATCH_FAULT) | WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_PLANT) | WATCH_BIT(WATCH_INJECTED) |
                  (bus->coverage ? WATCH_BIT(WATCH_MESSAGE) : 0),
-        .see = on_news,
+        .see = on_event,
         .context = bus,
     };
     bus->time.own_kinds = bus->news.kinds;
@@ -112,7 +112,7 @@ static void send_gathered(struct bus *bus)
 }
 
 /* On a real wire bytes take their time outside, so the units' line takes none; the turnaround is kept here. */
-static void gather(void *context, const uint8_t *bytes, size_t length)
+static void gather_bytes(void *context, const uint8_t *bytes, size_t length)
 {
     struct bus *bus = context;
     if (bus->gathered == 0)
@@ -128,7 +128,7 @@ static void gather(void *context, const uint8_t *bytes, size_t length)
 static void on_expect(void *context)
 {
     struct bus *bus = context;
-    bus_time_expect(&bus->time);
+    bus_time_before_read(&bus->time);
 }
 
 static size_t on_room(void *context)
@@ -163,7 +163,7 @@ static void on_purge(void *context)
 static void on_taken(void *context)
 {
     struct bus *bus = context;
-    bus_time_follow(&bus->time);
+    bus_time_update(&bus->time);
 }
 
 static uint64_t on_reached(void *context)
@@ -226,7 +226,7 @@ static const struct bus_time_calls time_calls = {.due = on_due, .advanced = on_a
 
 struct sim *bus_sim(struct bus *bus)
 {
-    bus_time_follow(&bus->time);
+    bus_time_update(&bus->time);
     return &bus->sim;
 }
 
@@ -291,7 +291,7 @@ static bool keep_journal(struct bus *bus)
     return false;
 }
 
-static void unplug(void *context, bool plugged)
+static void plug_adapter(void *context, bool plugged)
 {
     struct bus *bus = context;
     bus_ports_plug(&bus->ports, plugged);
@@ -306,8 +306,8 @@ static bool begin_sim(struct bus *bus)
         .timed = bus->time.timed && !bus_is_stepped(bus),
         .turnaround = options->turnaround,
         .seed = options->seed,
-        .out = gather,
-        .adapter = unplug,
+        .out = gather_bytes,
+        .adapter = plug_adapter,
         .context = bus,
     };
     if (!options->device || options->device == &rkm04_device)
@@ -320,7 +320,7 @@ static bool begin_sim(struct bus *bus)
     return false;
 }
 
-static uint64_t present(const void *context)
+static uint64_t present_tick(const void *context)
 {
     return bus_present(context);
 }
@@ -328,7 +328,7 @@ static uint64_t present(const void *context)
 bool bus_begin(struct bus *bus, unsigned number, const struct bus_options *options, uv_loop_t *loop, struct line_watch *watch,
                struct coverage *coverage, const struct bus_calls *calls, void *context)
 {
-    bus->log = (struct bus_log){number, options->lines > 1, options->verbose, present, bus};
+    bus->log = (struct bus_log){number, options->lines > 1, options->verbose, present_tick, bus};
     bus->options = options;
     bus->coverage = coverage;
     bus->calls = calls;

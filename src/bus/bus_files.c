@@ -18,14 +18,14 @@ static const char *path_of(const struct bus_files *files, const char *pattern, c
 }
 
 /* Say why a file could not be written; `error` is an errno. Returns true if it could. */
-static bool check(const char *path, int error)
+static bool check_written(const char *path, int error)
 {
     if (error != 0)
         log_error("cannot write %s: %s", path, strerror(error));
     return error == 0;
 }
 
-static bool complain(char *error)
+static bool report_error(char *error)
 {
     log_error("%s", error ? error : "out of memory");
     free(error);
@@ -46,7 +46,7 @@ static bool begin_record(struct bus_files *files)
         return false;
     }
     files->record = record_begin(files->sim, files->record_stream);
-    return files->record || complain(NULL);
+    return files->record || report_error(NULL);
 }
 
 bool bus_files_begin(struct bus_files *files, const struct bus_options *options, unsigned number, struct sim *sim)
@@ -62,14 +62,14 @@ bool bus_files_begin(struct bus_files *files, const struct bus_options *options,
             return false;
         files->trace[i] = trace_file_begin(files->sim, path, options->output_flags, &error);
         if (!files->trace[i])
-            return complain(error);
+            return report_error(error);
     }
     for (unsigned i = 0; i < BUS_FILES_MAX && options->wire[i]; i++) {
         if (!path_of(files, options->wire[i], path))
             return false;
         files->wire[i] = wire_file_begin(files->sim, path, options->output_flags, &error);
         if (!files->wire[i])
-            return complain(error);
+            return report_error(error);
     }
     return true;
 }
@@ -79,12 +79,12 @@ void bus_files_flush(struct bus_files *files)
     const struct bus_options *options = files->options;
     for (unsigned i = 0; i < BUS_FILES_MAX; i++) {
         if (files->trace[i] && trace_file_failed(files->trace[i]) != 0) {
-            check(options->trace[i], trace_file_end(files->trace[i]));
+            check_written(options->trace[i], trace_file_end(files->trace[i]));
             files->trace[i] = NULL;
             files->failed = true;
         }
         if (files->wire[i] && wire_file_failed(files->wire[i]) != 0) {
-            check(options->wire[i], wire_file_end(files->wire[i]));
+            check_written(options->wire[i], wire_file_end(files->wire[i]));
             files->wire[i] = NULL;
             files->failed = true;
         }
@@ -92,7 +92,7 @@ void bus_files_flush(struct bus_files *files)
             trace_file_flush(files->trace[i]);
     }
     if (files->record && record_failed(files->record) != 0) {
-        check(options->record, record_end(files->record));
+        check_written(options->record, record_end(files->record));
         files->record = NULL;
         files->failed = true;
     }
@@ -104,16 +104,16 @@ bool bus_files_end(struct bus_files *files)
     bool well = !files->failed;
     for (unsigned i = 0; i < BUS_FILES_MAX; i++) {
         if (files->trace[i])
-            well = check(options->trace[i], trace_file_end(files->trace[i])) && well;
+            well = check_written(options->trace[i], trace_file_end(files->trace[i])) && well;
         if (files->wire[i])
-            well = check(options->wire[i], wire_file_end(files->wire[i])) && well;
+            well = check_written(options->wire[i], wire_file_end(files->wire[i])) && well;
         files->trace[i] = NULL;
         files->wire[i] = NULL;
     }
     if (files->record)
-        well = check(options->record, record_end(files->record)) && well;
+        well = check_written(options->record, record_end(files->record)) && well;
     if (files->record_stream && output_file_close(files->record_stream) != 0)
-        well = check(options->record, errno);
+        well = check_written(options->record, errno);
     files->record = NULL;
     files->record_stream = NULL;
     return well;

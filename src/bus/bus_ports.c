@@ -11,8 +11,8 @@
 #include "wire/wire.h"
 
 #define READ_STINT 2000000u       /* ns: longest time a turn of the loop for reading one bus */
-#define REFUSED_TOLD 100u         /* network clients that were sent away, in the log */
-#define AGAIN_MS 1000u            /* between two tries to have a new pty */
+#define REFUSED_LOGGED 100u       /* network clients that were sent away, in the log */
+#define RETRY_MS 1000u            /* between two tries to have a new pty */
 
 unsigned bus_ports_clients(const struct bus_ports *ports)
 {
@@ -27,7 +27,7 @@ uint64_t bus_ports_dropped(const struct bus_ports *ports)
 
 /* ---- What the client has set ---------------------------------------------------------------------------------------- */
 
-static bool strict(const struct bus_ports *ports)
+static bool is_strict(const struct bus_ports *ports)
 {
     return ports->options->strict_line && !line_settings_equal(ports->known, line_settings_unit);
 }
@@ -44,48 +44,48 @@ static struct line_settings present_settings(const struct bus_ports *ports)
 }
 
 /* Look what the client has set, and tell what is new. */
-static void look(struct bus_ports *ports)
+static void apply_new_settings(struct bus_ports *ports)
 {
-    char news[LINE_NEWS_MAX];
-    if (!line_settings_news(&ports->known, present_settings(ports), news))
+    char change[LINE_SETTINGS_CHANGE_MAX];
+    if (!line_settings_changed(&ports->known, present_settings(ports), change))
         return;
-    bus_log(ports->log, "%s", news);
-    line_ear_begin(&ports->to_units, ports->known, line_settings_unit, false);
-    line_ear_begin(&ports->to_client, line_settings_unit, ports->known, true);
+    bus_log(ports->log, "%s", change);
+    line_receiver_begin(&ports->to_units, ports->known, line_settings_unit, false);
+    line_receiver_begin(&ports->to_client, line_settings_unit, ports->known, true);
 }
 
 /* ---- To the units --------------------------------------------------------------------------------------------------- */
 
 /* Bytes of the client that can be taken. Each may be heard as several, and one more when it falls silent. */
-static size_t room(const struct bus_ports *ports)
+static size_t free_room(const struct bus_ports *ports)
 {
     size_t most = ports->calls->room(ports->context);
-    return !ports->options->strict_line ? most : most > 0 ? (most - 1) / LINE_EAR_MAX : 0;
+    return !ports->options->strict_line ? most : most > 0 ? (most - 1) / LINE_RECEIVER_MAX : 0;
 }
 
-static void take_heard(struct bus_ports *ports, const struct line_heard *heard, size_t number)
+static void pass_received(struct bus_ports *ports, const struct line_received *received, size_t number)
 {
     for (size_t i = 0; i < number; i++)
-        ports->calls->take(ports->context, &heard[i].byte, 1, heard[i].tick);
+        ports->calls->take(ports->context, &received[i].byte, 1, received[i].tick);
 }
 
-/* The client has sent something; `length` <= room(). */
-static void take(struct bus_ports *ports, const uint8_t *bytes, size_t length)
+/* The client has sent something; `length` <= free_room(). */
+static void pass_to_units(struct bus_ports *ports, const uint8_t *bytes, size_t length)
 {
-    struct line_heard heard[LINE_EAR_MAX];
+    struct line_received received[LINE_RECEIVER_MAX];
     uint64_t tick = ports->log->present(ports->log->context);
-    if (!strict(ports)) {
+    if (!is_strict(ports)) {
         ports->calls->take(ports->context, bytes, length, tick);
         return;
     }
     for (size_t i = 0; i < length; i++)
-        take_heard(ports, heard, line_ear_byte(&ports->to_units, bytes[i], tick, heard));
-    take_heard(ports, heard, line_ear_silence(&ports->to_units, heard));
+        pass_received(ports, received, line_receiver_byte(&ports->to_units, bytes[i], tick, received));
+    pass_received(ports, received, line_receiver_silence(&ports->to_units, received));
 }
 
 /* ---- To the clients ------------------------------------------------------------------------------------------------- */
 
-static void send_now(struct bus_ports *ports, const uint8_t *bytes, size_t length)
+static void send_to_client(struct bus_ports *ports, const uint8_t *bytes, size_t length)
 {
     struct line *line = &ports->line;
     bool nobody = bus_ports_clients(ports) == 0;
@@ -98,48 +98,50 @@ static void send_now(struct bus_ports *ports, const uint8_t *bytes, size_t lengt
     size_t dropped = line_write(line, bytes, length);
     if (line->raised)
         bus_rts_lower_after(&ports->rts, length);
-    if (dropped > 0 && line->clients > 0 && ports->told == line->dropped - dropped) {
+    if (dropped > 0 && line->clients > 0 && ports->dropped_logged == line->dropped - dropped) {
         bus_log(ports->log, "the client does not read: bytes are dropped");
-        ports->told = line->dropped;
+        ports->dropped_logged = line->dropped;
     }
 }
 
-static void send_heard(struct bus_ports *ports, const struct line_heard *heard, size_t number)
+static void send_received(struct bus_ports *ports, const struct line_received *received, size_t number)
 {
     for (size_t i = 0; i < number; i++)
-        send_now(ports, &heard[i].byte, 1);
+        send_to_client(ports, &received[i].byte, 1);
 }
 
 void bus_ports_send(struct bus_ports *ports, const uint8_t *bytes, size_t length)
 {
-    struct line_heard heard[LINE_EAR_MAX];
+    struct line_received received[LINE_RECEIVER_MAX];
     if (ports->options->strict_line)
-        look(ports);
-    if (!strict(ports)) {
-        send_now(ports, bytes, length);
+        apply_new_settings(ports);
+    if (!is_strict(ports)) {
+        send_to_client(ports, bytes, length);
         return;
     }
-    for (size_t i = 0; i < length; i++)
-        send_heard(ports, heard, line_ear_byte(&ports->to_client, bytes[i], ports->calls->reached(ports->context), heard));
+    for (size_t i = 0; i < length; i++) {
+        uint64_t tick = ports->calls->reached(ports->context);
+        send_received(ports, received, line_receiver_byte(&ports->to_client, bytes[i], tick, received));
+    }
 }
 
 void bus_ports_silence(struct bus_ports *ports)
 {
-    struct line_heard heard[LINE_EAR_MAX];
-    if (strict(ports))
-        send_heard(ports, heard, line_ear_silence(&ports->to_client, heard));
+    struct line_received received[LINE_RECEIVER_MAX];
+    if (is_strict(ports))
+        send_received(ports, received, line_receiver_silence(&ports->to_client, received));
 }
 
 /* ---- The pty or device ---------------------------------------------------------------------------------------------- */
 
-static void on_again(uv_timer_t *timer);
+static void on_retry(uv_timer_t *timer);
 static void follow_adapter(struct bus_ports *ports);
 
-static void on_news(void *context, enum line_news news)
+static void on_event(void *context, enum line_event event)
 {
     struct bus_ports *ports = context;
-    uint64_t dropped = ports->line.dropped - ports->told;
-    switch (news) {
+    uint64_t dropped = ports->line.dropped - ports->dropped_logged;
+    switch (event) {
     case LINE_DETACHED:
         bus_log_detail(ports->log, "the client has closed the bus");
         break;
@@ -148,7 +150,7 @@ static void on_news(void *context, enum line_news news)
             bus_log(ports->log, "a client has opened the bus; %" PRIu64 " bytes were dropped before, without a client", dropped);
         else
             bus_log_detail(ports->log, "a client has opened the bus");
-        ports->told = ports->line.dropped;
+        ports->dropped_logged = ports->line.dropped;
         ports->known = line_settings_unit;
         break;
     case LINE_SHARED:
@@ -160,7 +162,7 @@ static void on_news(void *context, enum line_news news)
             bus_log(ports->log, "a client has locked the pty %s and has closed it: a new pty replaces it",
                     ports->line.path);
         ports->lost = true;
-        uv_timer_start(&ports->again, on_again, 0, 0);
+        uv_timer_start(&ports->retry, on_retry, 0, 0);
         return;
     }
     ports->calls->presence(ports->context);
@@ -174,18 +176,18 @@ static bool read_line(struct bus_ports *ports)
     size_t most;
     struct line *line = &ports->line;
     uint64_t start = uv_hrtime();
-    while ((most = room(ports)) > 0 && uv_hrtime() - start < READ_STINT) {
+    while ((most = free_room(ports)) > 0 && uv_hrtime() - start < READ_STINT) {
         ssize_t length = line_read(line, bytes, most < sizeof bytes ? most : sizeof bytes);
         if (length < 0)
             return false;
         if (length == 0)
             return true;
         if (line->watch)
-            line_watch_follow(line->watch); /* who has sent them is there before an answer is */
+            line_watch_update(line->watch); /* who has sent them is there before an answer is */
         if (line->watch && line->clients == 0)
-            line_pty_count_again(line);
-        look(ports);
-        take(ports, bytes, (size_t)length);
+            line_pty_recount(line);
+        apply_new_settings(ports);
+        pass_to_units(ports, bytes, (size_t)length);
     }
     return true;
 }
@@ -197,7 +199,7 @@ static void on_readable(uv_poll_t *handle, int status, int events)
     (void)status; /* a hang-up shows when reading */
     (void)events;
     if (line->watch)
-        line_watch_follow(line->watch);
+        line_watch_update(line->watch);
     ports->calls->expect(ports->context);
     if (!ports->reading)
         return; /* there is no room any more, or the adapter has been unplugged */
@@ -216,7 +218,7 @@ void bus_ports_listen(struct bus_ports *ports)
 {
     size_t most = ports->calls->room(ports->context);
     follow_adapter(ports);
-    if (ports->reading && room(ports) == 0) {
+    if (ports->reading && free_room(ports) == 0) {
         uv_poll_stop(&ports->readable);
         ports->reading = false;
     } else if (!ports->reading && ports->line.fd >= 0 && most >= SEGMENT_ROOM / 2) {
@@ -231,27 +233,27 @@ void bus_ports_listen(struct bus_ports *ports)
 /* ---- TCP ------------------------------------------------------------------------------------------------------------ */
 
 /* The units catch up first, which may fill the line with bytes of others. */
-static size_t net_room(void *context)
+static size_t on_net_room(void *context)
 {
     struct bus_ports *ports = context;
     ports->calls->expect(ports->context);
-    return room(ports);
+    return free_room(ports);
 }
 
-static void net_bytes(void *context, const uint8_t *bytes, size_t length)
+static void on_net_bytes(void *context, const uint8_t *bytes, size_t length)
 {
     struct bus_ports *ports = context;
-    look(ports);
-    take(ports, bytes, length);
+    apply_new_settings(ports);
+    pass_to_units(ports, bytes, length);
     ports->calls->changed(ports->context);
 }
 
 /* Who has the line, for one who comes over TCP. */
-static const char *net_owner(void *context)
+static const char *on_net_owner(void *context)
 {
     struct bus_ports *ports = context;
     if (ports->line.watch)
-        line_watch_follow(ports->line.watch); /* somebody may have closed the pty just now */
+        line_watch_update(ports->line.watch); /* somebody may have closed the pty just now */
     if (ports->options->pty && ports->line.clients > 0)
         return "a client of the pty";
     const char *owner = ports->tcp ? net_port_client(ports->tcp) : NULL;
@@ -259,37 +261,37 @@ static const char *net_owner(void *context)
 }
 
 /* Bytes of the client that has gone just now, which gave way to another one before there was room for them. */
-static uint64_t take_unheard(struct bus_ports *ports)
+static uint64_t collect_unread(struct bus_ports *ports)
 {
     struct net_port *each[] = {ports->tcp, ports->rfc2217};
-    uint64_t unheard = 0;
+    uint64_t unread = 0;
     for (size_t i = 0; i < sizeof each / sizeof each[0]; i++) {
         if (each[i]) {
-            unheard += each[i]->unheard;
-            each[i]->unheard = 0;
+            unread += each[i]->unread;
+            each[i]->unread = 0;
         }
     }
-    return unheard;
+    return unread;
 }
 
 /* Whoever knocks without an end must not fill the log. */
-static void tell_refused(struct bus_ports *ports, const char *peer)
+static void log_refused(struct bus_ports *ports, const char *peer)
 {
-    if (++ports->refused <= REFUSED_TOLD)
+    if (++ports->refused <= REFUSED_LOGGED)
         bus_log(ports->log, "the client %s was refused: another client uses the bus", peer);
-    if (ports->refused == REFUSED_TOLD)
+    if (ports->refused == REFUSED_LOGGED)
         bus_log(ports->log, "many clients were refused: further ones are not logged until another client opens the bus");
 }
 
-static void net_told(void *context, enum net_news news, const char *peer)
+static void on_net_event(void *context, enum net_event event, const char *peer)
 {
     struct bus_ports *ports = context;
-    uint64_t unheard = take_unheard(ports);
-    switch (news) {
+    uint64_t unread = collect_unread(ports);
+    switch (event) {
     case NET_DETACHED:
         bus_log_detail(ports->log, "the client %s has closed the bus", peer);
-        if (unheard > 0)
-            bus_log(ports->log, "another client replaces it: %" PRIu64 " bytes that it had sent were dropped", unheard);
+        if (unread > 0)
+            bus_log(ports->log, "another client replaces it: %" PRIu64 " bytes that it had sent were dropped", unread);
         break;
     case NET_ATTACHED:
         ports->refused = 0;
@@ -297,13 +299,13 @@ static void net_told(void *context, enum net_news news, const char *peer)
         ports->known = ports->net = line_settings_unit;
         break;
     case NET_REFUSED:
-        tell_refused(ports, peer);
+        log_refused(ports, peer);
         break;
     }
     ports->calls->presence(ports->context);
 }
 
-static void net_settings(void *context, uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits)
+static void on_net_settings(void *context, uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits)
 {
     struct bus_ports *ports = context;
     ports->net = (struct line_settings){
@@ -314,26 +316,26 @@ static void net_settings(void *context, uint32_t baud, unsigned data_bits, char 
     };
 }
 
-static void net_break(void *context, bool on)
+static void on_net_break(void *context, bool on)
 {
     struct bus_ports *ports = context;
     ports->calls->line_break(ports->context, on);
 }
 
-static void net_purge(void *context)
+static void on_net_purge(void *context)
 {
     struct bus_ports *ports = context;
     ports->calls->purge(ports->context);
 }
 
 static const struct net_port_calls net_calls = {
-    .bytes = net_bytes,
-    .room = net_room,
-    .news = net_told,
-    .owner = net_owner,
-    .settings = net_settings,
-    .line_break = net_break,
-    .purge = net_purge,
+    .bytes = on_net_bytes,
+    .room = on_net_room,
+    .event = on_net_event,
+    .owner = on_net_owner,
+    .settings = on_net_settings,
+    .line_break = on_net_break,
+    .purge = on_net_purge,
 };
 
 /* Returns NULL if it did not work (reported). */
@@ -379,10 +381,10 @@ static bool open_line(struct bus_ports *ports, uv_loop_t *loop, struct line_watc
             log_error("--link: the path is too long");
             return false;
         }
-        uv_timer_init(loop, &ports->again);
-        ports->again.data = ports;
+        uv_timer_init(loop, &ports->retry);
+        ports->retry.data = ports;
         if (!link_path_claim(&ports->link, options->link ? path : NULL, ports->log->number) ||
-            !line_pty_open(&ports->line, watch, on_news, ports))
+            !line_pty_open(&ports->line, watch, on_event, ports))
             return false;
     } else {
         return true;
@@ -445,7 +447,7 @@ static void on_pty_closed(uv_handle_t *handle)
 {
     struct bus_ports *ports = handle->data;
     ports->closing = false;
-    if (!ports->resting)
+    if (!ports->retrying)
         follow_adapter(ports);
 }
 
@@ -458,7 +460,7 @@ static void plug_network(struct bus_ports *ports, bool plugged)
 }
 
 /* The pty goes away with its link. */
-static void drop_pty(struct bus_ports *ports)
+static void remove_pty(struct bus_ports *ports)
 {
     uint64_t dropped = ports->line.dropped;
     struct stat found;
@@ -475,13 +477,13 @@ static void drop_pty(struct bus_ports *ports)
     ports->line.dropped = dropped;
 }
 
-static void pull_out(struct bus_ports *ports)
+static void unplug_adapter(struct bus_ports *ports)
 {
     ports->out = true;
     if (ports->options->pty) {
         if (!ports->lost)
             bus_log(ports->log, "the adapter is unplugged: %s and its link are removed", ports->line.path);
-        drop_pty(ports);
+        remove_pty(ports);
     } else {
         bus_log(ports->log, "the adapter is unplugged%s", ports->options->port ? ": the device stays open, but is silent" : "");
     }
@@ -490,7 +492,7 @@ static void pull_out(struct bus_ports *ports)
 }
 
 /* The new pty is for whom the old one was for. */
-static void keep_access(const struct bus_ports *ports)
+static void restore_access(const struct bus_ports *ports)
 {
     const char *path = ports->line.path;
     struct stat found;
@@ -505,32 +507,32 @@ static void keep_access(const struct bus_ports *ports)
 static bool make_pty(struct bus_ports *ports)
 {
     uint64_t dropped = ports->line.dropped;
-    bool made = line_pty_open(&ports->line, ports->watch, on_news, ports);
+    bool made = line_pty_open(&ports->line, ports->watch, on_event, ports);
     ports->line.dropped = dropped;
     if (!made)
         return false;
-    ports->reading = poll_line(ports, ports->again.loop);
+    ports->reading = poll_line(ports, ports->retry.loop);
     if (!ports->reading) {
         line_close(&ports->line);
         return false;
     }
-    keep_access(ports);
+    restore_access(ports);
     if (bus_ports_publish(ports))
         return true;
-    drop_pty(ports);
+    remove_pty(ports);
     return false;
 }
 
-static void put_in(struct bus_ports *ports)
+static void plug_in_adapter(struct bus_ports *ports)
 {
     if (ports->options->pty && !make_pty(ports)) {
-        if (!ports->rest_told)
+        if (!ports->retry_logged)
             bus_log(ports->log, "cannot plug the adapter in again: trying every second");
-        ports->resting = ports->rest_told = true;
-        uv_timer_start(&ports->again, on_again, AGAIN_MS, 0);
+        ports->retrying = ports->retry_logged = true;
+        uv_timer_start(&ports->retry, on_retry, RETRY_MS, 0);
         return;
     }
-    ports->out = ports->rest_told = false;
+    ports->out = ports->retry_logged = false;
     ports->known = ports->net = line_settings_unit;
     plug_network(ports, true);
     if (ports->options->pty)
@@ -546,17 +548,17 @@ static void follow_adapter(struct bus_ports *ports)
         return;
     if (ports->pulled || ports->lost) {
         if (!ports->out)
-            pull_out(ports);
+            unplug_adapter(ports);
         ports->pulled = ports->lost = false;
     }
-    if (ports->out && !ports->unplugged && !ports->closing && !ports->resting)
-        put_in(ports);
+    if (ports->out && !ports->unplugged && !ports->closing && !ports->retrying)
+        plug_in_adapter(ports);
 }
 
-static void on_again(uv_timer_t *timer)
+static void on_retry(uv_timer_t *timer)
 {
     struct bus_ports *ports = timer->data;
-    ports->resting = false;
+    ports->retrying = false;
     follow_adapter(ports);
 }
 

@@ -35,14 +35,14 @@ struct bus_ports {
     struct line_watch *watch;
     struct link_path link;      /* to the pty */
     uv_poll_t readable;
-    bool reading;               /* it is being polled */
+    bool reading;                   /* it is being polled */
     struct net_port *tcp, *rfc2217; /* NULL: none */
-    uint64_t told;              /* of line.dropped, those in the log already */
-    unsigned refused;           /* network clients, since one had the line */
+    uint64_t dropped_logged;        /* of line.dropped, those in the log already */
+    unsigned refused;               /* network clients, since one had the line */
 
-    struct line_settings known; /* of the client, as told last */
-    struct line_settings net;   /* of the RFC 2217 client */
-    struct line_ear to_units, to_client; /* --strict-line and known is not as the unit has it */
+    struct line_settings known;               /* of the client, as logged last */
+    struct line_settings net;                 /* of the RFC 2217 client */
+    struct line_receiver to_units, to_client; /* --strict-line and known is not as the unit has it */
 
     struct bus_rts rts;         /* of a device, with --rts toggle */
 
@@ -50,9 +50,9 @@ struct bus_ports {
     bool out;                   /* what follows of that has been done */
     bool closing;               /* `readable` is, of the pty that is gone */
     bool lost;                  /* the pty is, to a client that has locked it and gone */
-    bool resting;               /* there was no new pty to be had: another try when `again` goes off */
-    bool rest_told;
-    uv_timer_t again;           /* follow_adapter() is due */
+    bool retrying;              /* there was no new pty to be had: another try when `again` goes off */
+    bool retry_logged;
+    uv_timer_t retry;           /* follow_adapter() is due */
     uint32_t group, mode;       /* of the pty that is gone; its successor gets them; mode 0: there was none */
     bool ended;                 /* bus_ports_close() */
 };

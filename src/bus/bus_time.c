@@ -44,7 +44,7 @@ uint64_t bus_time_present(const struct bus_time *time)
 
 /* ---- Who waits ------------------------------------------------------------------------------------------------------ */
 
-static void take_off(struct bus_time *time, struct bus_waiter *waiter)
+static void remove_waiter(struct bus_time *time, struct bus_waiter *waiter)
 {
     for (struct bus_waiter **at = &time->waiters; *at; at = &(*at)->next) {
         if (*at == waiter) {
@@ -67,14 +67,14 @@ static void serve_waiters(struct bus_time *time)
             waiter = waiter->next;
             continue;
         }
-        take_off(time, waiter);
+        remove_waiter(time, waiter);
         waiter->done(waiter, holds);
         waiter = time->waiters;
     }
 }
 
 /* The tick up to which nobody who waits has to look. */
-static uint64_t waiters_next(const struct bus_time *time)
+static uint64_t next_waiter_tick(const struct bus_time *time)
 {
     uint64_t next = RKM04_NEVER, now = sim_now(time->sim);
     for (const struct bus_waiter *waiter = time->waiters; waiter; waiter = waiter->next) {
@@ -93,12 +93,12 @@ void bus_time_wait(struct bus_time *time, struct bus_waiter *waiter)
 {
     waiter->next = time->waiters;
     time->waiters = waiter;
-    bus_time_follow(time);
+    bus_time_update(time);
 }
 
 void bus_time_cancel_wait(struct bus_time *time, struct bus_waiter *waiter)
 {
-    take_off(time, waiter);
+    remove_waiter(time, waiter);
 }
 
 bool bus_time_advance(struct bus_time *time, struct bus_waiter *waiter)
@@ -114,7 +114,7 @@ bool bus_time_advance(struct bus_time *time, struct bus_waiter *waiter)
 /* ---- Where time goes ------------------------------------------------------------------------------------------------ */
 
 /* The earliest tick at which a byte is to be moved. */
-static uint64_t next_byte(const struct bus_time *time)
+static uint64_t next_byte_tick(const struct bus_time *time)
 {
     uint64_t tick = sim_due(time->sim), answer = time->calls->due(time->context);
     return answer < tick ? answer : tick;
@@ -122,14 +122,14 @@ static uint64_t next_byte(const struct bus_time *time)
 
 /* --clock max: the tick to leap to at `now` (ns): that of the next byte under way; else, unless the rest of a frame is on its
  * way, past the next thing that happens. RKM04_NEVER: no reason to leap. */
-static uint64_t leap_to(const struct bus_time *time, uint64_t now)
+static uint64_t leap_target(const struct bus_time *time, uint64_t now)
 {
     if (!time->clock.runs_ahead || sim_time_is_over(time->sim))
         return RKM04_NEVER;
-    uint64_t byte = next_byte(time);
+    uint64_t byte = next_byte_tick(time);
     if (byte != RKM04_NEVER)
         return byte < SIM_TIME_MAX ? byte : SIM_TIME_MAX;
-    if (segment_in_frame(&time->sim->segment) && now - time->heard < FRAME_SILENCE)
+    if (segment_in_frame(&time->sim->segment) && now - time->last_byte < FRAME_SILENCE)
         return RKM04_NEVER;
     uint64_t event = sim_next_event(time->sim), least = sim_now(time->sim) + LEAP;
     if (event == RKM04_NEVER)
@@ -139,11 +139,11 @@ static uint64_t leap_to(const struct bus_time *time, uint64_t now)
 }
 
 /* Up to which tick the units are to be at `now` (ns). */
-static uint64_t goal(struct bus_time *time, uint64_t now)
+static uint64_t find_target(struct bus_time *time, uint64_t now)
 {
     if (bus_time_is_stepped(time))
         return time->goal;
-    uint64_t tick = clock_tick(time, now), leap = leap_to(time, now);
+    uint64_t tick = clock_tick(time, now), leap = leap_target(time, now);
     if (leap == RKM04_NEVER || leap <= tick)
         return tick;
     virtual_clock_leap(&time->clock, now, leap);
@@ -163,9 +163,9 @@ static void report_cuts(struct bus_time *time)
 
 /* One step towards `tick`: a span in which nothing happens, or STEP, and no further than somebody waits for. Anything may be
  * reached in one call of the sim, but then nobody would look at the line and at signals for a long while. */
-static void step(struct bus_time *time, uint64_t tick)
+static void advance_sim(struct bus_time *time, uint64_t tick)
 {
-    uint64_t end = sim_now(time->sim) + STEP, wanted = waiters_next(time);
+    uint64_t end = sim_now(time->sim) + STEP, wanted = next_waiter_tick(time);
     if (end < tick) {
         uint64_t event = sim_next_event(time->sim);
         if (end <= event)
@@ -184,12 +184,12 @@ static bool is_watched(const struct bus_time *time)
 }
 
 /* When (ns) there will be something to do; 0: not before bytes come. */
-static uint64_t next_wake(const struct bus_time *time, uint64_t now)
+static uint64_t next_wake_time(const struct bus_time *time, uint64_t now)
 {
-    uint64_t byte = next_byte(time), event = sim_next_event(time->sim), wanted = waiters_next(time), when = 0;
+    uint64_t byte = next_byte_tick(time), event = sim_next_event(time->sim), wanted = next_waiter_tick(time), when = 0;
     if (bus_time_is_stepped(time) || sim_time_is_over(time->sim))
         return 0;
-    if (leap_to(time, now) != RKM04_NEVER)
+    if (leap_target(time, now) != RKM04_NEVER)
         return now;
     if (wanted < byte)
         byte = wanted;
@@ -219,7 +219,7 @@ static void set_timer(struct bus_time *time, uint64_t when)
 }
 
 /* The process has slept for much longer than it wanted to: it was stopped, or the machine was. */
-static void look_if_late(struct bus_time *time, uint64_t now)
+static void handle_late_wake(struct bus_time *time, uint64_t now)
 {
     if (time->wake == 0 || now < time->wake + LATE)
         return;
@@ -233,44 +233,44 @@ static void look_if_late(struct bus_time *time, uint64_t now)
 }
 
 /* Whoever has chosen the clock should know that it is too fast. */
-static void note_behind(struct bus_time *time, uint64_t now, bool behind)
+static void log_if_behind(struct bus_time *time, uint64_t now, bool behind)
 {
     if (!behind || time->behind == 0)
         time->behind = behind ? now : 0;
-    if (behind && !time->behind_told && !bus_time_is_stepped(time) && now - time->behind > LONG_BEHIND) {
+    if (behind && !time->behind_logged && !bus_time_is_stepped(time) && now - time->behind > LONG_BEHIND) {
         bus_log(time->log, "too slow for clock %s for a second: the units run as fast as this machine can", time->clock_text);
-        time->behind_told = true;
+        time->behind_logged = true;
     }
 }
 
-static void note_end_of_time(struct bus_time *time)
+static void log_end_of_time(struct bus_time *time)
 {
-    if (time->over_told || !sim_time_is_over(time->sim))
+    if (time->over_logged || !sim_time_is_over(time->sim))
         return;
     bus_log(time->log, "virtual time has reached its end, %" PRIu64 " s: the units' time does not go on, and they "
             "answer no more. Start again", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND);
-    time->over_told = true;
+    time->over_logged = true;
 }
 
 void bus_time_catch_up(struct bus_time *time)
 {
     uint64_t start = uv_hrtime(), now = start, tick;
     if (!bus_time_is_stepped(time))
-        look_if_late(time, now);
+        handle_late_wake(time, now);
     time->busy = true;
     do {
-        tick = goal(time, now);
-        step(time, tick);
+        tick = find_target(time, now);
+        advance_sim(time, tick);
         time->calls->advanced(time->context);
         now = uv_hrtime();
-    } while (now - start < STINT && (sim_now(time->sim) < tick || leap_to(time, now) != RKM04_NEVER));
-    note_behind(time, now, sim_now(time->sim) < tick);
-    note_end_of_time(time);
+    } while (now - start < STINT && (sim_now(time->sim) < tick || leap_target(time, now) != RKM04_NEVER));
+    log_if_behind(time, now, sim_now(time->sim) < tick);
+    log_end_of_time(time);
     time->calls->before_sleep(time->context);
     time->busy = false;
     if (bus_time_is_stepped(time))
         tick = time->goal; /* whoever it was advanced for may be content */
-    uint64_t wake = sim_now(time->sim) < tick ? now : next_wake(time, now);
+    uint64_t wake = sim_now(time->sim) < tick ? now : next_wake_time(time, now);
     if (time->options->late_skips && !bus_time_is_stepped(time) && (wake == 0 || wake > now + HEARTBEAT))
         wake = now + HEARTBEAT;
     set_timer(time, wake);
@@ -324,7 +324,7 @@ void bus_time_free(struct bus_time *time)
 /* ---- From outside --------------------------------------------------------------------------------------------------- */
 
 /* Unless it is being done already. */
-void bus_time_follow(struct bus_time *time)
+void bus_time_update(struct bus_time *time)
 {
     if (!time->busy)
         bus_time_catch_up(time);
@@ -332,11 +332,11 @@ void bus_time_follow(struct bus_time *time)
 
 void bus_time_note_bytes(struct bus_time *time)
 {
-    time->heard = uv_hrtime();
+    time->last_byte = uv_hrtime();
 }
 
 /* --clock max leaps when there is nothing to read. */
-void bus_time_expect(struct bus_time *time)
+void bus_time_before_read(struct bus_time *time)
 {
     if (!time->busy && !time->clock.runs_ahead)
         bus_time_catch_up(time);
@@ -365,9 +365,9 @@ bool bus_time_set_clock(struct bus_time *time, const char *text, struct refusal 
         refuse(refusal, REFUSED_STATE, "a client is advancing the clock: change it when that has ended");
         return false;
     }
-    bus_time_follow(time);
+    bus_time_update(time);
     time->behind = 0;
-    time->behind_told = false;
+    time->behind_logged = false;
     sim_set_timed(time->sim, time->timed && !clock.stands);
     time->goal = sim_now(time->sim);
     time->clock = clock;

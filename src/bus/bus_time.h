@@ -40,18 +40,18 @@ struct bus_time {
 
     struct virtual_clock clock;
     char clock_text[16];  /* as it was set */
-    uint64_t heard;       /* ns at which the last bytes came */
+    uint64_t last_byte;   /* ns at which the last bytes came */
     uint64_t goal;        /* a clock that stands: tick to which it is advanced */
     uint64_t wake;        /* ns for which the timer is set; 0: it is not */
     struct bus_waiter *waiters;
     struct bus_waiter *advancing; /* of them, the one for whom the clock is moved; NULL: none */
-    uint64_t cuts;        /* segment_counters.cuts that are told */
-    bool running;         /* time has begun */
-    bool busy;            /* within bus_time_catch_up() */
-    uint64_t behind;      /* ns since when bus_time_catch_up() has not got as far as the clock; 0: it has */
-    bool behind_told;     /* of this clock */
-    bool over_told;       /* that virtual time has come to its end */
-    int timer_fd;         /* -1: none */
+    uint64_t cuts;                /* segment_counters.cuts that are logged */
+    bool running;                 /* time has begun */
+    bool busy;                    /* within bus_time_catch_up() */
+    uint64_t behind;              /* ns since when bus_time_catch_up() has not got as far as the clock; 0: it has */
+    bool behind_logged;           /* of this clock */
+    bool over_logged;             /* that virtual time has come to its end */
+    int timer_fd;                 /* -1: none */
     uv_poll_t timer;
 };
 
@@ -66,12 +66,12 @@ bool bus_time_begin(struct bus_time *time, uv_loop_t *loop);
 void bus_time_start(struct bus_time *time);
 void bus_time_free(struct bus_time *time);
 
-/* Bring the units up to the present as far as that does not take long, send what is due, and sleep. bus_time_follow(): unless it
- * is being done already; bus_time_expect(): before bytes are read, not with --clock max, which leaps when there is nothing to
- * read. */
+/* Advance the units to the present as far as that does not take long, send what is due, and set the timer.
+ * bus_time_update(): unless that is being done already. bus_time_before_read(): before bytes are read; does nothing with
+ * --clock max, which leaps when there is nothing to read. */
 void bus_time_catch_up(struct bus_time *time);
-void bus_time_follow(struct bus_time *time);
-void bus_time_expect(struct bus_time *time);
+void bus_time_update(struct bus_time *time);
+void bus_time_before_read(struct bus_time *time);
 
 /* Bytes have come. */
 void bus_time_note_bytes(struct bus_time *time);

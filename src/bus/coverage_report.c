@@ -12,7 +12,7 @@
 
 #define JSON_ENDING ".json"
 
-static double per_cent(struct coverage_sum sum)
+static double percent_of(struct coverage_sum sum)
 {
     return sum.total == 0 ? 0.0 : 1000 * sum.covered / sum.total / 10.0;
 }
@@ -25,7 +25,7 @@ const char *coverage_group_name(enum coverage_group group)
 
 double coverage_percent(const struct coverage *coverage)
 {
-    return per_cent(coverage_sum(coverage, COVERAGE_GROUPS));
+    return percent_of(coverage_sum(coverage, COVERAGE_GROUPS));
 }
 
 /* ---- For people ----------------------------------------------------------------------------------------------------- */
@@ -55,7 +55,7 @@ void coverage_print(const struct coverage *coverage, FILE *out)
     for (unsigned group = 0; group <= COVERAGE_GROUPS; group++) {
         struct coverage_sum sum = coverage_sum(coverage, (enum coverage_group)group);
         const char *name = coverage_group_name((enum coverage_group)group);
-        fprintf(out, "%-12s%8u%8u%8.1f\n", name, sum.covered, sum.total, per_cent(sum));
+        fprintf(out, "%-12s%8u%8u%8.1f\n", name, sum.covered, sum.total, percent_of(sum));
     }
     print_items(coverage, false, out);
     print_items(coverage, true, out);
@@ -93,7 +93,7 @@ json_t *coverage_json(const struct coverage *coverage)
         }
     }
     struct coverage_sum all = coverage_sum(coverage, COVERAGE_GROUPS);
-    return json_pack("{s:i, s:i, s:f, s:o}", "covered", (int)all.covered, "total", (int)all.total, "percent", per_cent(all),
+    return json_pack("{s:i, s:i, s:f, s:o}", "covered", (int)all.covered, "total", (int)all.total, "percent", percent_of(all),
                      "groups", groups);
 }
 
@@ -114,7 +114,7 @@ static bool print_json(const struct coverage *coverage, FILE *out)
     return well;
 }
 
-static bool open_one(FILE **out, const char *name, const struct output_kind *kind, unsigned flags)
+static bool open_file(FILE **out, const char *name, const struct output_kind *kind, unsigned flags)
 {
     char *why = NULL;
     *out = name ? output_file_open(name, kind, flags | OUTPUT_KEEP, &why) : NULL;
@@ -133,14 +133,14 @@ bool coverage_open(struct coverage_files *files, const char *file, unsigned flag
         files->text_name = strdup(file);
         if (asprintf(&files->json_name, "%s" JSON_ENDING, file) < 0)
             files->json_name = NULL;
-        if (!open_one(&files->text, files->text_name, &output_coverage, flags))
+        if (!open_file(&files->text, files->text_name, &output_coverage, flags))
             return false;
     }
-    return open_one(&files->json, files->json_name, &output_coverage_json, flags);
+    return open_file(&files->json, files->json_name, &output_coverage_json, flags);
 }
 
 /* Write and close one file. Reports what goes wrong. */
-static bool write_one(const struct coverage *coverage, FILE **file, const char *name, bool json)
+static bool write_file(const struct coverage *coverage, FILE **file, const char *name, bool json)
 {
     FILE *out = *file;
     *file = NULL;
@@ -161,8 +161,8 @@ static bool write_one(const struct coverage *coverage, FILE **file, const char *
 
 bool coverage_write(const struct coverage *coverage, struct coverage_files *files)
 {
-    bool well = write_one(coverage, &files->text, files->text_name, false);
-    return write_one(coverage, &files->json, files->json_name, true) && well;
+    bool well = write_file(coverage, &files->text, files->text_name, false);
+    return write_file(coverage, &files->json, files->json_name, true) && well;
 }
 
 void coverage_close(struct coverage_files *files)

@@ -76,11 +76,11 @@ static bool claim_socket(struct control_socket *control, const struct sockaddr_u
     uintmax_t device, inode;
     if (record[0] != '\0' && sscanf(record, RECORD, &pid, &device, &inode) != 3) {
         log_error("%s is not a lock file of an emulator: remove it, or choose another --control", control->lock_path);
-        lock_file_leave(&control->lock);
+        lock_file_release(&control->lock);
         return false;
     }
     if (!clear_stale(control, address, record)) {
-        lock_file_drop(control->lock_path, &control->lock);
+        lock_file_remove(control->lock_path, &control->lock);
         return false;
     }
     return true;
@@ -136,5 +136,5 @@ void control_socket_release(struct control_socket *control)
         return;
     if (control->inode != 0 && is_socket(control->path, control->device, control->inode))
         unlink(control->path);
-    lock_file_drop(control->lock_path, &control->lock);
+    lock_file_remove(control->lock_path, &control->lock);
 }

@@ -22,7 +22,7 @@ struct delivery {
     atomic_flag left; /* by one of the two who know it: the other one frees it */
 };
 
-static void leave(struct delivery *delivery)
+static void release(struct delivery *delivery)
 {
     if (!atomic_flag_test_and_set(&delivery->left))
         return;
@@ -86,7 +86,7 @@ static void *deliver(void *context)
         error = errno;
     delivery->error = error == EPIPE || error == EBADF ? 0 : error;
     sem_post(&delivery->done);
-    leave(delivery);
+    release(delivery);
     return NULL;
 }
 
@@ -112,6 +112,6 @@ int delivery_wait(struct delivery *delivery, unsigned milliseconds)
     while (error == EINTR)
         error = sem_clockwait(&delivery->done, CLOCK_MONOTONIC, &end) == 0 ? 0 : errno;
     error = error == 0 ? delivery->error : 0;
-    leave(delivery);
+    release(delivery);
     return error;
 }

@@ -50,7 +50,7 @@ static bool make_image(struct flash_file *flash)
 }
 
 /* Is there nothing in the file but the beginning of an erased flash? Then its making was cut. */
-static bool unfinished(const struct flash_file *flash, off_t size)
+static bool is_unfinished(const struct flash_file *flash, off_t size)
 {
     uint8_t bytes[FLASH_FILE_SIZE];
     if (size >= FLASH_FILE_SIZE || pread(flash->fd, bytes, sizeof bytes, 0) != (ssize_t)size)
@@ -62,7 +62,7 @@ static bool unfinished(const struct flash_file *flash, off_t size)
 }
 
 /* What a killed process left unsynced has to be on the disk before anything is written on the strength of it. */
-static bool settle(const struct flash_file *flash)
+static bool sync_image(const struct flash_file *flash)
 {
     if (fdatasync(flash->fd) == 0)
         return true;
@@ -90,10 +90,10 @@ static bool check_image(struct flash_file *flash)
         return false;
     }
     /* The size under the lock: it may have been made just now. */
-    if (fstat(flash->fd, &found) == 0 && unfinished(flash, found.st_size))
+    if (fstat(flash->fd, &found) == 0 && is_unfinished(flash, found.st_size))
         return make_image(flash);
     if (found.st_size == FLASH_FILE_SIZE)
-        return settle(flash);
+        return sync_image(flash);
     log_error("--flash: %s has %lld bytes and is no flash image: expected %d bytes, or a new name", flash->path,
               (long long)found.st_size, FLASH_FILE_SIZE);
     return false;
@@ -136,7 +136,7 @@ bool flash_file_open(struct flash_file *flash, const char *path)
 
 /* ---- Operations ----------------------------------------------------------------------------------------------------- */
 
-static bool within(unsigned block, unsigned offset, unsigned length)
+static bool is_within(unsigned block, unsigned offset, unsigned length)
 {
     return block < RKM04_FLASH_BLOCKS && offset <= RKM04_FLASH_BLOCK_SIZE && length <= RKM04_FLASH_BLOCK_SIZE - offset;
 }
@@ -168,7 +168,7 @@ static int write_at(struct flash_file *flash, unsigned block, unsigned offset, c
 
 int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, void *data, unsigned length)
 {
-    if (!within(block, offset, length))
+    if (!is_within(block, offset, length))
         return 1;
     if (flash->unsynced == (int)block)
         flash_file_sync(flash);
@@ -183,7 +183,7 @@ int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, v
 int flash_file_erase(struct flash_file *flash, unsigned block)
 {
     uint8_t bytes[RKM04_FLASH_BLOCK_SIZE];
-    if (!within(block, 0, sizeof bytes))
+    if (!is_within(block, 0, sizeof bytes))
         return 1;
     memset(bytes, ERASED, sizeof bytes);
     if (flash->unsynced != (int)block && !flash_file_sync(flash))
@@ -195,7 +195,7 @@ int flash_file_erase(struct flash_file *flash, unsigned block)
 
 int flash_file_program(struct flash_file *flash, unsigned block, unsigned offset, const void *data, unsigned length)
 {
-    if (!within(block, offset, length))
+    if (!is_within(block, offset, length))
         return 1;
     bool follows = flash->unsynced == (int)block && offset == flash->end;
     if ((!follows && !flash_file_sync(flash)) || flash->lost[block])

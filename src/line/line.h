@@ -20,17 +20,17 @@
 #include <termios.h>
 
 /* What line_pty.c tells about clients. */
-enum line_news {
+enum line_event {
     LINE_DETACHED, /* the last client has closed the line */
     LINE_ATTACHED, /* the first client has opened it */
     LINE_SHARED,   /* one more client has opened it */
     LINE_FAILED    /* nobody is there, and nobody can open the pty any more: it is to be closed, but not within the call */
 };
-typedef void line_tell(void *context, enum line_news news);
+typedef void line_notify(void *context, enum line_event event);
 
 /* Who opens and closes ptys, for all of a process: the system gives a user few such watches. */
 struct line_watch {
-    int fd;             /* readable: line_watch_follow() is due; -1: not open */
+    int fd;             /* readable: line_watch_update() is due; -1: not open */
     int notices;        /* inotify; -1: there is none for us */
     int timer;          /* goes off regularly if there is a line that inotify does not watch; -1: there is none */
     struct line *lines; /* those being watched */
@@ -58,7 +58,7 @@ struct line {
     bool rs485_set;   /* the driver's RS485 mode is ours, `rs485` is what it was */
     struct serial_rs485 rs485;
     bool toggles, raised; /* LINE_RTS_TOGGLES, and RTS is on */
-    line_tell *tell;
+    line_notify *notify;
     void *context;
 };
 
@@ -69,16 +69,16 @@ void line_watch_close(struct line_watch *watch);
 
 /* Follow what clients of any line did since the last call: count them, forget what the last one left unread, make a line raw that
  * it left cooked. */
-void line_watch_follow(struct line_watch *watch);
+void line_watch_update(struct line_watch *watch);
 
 /* A line that is not open. */
 void line_none(struct line *line);
 
 /* Make a pty, raw from the start, and watch it. Failures are reported. Returns false if it did not work. */
-bool line_pty_open(struct line *line, struct line_watch *watch, line_tell *tell, void *context);
+bool line_pty_open(struct line *line, struct line_watch *watch, line_notify *notify, void *context);
 
 /* Bytes came although no client is known: look who is there. */
-void line_pty_count_again(struct line *line);
+void line_pty_recount(struct line *line);
 
 /* Use the serial device or pty `path`: raw, 19200 baud, 8N1 (U7). Failures are reported. Returns false if it did not work. */
 bool line_serial_open(struct line *line, const char *path, enum line_rts rts);

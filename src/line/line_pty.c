@@ -37,7 +37,7 @@ static bool set_flags(int fd)
 }
 
 /* The settings of a pty nobody has touched: raw, 19200 baud, reads return what is there. */
-static void fresh_settings(struct termios *settings)
+static void set_initial_settings(struct termios *settings)
 {
     line_make_raw(settings);
     cfsetspeed(settings, B19200);
@@ -54,7 +54,7 @@ static bool add_to_watch(struct line_watch *watch, int fd)
 }
 
 /* There is no inotify for a line: look at it now and then. Returns false if that does not work either (errno). */
-static bool begin_to_look(struct line_watch *watch)
+static bool begin_polling(struct line_watch *watch)
 {
     struct itimerspec spec = {.it_interval.tv_nsec = LOOK_MS * 1000000l, .it_value.tv_nsec = LOOK_MS * 1000000l};
     if (watch->timer >= 0)
@@ -72,7 +72,7 @@ bool line_watch_open(struct line_watch *watch)
     if (watch->notices >= 0 && add_to_watch(watch, watch->notices))
         return true;
     int why = errno;
-    if (watch->fd >= 0 && begin_to_look(watch)) {
+    if (watch->fd >= 0 && begin_polling(watch)) {
         log_error("cannot use inotify: %s (fs.inotify.max_user_instances?); checking every %d ms for clients", strerror(why),
                   LOOK_MS);
         return true;
@@ -98,23 +98,23 @@ void line_watch_close(struct line_watch *watch)
 }
 
 /* Have the new line watched. Returns false if it is not possible in any way (errno). */
-static bool begin_to_watch(struct line_watch *watch, struct line *line)
+static bool watch_line(struct line_watch *watch, struct line *line)
 {
     if (watch->notices >= 0)
         line->mark = inotify_add_watch(watch->notices, line->path, IN_OPEN | IN_CLOSE);
     if (line->mark < 0 && watch->notices >= 0 && watch->timer < 0)
         log_error("inotify cannot watch %s: %s; checking every %d ms for clients", line->path,
                   errno == ENOSPC ? "too many watches in use (fs.inotify.max_user_watches)" : strerror(errno), LOOK_MS);
-    return line->mark >= 0 || begin_to_look(watch);
+    return line->mark >= 0 || begin_polling(watch);
 }
 
-bool line_pty_open(struct line *line, struct line_watch *watch, line_tell *tell, void *context)
+bool line_pty_open(struct line *line, struct line_watch *watch, line_notify *notify, void *context)
 {
     line_none(line);
-    line->tell = tell;
+    line->notify = notify;
     line->context = context;
     struct termios settings = {0};
-    fresh_settings(&settings);
+    set_initial_settings(&settings);
     if (openpty(&line->fd, &line->slave, NULL, &settings, NULL) != 0) {
         log_error("cannot make a pty: %s%s", strerror(errno),
                   errno == ENOSPC                      ? "; too many ptys in use (kernel.pty.max)?"
@@ -123,7 +123,7 @@ bool line_pty_open(struct line *line, struct line_watch *watch, line_tell *tell,
         return false;
     }
     int failed = ptsname_r(line->fd, line->path, sizeof line->path);
-    if (failed != 0 || !set_flags(line->fd) || !set_flags(line->slave) || !begin_to_watch(watch, line)) {
+    if (failed != 0 || !set_flags(line->fd) || !set_flags(line->slave) || !watch_line(watch, line)) {
         log_error("cannot use the pty %s: %s", line->path, strerror(failed ? failed : errno));
         line_close(line);
         return false;
@@ -150,39 +150,39 @@ static void drop_unread(struct line *line)
     tcflush(line->slave, TCIFLUSH);
 }
 
-static void opened(struct line *line)
+static void count_opened(struct line *line)
 {
     line->clients++;
     line->left = false;
-    line->tell(line->context, line->clients == 1 ? LINE_ATTACHED : LINE_SHARED);
+    line->notify(line->context, line->clients == 1 ? LINE_ATTACHED : LINE_SHARED);
 }
 
 /* The last client has gone. */
-static void deserted(struct line *line)
+static void report_detached(struct line *line)
 {
     line->clients = 0;
     line->left = true;
     drop_unread(line);
-    line->tell(line->context, LINE_DETACHED);
+    line->notify(line->context, LINE_DETACHED);
 }
 
 /* Who has closed the line is counted when it is certain whether anybody is left: two who have opened it at once give one notice.
  * But if all that are known have closed it, and then one opens it, they have gone. */
-static void follow(struct line *line, uint32_t mask)
+static void handle_notice(struct line *line, uint32_t mask)
 {
     if ((mask & IN_OPEN) && line->closings > 0 && line->closings >= line->clients) {
         line->closings = 0;
-        deserted(line);
+        report_detached(line);
     }
     if (mask & IN_OPEN)
-        opened(line);
+        count_opened(line);
     if ((mask & IN_CLOSE) && line->clients > 0)
         line->closings++;
     else if (mask & IN_CLOSE)
         line->doubtful = line->left = true; /* by one who was not known: may have left anything */
 }
 
-static struct line *marked(const struct line_watch *watch, int mark)
+static struct line *find_by_mark(const struct line_watch *watch, int mark)
 {
     struct line *line = watch->lines;
     while (line && line->mark != mark)
@@ -203,7 +203,7 @@ static void read_notices(struct line_watch *watch, const struct line *ignored, s
     for (unsigned i = 0; i < NOTICE_READS && (length = read(watch->notices, buffer, sizeof buffer)) > 0; i++) {
         for (ssize_t at = 0; at < length;) {
             const struct inotify_event *event = (const void *)(buffer + at);
-            struct line *line = event->wd >= 0 ? marked(watch, event->wd) : NULL;
+            struct line *line = event->wd >= 0 ? find_by_mark(watch, event->wd) : NULL;
             if (event->mask & IN_Q_OVERFLOW) {
                 for (line = watch->lines; line; line = line->next)
                     line->doubtful = true;
@@ -211,30 +211,30 @@ static void read_notices(struct line_watch *watch, const struct line *ignored, s
                 counted->all++;
                 counted->opens += (event->mask & IN_OPEN) != 0;
             } else if (line) {
-                follow(line, event->mask);
+                handle_notice(line, event->mask);
             }
             at += (ssize_t)(sizeof *event + event->len);
         }
     }
 }
 
-static bool hung_up(const struct line *line)
+static bool is_hung_up(const struct line *line)
 {
     struct pollfd master = {.fd = line->fd};
     return poll(&master, 1, 0) > 0 && (master.revents & POLLHUP);
 }
 
 /* Does anybody else have the slave open? Returns 1 or 0; -1: our own slave cannot be had any more, and nobody else is there. */
-static int anybody_else(struct line *line)
+static int check_other_clients(struct line *line)
 {
     if (line->slave >= 0)
         close(line->slave);
     for (unsigned tries = 0; tries < COUNT_TRIES; tries++) {
-        bool others = !hung_up(line);
+        bool others = !is_hung_up(line);
         line->slave = open(line->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
         if (line->slave >= 0)
             return others;
-        if (!hung_up(line))
+        if (!is_hung_up(line))
             return 1; /* and keeps us out */
     }
     return -1;
@@ -251,16 +251,16 @@ static bool count_exclusive(struct line *line)
     bool known = line->mark >= 0 && !line->doubtful && line->closings > 0 && line->clients == 1;
     read_notices(line->watch, NULL, NULL); /* whose it is may have come after the others had gone */
     if (known && !line->doubtful && line->closings == 0)
-        return true; /* they had, see follow() */
+        return true;              /* they had, see handle_notice() */
     ioctl(line->slave, TIOCNXCL); /* would keep out the next client, and us */
     if (!known || line->doubtful)
         return false;
     line->closings = 0;
-    deserted(line);
+    report_detached(line);
     return true;
 }
 
-void line_pty_count_again(struct line *line)
+void line_pty_recount(struct line *line)
 {
     int others = 0;
     unsigned reopened = 0;
@@ -271,7 +271,7 @@ void line_pty_count_again(struct line *line)
     /* Our own close and open give two notices; if there are more, somebody came or went meanwhile. */
     for (unsigned tries = 0; tries < COUNT_TRIES; tries++) {
         struct notices one = {0};
-        others = anybody_else(line);
+        others = check_other_clients(line);
         reopened += line->slave >= 0;
         read_notices(line->watch, line, &one);
         counted.opens += one.opens;
@@ -284,13 +284,13 @@ void line_pty_count_again(struct line *line)
     line->closings = 0;
     line->left = line->left || (!others && somebody_came);
     if (others < 0) {
-        line->tell(line->context, LINE_FAILED);
+        line->notify(line->context, LINE_FAILED);
         return;
     }
     if (line->clients > 0 && (!others || (closings >= line->clients && somebody_came)))
-        deserted(line);
+        report_detached(line);
     if (others && line->clients == 0)
-        opened(line);
+        count_opened(line);
     else if (others)
         line->clients = line->clients > closings ? line->clients - closings : 1;
 }
@@ -311,7 +311,7 @@ static void make_raw_again(struct line *line)
     line->left = false;
 }
 
-void line_watch_follow(struct line_watch *watch)
+void line_watch_update(struct line_watch *watch)
 {
     uint64_t expired;
     bool look = watch->timer >= 0 && read(watch->timer, &expired, sizeof expired) > 0;
@@ -319,7 +319,7 @@ void line_watch_follow(struct line_watch *watch)
     for (struct line *line = watch->lines, *next; line; line = next) {
         next = line->next;
         if (line->doubtful || line->closings > 0 || line->slave < 0 || (look && line->mark < 0))
-            line_pty_count_again(line);
+            line_pty_recount(line);
         if (line->mark < 0)
             line->left = look && line->clients == 0; /* maybe by one who came and went between two looks */
         if (line->left)

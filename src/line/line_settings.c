@@ -69,7 +69,7 @@ char *line_settings_text(struct line_settings settings, char text[LINE_SETTINGS_
     return text;
 }
 
-bool line_settings_news(struct line_settings *known, struct line_settings now, char news[LINE_NEWS_MAX])
+bool line_settings_changed(struct line_settings *known, struct line_settings now, char change[LINE_SETTINGS_CHANGE_MAX])
 {
     char client[LINE_SETTINGS_TEXT_MAX], unit[LINE_SETTINGS_TEXT_MAX];
     if (line_settings_equal(*known, now))
@@ -77,88 +77,90 @@ bool line_settings_news(struct line_settings *known, struct line_settings now, c
     *known = now;
     line_settings_text(now, client);
     if (line_settings_equal(now, line_settings_unit))
-        snprintf(news, LINE_NEWS_MAX, "client is %s, as the unit is", client);
+        snprintf(change, LINE_SETTINGS_CHANGE_MAX, "client is %s, as the unit is", client);
     else
-        snprintf(news, LINE_NEWS_MAX, "client is %s, unit is %s", client, line_settings_text(line_settings_unit, unit));
+        snprintf(change, LINE_SETTINGS_CHANGE_MAX, "client is %s, unit is %s", client,
+                 line_settings_text(line_settings_unit, unit));
     return true;
 }
 
-/* ---- The ear -------------------------------------------------------------------------------------------------------- */
+/* ---- The receiver --------------------------------------------------------------------------------------------------- */
 
 enum phase { AWAITS_IDLE, AWAITS_START, IN_CHARACTER };
 
 #define TICKS_PER_SECOND 1000000u
 #define LONG_IDLE (1000u * UINT64_C(1000000)) /* ticks: more than any character lasts */
 
-_Static_assert(UINT64_MAX / TICKS_PER_SECOND / 2 / LINE_EAR_BAUD_MAX >= LINE_EAR_BAUD_MAX, "tick_of() would overflow");
+_Static_assert(UINT64_MAX / TICKS_PER_SECOND / 2 / LINE_RECEIVER_BAUD_MAX >= LINE_RECEIVER_BAUD_MAX, "tick_of() would overflow");
 
-static uint64_t units_per_second(const struct line_ear *ear)
+static uint64_t units_per_second(const struct line_receiver *receiver)
 {
-    return UINT64_C(2) * ear->from.baud * ear->to.baud;
+    return UINT64_C(2) * receiver->from.baud * receiver->to.baud;
 }
 
-static uint64_t units_of(const struct line_ear *ear, uint64_t tick)
+static uint64_t units_of(const struct line_receiver *receiver, uint64_t tick)
 {
-    uint64_t per_second = units_per_second(ear);
+    uint64_t per_second = units_per_second(receiver);
     return tick / TICKS_PER_SECOND * per_second + tick % TICKS_PER_SECOND * per_second / TICKS_PER_SECOND;
 }
 
-static uint64_t tick_of(const struct line_ear *ear, uint64_t time)
+static uint64_t tick_of(const struct line_receiver *receiver, uint64_t time)
 {
-    uint64_t per_second = units_per_second(ear);
+    uint64_t per_second = units_per_second(receiver);
     return time / per_second * TICKS_PER_SECOND + time % per_second * TICKS_PER_SECOND / per_second;
 }
 
-static uint64_t half_bit_sent(const struct line_ear *ear)
+static uint64_t half_bit_sent(const struct line_receiver *receiver)
 {
-    return ear->to.baud;
+    return receiver->to.baud;
 }
 
-static uint64_t half_bit_heard(const struct line_ear *ear)
+static uint64_t half_bit_received(const struct line_receiver *receiver)
 {
-    return ear->from.baud;
+    return receiver->from.baud;
 }
 
 /* The sample in the stop bit ends the character. Returns the number of bytes heard. */
-static size_t end_character(struct line_ear *ear, bool level, struct line_heard *heard)
+static size_t end_character(struct line_receiver *receiver, bool level, struct line_received *received)
 {
-    ear->phase = level ? AWAITS_START : AWAITS_IDLE;
-    ear->framing_errors += !level;
-    if (!level && !ear->keeps_bad)
+    receiver->phase = level ? AWAITS_START : AWAITS_IDLE;
+    receiver->framing_errors += !level;
+    if (!level && !receiver->keeps_bad)
         return 0;
-    *heard = (struct line_heard){ear->origin + tick_of(ear, ear->start), ear->bits};
+    *received = (struct line_received){receiver->origin + tick_of(receiver, receiver->start), receiver->bits};
     return 1;
 }
 
 /* Take the sample that is due. Returns the number of bytes heard. */
-static size_t sample(struct line_ear *ear, bool level, struct line_heard *heard)
+static size_t take_sample(struct line_receiver *receiver, bool level, struct line_received *received)
 {
-    unsigned bit = ear->bit++, last = ear->to.data_bits + (ear->to.parity != 'N' ? 1u : 0u); /* last: before the stop bit */
-    ear->sample += 2 * half_bit_heard(ear);
+    unsigned bit = receiver->bit++;
+    unsigned last = receiver->to.data_bits + (receiver->to.parity != 'N' ? 1u : 0u); /* before the stop bit */
+    receiver->sample += 2 * half_bit_received(receiver);
     if (bit == 0 && level)
-        ear->phase = AWAITS_START; /* too short for a start bit */
-    else if (1 <= bit && bit <= ear->to.data_bits)
-        ear->bits |= (uint8_t)(level << (bit - 1));
+        receiver->phase = AWAITS_START; /* too short for a start bit */
+    else if (1 <= bit && bit <= receiver->to.data_bits)
+        receiver->bits |= (uint8_t)(level << (bit - 1));
     else if (bit > last)
-        return end_character(ear, level, heard);
+        return end_character(receiver, level, received);
     return 0;
 }
 
 /* The line stays at `level` until `until`. Within a level at most one character can end. Returns the number of bytes heard. */
-static size_t listen(struct line_ear *ear, bool level, uint64_t until, struct line_heard *heard)
+static size_t track_level(struct line_receiver *receiver, bool level, uint64_t until, struct line_received *received)
 {
     size_t count = 0;
-    if (ear->phase == AWAITS_IDLE && level)
-        ear->phase = AWAITS_START;
-    if (ear->phase == AWAITS_START && !level) {
-        ear->phase = IN_CHARACTER;
-        ear->bit = ear->bits = 0;
-        ear->start = ear->time;
-        ear->sample = ear->time + half_bit_heard(ear);
+    if (receiver->phase == AWAITS_IDLE && level)
+        receiver->phase = AWAITS_START;
+    if (receiver->phase == AWAITS_START && !level) {
+        receiver->phase = IN_CHARACTER;
+        receiver->bit = receiver->bits = 0;
+        receiver->start = receiver->time;
+        receiver->sample = receiver->time + half_bit_received(receiver);
     }
-    while (ear->phase == IN_CHARACTER && ear->sample < until)
-        count += sample(ear, level, heard);
-    ear->time = until;
+    while (receiver->phase == IN_CHARACTER && receiver->sample < until)
+        count += take_sample(receiver, level, received);
+    receiver->time = until;
     return count;
 }
 
@@ -170,43 +172,44 @@ static bool parity_bit(struct line_settings settings, uint8_t byte)
     return settings.parity == 'M' || (settings.parity == 'E' && odd) || (settings.parity == 'O' && !odd);
 }
 
-void line_ear_begin(struct line_ear *ear, struct line_settings from, struct line_settings to, bool keeps_bad)
+void line_receiver_begin(struct line_receiver *receiver, struct line_settings from, struct line_settings to, bool keeps_bad)
 {
-    *ear = (struct line_ear){.from = from, .to = to, .keeps_bad = keeps_bad, .phase = AWAITS_START};
-    if (ear->from.baud > LINE_EAR_BAUD_MAX)
-        ear->from.baud = LINE_EAR_BAUD_MAX;
-    if (ear->to.baud > LINE_EAR_BAUD_MAX)
-        ear->to.baud = LINE_EAR_BAUD_MAX;
+    *receiver = (struct line_receiver){.from = from, .to = to, .keeps_bad = keeps_bad, .phase = AWAITS_START};
+    if (receiver->from.baud > LINE_RECEIVER_BAUD_MAX)
+        receiver->from.baud = LINE_RECEIVER_BAUD_MAX;
+    if (receiver->to.baud > LINE_RECEIVER_BAUD_MAX)
+        receiver->to.baud = LINE_RECEIVER_BAUD_MAX;
 }
 
-size_t line_ear_byte(struct line_ear *ear, uint8_t byte, uint64_t tick, struct line_heard heard[LINE_EAR_MAX])
+size_t line_receiver_byte(struct line_receiver *receiver, uint8_t byte, uint64_t tick,
+                          struct line_received received[LINE_RECEIVER_MAX])
 {
-    const uint64_t half = half_bit_sent(ear);
+    const uint64_t half = half_bit_sent(receiver);
     size_t count = 0;
-    if (units_per_second(ear) == 0)
+    if (units_per_second(receiver) == 0)
         return 0;
-    uint64_t drawn = tick_of(ear, ear->time), gone = tick > ear->origin ? tick - ear->origin : 0;
-    uint64_t set_out = units_of(ear, gone < drawn + LONG_IDLE ? gone : drawn + LONG_IDLE);
-    if (ear->phase != AWAITS_START && set_out > ear->time)
-        count += listen(ear, true, set_out, heard);
-    if (ear->phase == AWAITS_START && set_out >= ear->time) { /* times stay small */
-        ear->origin = tick;
-        ear->time = 0;
+    uint64_t drawn = tick_of(receiver, receiver->time), gone = tick > receiver->origin ? tick - receiver->origin : 0;
+    uint64_t set_out = units_of(receiver, gone < drawn + LONG_IDLE ? gone : drawn + LONG_IDLE);
+    if (receiver->phase != AWAITS_START && set_out > receiver->time)
+        count += track_level(receiver, true, set_out, received);
+    if (receiver->phase == AWAITS_START && set_out >= receiver->time) { /* times stay small */
+        receiver->origin = tick;
+        receiver->time = 0;
     }
-    count += listen(ear, false, ear->time + 2 * half, heard + count);
-    for (unsigned bit = 0; bit < ear->from.data_bits; bit++)
-        count += listen(ear, byte >> bit & 1, ear->time + 2 * half, heard + count);
-    if (ear->from.parity != 'N')
-        count += listen(ear, parity_bit(ear->from, byte), ear->time + 2 * half, heard + count);
-    return count + listen(ear, true, ear->time + ear->from.stop_halves * half, heard + count);
+    count += track_level(receiver, false, receiver->time + 2 * half, received + count);
+    for (unsigned bit = 0; bit < receiver->from.data_bits; bit++)
+        count += track_level(receiver, byte >> bit & 1, receiver->time + 2 * half, received + count);
+    if (receiver->from.parity != 'N')
+        count += track_level(receiver, parity_bit(receiver->from, byte), receiver->time + 2 * half, received + count);
+    return count + track_level(receiver, true, receiver->time + receiver->from.stop_halves * half, received + count);
 }
 
-size_t line_ear_silence(struct line_ear *ear, struct line_heard heard[LINE_EAR_MAX])
+size_t line_receiver_silence(struct line_receiver *receiver, struct line_received received[LINE_RECEIVER_MAX])
 {
-    uint64_t time = ear->time;
+    uint64_t time = receiver->time;
     size_t count = 0;
-    while (ear->phase != AWAITS_START)
-        count += listen(ear, true, ear->time + 2 * half_bit_heard(ear), heard);
-    ear->time = time;
+    while (receiver->phase != AWAITS_START)
+        count += track_level(receiver, true, receiver->time + 2 * half_bit_received(receiver), received);
+    receiver->time = time;
     return count;
 }

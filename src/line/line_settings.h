@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* line_settings.h: speed and form of characters a client has opened the line with, and what is heard where the two ends do
- * not agree (U7).
+/* line_settings.h: the speed and character format that a client has set, and which bytes arrive when the two ends use different
+ * settings (U7).
  *
- * A pty stores the speed and does not obey it, so bytes come through whatever the client has set. The line tells the user
- * (line_settings_news()) and, if it is to be strict, puts every byte through an ear: struct line_ear draws the bits as the
+ * A pty stores the speed without applying it, so bytes pass whatever the client has set. The user is informed
+ * (line_settings_changed()); with --strict-line every byte passes through a struct line_receiver, which draws the bits as the
  * sender sends them and samples them as the receiver does. */
 #ifndef RKM04_LINE_SETTINGS_H
 #define RKM04_LINE_SETTINGS_H
@@ -20,7 +20,7 @@ struct line_settings {
 };
 
 #define LINE_SETTINGS_TEXT_MAX 24
-#define LINE_NEWS_MAX 80
+#define LINE_SETTINGS_CHANGE_MAX 80
 
 extern const struct line_settings line_settings_unit; /* 19200 8N1 */
 
@@ -37,22 +37,22 @@ bool line_settings_equal(struct line_settings a, struct line_settings b);
 char *line_settings_text(struct line_settings settings, char text[LINE_SETTINGS_TEXT_MAX]);
 
 /* Is there something to tell? `known`: what was told last, or line_settings_unit when a client comes; it becomes `now`.
- * Returns true on a change; `news` is then "client is 9600 8N1, unit is 19200 8N1", or "client is 19200 8N1, as the unit is".
+ * Returns true on a change; `change` is then "client is 9600 8N1, unit is 19200 8N1", or "client is 19200 8N1, as the unit is".
  * A client sets the line up after it has opened it: look again whenever bytes come. */
-bool line_settings_news(struct line_settings *known, struct line_settings now, char news[LINE_NEWS_MAX]);
+bool line_settings_changed(struct line_settings *known, struct line_settings now, char change[LINE_SETTINGS_CHANGE_MAX]);
 
 /* ---- What is heard -------------------------------------------------------------------------------------------------- */
 
-#define LINE_EAR_MAX 8           /* bytes heard out of one byte sent, at most */
-#define LINE_EAR_BAUD_MAX 2000000 /* faster ends are taken to be as fast as this: nothing of them is heard anyway */
+#define LINE_RECEIVER_MAX 8            /* bytes received for one byte sent, at most */
+#define LINE_RECEIVER_BAUD_MAX 2000000 /* faster ends are taken to be as fast as this: nothing of them is received anyway */
 
-struct line_heard {
+struct line_received {
     uint64_t tick; /* in which its start bit began */
     uint8_t byte;
 };
 
 /* A receiver that listens to a sender. Plain data. Who may read it: framing_errors. */
-struct line_ear {
+struct line_receiver {
     struct line_settings from, to;
     bool keeps_bad;  /* characters with a wrong stop bit are heard too, not lost */
     uint8_t phase;   /* waits for the line to be 1, for a start bit, or is within a character */
@@ -67,15 +67,16 @@ struct line_ear {
 
 /* Begin to listen at tick 0, the line idle. `keeps_bad`: false for the unit, which drops such a character; true for a client on
  * Linux, whose tty hands it on unless told otherwise (INPCK). Parity is not checked, for the same reason. */
-void line_ear_begin(struct line_ear *ear, struct line_settings from, struct line_settings to, bool keeps_bad);
+void line_receiver_begin(struct line_receiver *receiver, struct line_settings from, struct line_settings to, bool keeps_bad);
 
 /* The sender sends `byte` at `tick`, or as soon as the one before is out; until then the line is idle. Returns the number of
  * bytes heard by the end of it: what is under way then ends with the next byte or in silence. A byte heard may have begun
  * before `tick`, and after it if bytes before are still going out. */
-size_t line_ear_byte(struct line_ear *ear, uint8_t byte, uint64_t tick, struct line_heard heard[LINE_EAR_MAX]);
+size_t line_receiver_byte(struct line_receiver *receiver, uint8_t byte, uint64_t tick,
+                          struct line_received received[LINE_RECEIVER_MAX]);
 
 /* The sender has no more to send for now: what is under way is heard to its end, the line being idle. Returns the number of
  * bytes heard, 0 or 1. */
-size_t line_ear_silence(struct line_ear *ear, struct line_heard heard[LINE_EAR_MAX]);
+size_t line_receiver_silence(struct line_receiver *receiver, struct line_received received[LINE_RECEIVER_MAX]);
 
 #endif

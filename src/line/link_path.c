@@ -16,7 +16,7 @@
 /* ---- The default ---------------------------------------------------------------------------------------------------- */
 
 /* Make the folder, for its owner alone; one that is there must be such a one. */
-static bool private_folder(const char *path)
+static bool is_private_folder(const char *path)
 {
     struct stat found;
     if (mkdir(path, 0700) != 0 && errno != EEXIST)
@@ -34,7 +34,7 @@ static bool private_folder(const char *path)
 static bool default_folder(char folder[PATH_MAX])
 {
     const char *base = getenv("XDG_RUNTIME_DIR");
-    if (base && base[0] == '/' && snprintf(folder, PATH_MAX, "%s/rkm04", base) < PATH_MAX && private_folder(folder))
+    if (base && base[0] == '/' && snprintf(folder, PATH_MAX, "%s/rkm04", base) < PATH_MAX && is_private_folder(folder))
         return true;
     base = getenv("TMPDIR");
     if (!base || base[0] != '/')
@@ -43,7 +43,7 @@ static bool default_folder(char folder[PATH_MAX])
         log_error("the name of the temporary directory is too long: set TMPDIR, or give --link PATH or --control PATH");
         return false;
     }
-    if (private_folder(folder))
+    if (is_private_folder(folder))
         return true;
     log_error("cannot use the folder %s: %s; give --link PATH or --control PATH", folder,
               errno == EPERM ? "it is not a folder that you own" : strerror(errno));
@@ -74,7 +74,7 @@ static bool read_record(const char *record, char target[64])
 /* ---- The link ------------------------------------------------------------------------------------------------------- */
 
 /* Does the link at `path` lead to `target`? */
-static bool leads_to(const char *path, const char *target)
+static bool is_link_to(const char *path, const char *target)
 {
     char found[64];
     ssize_t length = readlink(path, found, sizeof found);
@@ -88,7 +88,7 @@ static bool clear_stale(const struct link_path *link, const char *target)
     struct stat found;
     if (lstat(link->path, &found) != 0)
         return true;
-    if (target[0] && leads_to(link->path, target) && unlink(link->path) == 0)
+    if (target[0] && is_link_to(link->path, target) && unlink(link->path) == 0)
         return true;
     log_error("%s exists and is not the link of an emulator: remove it, or choose another --link",
               link->path);
@@ -122,11 +122,11 @@ bool link_path_claim(struct link_path *link, const char *path, unsigned number)
     }
     if (!read_record(record, target)) {
         log_error("%s is not a lock file of an emulator: remove it, or choose another --link", link->lock_path);
-        lock_file_leave(&link->lock);
+        lock_file_release(&link->lock);
         return false;
     }
     if (!clear_stale(link, target)) {
-        lock_file_drop(link->lock_path, &link->lock);
+        lock_file_remove(link->lock_path, &link->lock);
         return false;
     }
     return true;
@@ -146,7 +146,7 @@ bool link_path_make(struct link_path *link, const char *target)
 
 void link_path_hide(struct link_path *link)
 {
-    if (link->target[0] && leads_to(link->path, link->target))
+    if (link->target[0] && is_link_to(link->path, link->target))
         unlink(link->path);
     link->target[0] = '\0';
 }
@@ -156,5 +156,5 @@ void link_path_release(struct link_path *link)
     if (link->lock < 0)
         return;
     link_path_hide(link);
-    lock_file_drop(link->lock_path, &link->lock);
+    lock_file_remove(link->lock_path, &link->lock);
 }

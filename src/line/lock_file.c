@@ -14,7 +14,7 @@
 #include "file/file.h"
 
 /* Is the open file still the one of that name? Who held it before may have removed it between our open and our lock. */
-static bool is_there(int fd, const char *path)
+static bool is_same_file(int fd, const char *path)
 {
     struct stat ours, there;
     return fstat(fd, &ours) == 0 && lstat(path, &there) == 0 && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
@@ -22,14 +22,14 @@ static bool is_there(int fd, const char *path)
 
 /* Is it a file that we have made? In a folder of everybody, somebody else may have put another one there, or a second name of
  * a file that must not be written to; and what stands in it would tell us what to remove. */
-static bool is_ours(int fd)
+static bool is_own_file(int fd)
 {
     struct stat found;
     return fstat(fd, &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == geteuid() && found.st_nlink <= 1;
 }
 
 /* See that no output goes there. Returns `fd`, or -1 if one does already. */
-static int claim(int fd, const char *path)
+static int check_no_output(int fd, const char *path)
 {
     char *why;
     if (output_file_claim(fd, path, &why))
@@ -47,7 +47,7 @@ int lock_file_take(const char *path, char record[LOCK_RECORD_MAX])
         int fd = open(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0600);
         if (fd < 0)
             return -1;
-        if (!is_ours(fd)) {
+        if (!is_own_file(fd)) {
             close(fd);
             errno = EPERM;
             return -1;
@@ -57,8 +57,8 @@ int lock_file_take(const char *path, char record[LOCK_RECORD_MAX])
         ssize_t length = pread(fd, record, LOCK_RECORD_MAX - 1, 0);
         record[length > 0 ? length : 0] = '\0';
         record[strcspn(record, "\n")] = '\0';
-        if (locked && is_there(fd, path))
-            return claim(fd, path);
+        if (locked && is_same_file(fd, path))
+            return check_no_output(fd, path);
         close(fd);
         if (!locked) {
             errno = why;
@@ -87,16 +87,16 @@ bool lock_file_write(int fd, const char *format, ...)
     return ftruncate(fd, 0) == 0 && pwrite(fd, record, (size_t)length + 1, 0) == length + 1;
 }
 
-void lock_file_leave(int *fd)
+void lock_file_release(int *fd)
 {
     output_file_release(*fd);
     close(*fd);
     *fd = -1;
 }
 
-void lock_file_drop(const char *path, int *fd)
+void lock_file_remove(const char *path, int *fd)
 {
-    if (is_there(*fd, path)) /* not if it has been cleaned away, and is a successor's now */
+    if (is_same_file(*fd, path)) /* not if it has been cleaned away, and is a successor's now */
         unlink(path);
-    lock_file_leave(fd);
+    lock_file_release(fd);
 }

@@ -20,9 +20,9 @@ const char *lock_file_reason(int error);
 bool lock_file_write(int fd, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Give the lock free and leave the file; *fd becomes -1. */
-void lock_file_leave(int *fd);
+void lock_file_release(int *fd);
 
 /* Remove the file and give the lock free; *fd becomes -1. */
-void lock_file_drop(const char *path, int *fd);
+void lock_file_remove(const char *path, int *fd);
 
 #endif

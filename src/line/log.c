@@ -135,9 +135,9 @@ static void put_line(const char *head, const char *format, va_list list)
     put(line, length);
 }
 
-static void put_after(const char *head, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void put_prefixed(const char *head, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-static void put_after(const char *head, const char *format, ...)
+static void put_prefixed(const char *head, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
@@ -166,5 +166,5 @@ void log_at(uint64_t tick, const char *format, ...)
 void log_text(const char *text)
 {
     for (const char *end; (end = strchr(text, '\n')); text = end + 1)
-        put_after("", "%.*s", (int)(end - text), text);
+        put_prefixed("", "%.*s", (int)(end - text), text);
 }

@@ -7,7 +7,7 @@
  *                           replies --+
  *     net_port_send() --> to_client --+--pump--> wire --> client
  *
- * move() does all of it until nothing moves any more. Commands of RFC 2217 overtake data that wait for room, as they do on a
+ * transfer() does all of it until nothing moves any more. Commands of RFC 2217 overtake data that wait for room, as they do on a
  * serial port; replies that the client does not read stop it from being heard, so that none is lost. */
 #include "net_port.h"
 
@@ -29,19 +29,19 @@
 #define KEEPALIVE_S 30  /* a client that has vanished gives the line free */
 #define LINGER_MS 1000  /* how long one that only sends no more is kept without a byte, and one that is sent away at most */
 
-enum peer_state {
-    PEER_FREE,
-    PEER_CLIENT,  /* has the line */
-    PEER_LEAVING, /* has closed its side, and may wait for an answer; gives way to a new client */
-    PEER_REFUSED, /* is being sent away */
-    PEER_CLOSING
+enum connection_state {
+    CONNECTION_FREE,
+    CONNECTION_CLIENT,  /* has the line */
+    CONNECTION_LEAVING, /* has closed its side, and may wait for an answer; gives way to a new client */
+    CONNECTION_REFUSED, /* is being sent away */
+    CONNECTION_CLOSING
 };
 
-static void move(struct net_port *port);
+static void transfer(struct net_port *port);
 static void on_linger(uv_timer_t *timer);
-static void accept_next(struct net_port *port);
+static void accept_connection(struct net_port *port);
 
-static size_t smaller(size_t a, size_t b)
+static size_t min_size(size_t a, size_t b)
 {
     return a < b ? a : b;
 }
@@ -99,63 +99,63 @@ static void write_name(char name[NET_NAME_SIZE], const struct sockaddr_storage *
 
 /* ---- Peers ---------------------------------------------------------------------------------------------------------- */
 
-static void on_peer_closed(uv_handle_t *handle)
+static void on_connection_closed(uv_handle_t *handle)
 {
-    struct net_peer *peer = handle->data;
-    if (--peer->open_handles > 0)
+    struct net_connection *connection = handle->data;
+    if (--connection->open_handles > 0)
         return;
-    peer->state = PEER_FREE;
-    if (peer->port->waiting)
-        accept_next(peer->port);
+    connection->state = CONNECTION_FREE;
+    if (connection->port->waiting)
+        accept_connection(connection->port);
 }
 
-static void close_peer(struct net_peer *peer)
+static void close_connection(struct net_connection *connection)
 {
-    peer->state = PEER_CLOSING;
-    uv_close((uv_handle_t *)&peer->tcp, on_peer_closed);
-    uv_close((uv_handle_t *)&peer->timer, on_peer_closed);
+    connection->state = CONNECTION_CLOSING;
+    uv_close((uv_handle_t *)&connection->tcp, on_connection_closed);
+    uv_close((uv_handle_t *)&connection->timer, on_connection_closed);
 }
 
 /* The client no longer has the line. What it has written stays and goes to the units. */
-static void detach(struct net_port *port)
+static void detach_client(struct net_port *port)
 {
-    struct net_peer *peer = port->client;
+    struct net_connection *connection = port->client;
     int fd, more = 0;
-    if (uv_fileno((uv_handle_t *)&peer->tcp, &fd) != 0 || ioctl(fd, FIONREAD, &more) != 0)
+    if (uv_fileno((uv_handle_t *)&connection->tcp, &fd) != 0 || ioctl(fd, FIONREAD, &more) != 0)
         more = 0;
-    port->unheard = port->in_length - port->in_at + (more > 0 ? (size_t)more : 0);
+    port->unread = port->in_length - port->in_at + (more > 0 ? (size_t)more : 0);
     port->client = NULL;
     port->attached = port->reading = false;
     port->dropped += port->to_client_count;
     port->to_client_count = port->replies_length = port->in_at = port->in_length = 0;
-    close_peer(peer);
+    close_connection(connection);
     if (port->rfc2217.breaking && port->calls->line_break)
         port->calls->line_break(port->context, false);
-    port->calls->news(port->context, NET_DETACHED, peer->name);
+    port->calls->event(port->context, NET_DETACHED, connection->name);
 }
 
 /* ---- To the client -------------------------------------------------------------------------------------------------- */
 
-static void fail(struct net_peer *peer)
+static void fail_connection(struct net_connection *connection)
 {
-    peer->failed = true; /* reading will tell, too, unless it has ended */
-    if (peer->state == PEER_LEAVING)
-        uv_timer_start(&peer->timer, on_linger, 0, 0);
+    connection->failed = true; /* reading reports it, too, unless it has ended */
+    if (connection->state == CONNECTION_LEAVING)
+        uv_timer_start(&connection->timer, on_linger, 0, 0);
 }
 
 static void on_written(uv_write_t *write, int status)
 {
-    struct net_peer *peer = write->data;
-    peer->writing = false;
-    if (peer->port->client != peer)
+    struct net_connection *connection = write->data;
+    connection->writing = false;
+    if (connection->port->client != connection)
         return;
     if (status < 0)
-        fail(peer);
-    move(peer->port);
+        fail_connection(connection);
+    transfer(connection->port);
 }
 
 /* Data as they go over the connection. `out` takes 2 * length bytes with RFC 2217. Returns their number there. */
-static size_t encode(const struct net_port *port, const uint8_t *data, size_t length, uint8_t *out)
+static size_t encode_output(const struct net_port *port, const uint8_t *data, size_t length, uint8_t *out)
 {
     if (port->kind == NET_RFC2217)
         return rfc2217_escape(data, length, out);
@@ -164,65 +164,65 @@ static size_t encode(const struct net_port *port, const uint8_t *data, size_t le
 }
 
 /* Fill the wire of a client with replies and data. A reply is never cut, for data must not get into it. */
-static void fill_wire(struct net_port *port, struct net_peer *peer)
+static void fill_wire(struct net_port *port, struct net_connection *connection)
 {
-    memcpy(peer->wire, port->replies, port->replies_length);
-    peer->wire_length = port->replies_length;
+    memcpy(connection->wire, port->replies, port->replies_length);
+    connection->wire_length = port->replies_length;
     port->replies_length = 0;
     while (port->to_client_count > 0 && !port->rfc2217.suspended) {
         const uint8_t *from = port->to_client + port->to_client_head;
-        size_t room = NET_WIRE - peer->wire_length;
-        size_t length = smaller(port->to_client_count, NET_TO_CLIENT - port->to_client_head);
-        length = smaller(length, port->kind == NET_RFC2217 ? room / 2 : room);
+        size_t room = NET_WIRE - connection->wire_length;
+        size_t length = min_size(port->to_client_count, NET_TO_CLIENT - port->to_client_head);
+        length = min_size(length, port->kind == NET_RFC2217 ? room / 2 : room);
         if (length == 0)
             return;
-        peer->wire_length += encode(port, from, length, peer->wire + peer->wire_length);
+        connection->wire_length += encode_output(port, from, length, connection->wire + connection->wire_length);
         port->to_client_head = (port->to_client_head + length) % NET_TO_CLIENT;
         port->to_client_count -= length;
     }
 }
 
 /* Write what waits until the system takes no more. */
-static void pump(struct net_port *port)
+static void write_output(struct net_port *port)
 {
-    struct net_peer *peer = port->client;
-    while (peer && !peer->writing) {
-        fill_wire(port, peer);
-        if (peer->wire_length == 0)
+    struct net_connection *connection = port->client;
+    while (connection && !connection->writing) {
+        fill_wire(port, connection);
+        if (connection->wire_length == 0)
             return;
-        port->moved = uv_now(peer->tcp.loop);
-        uv_buf_t rest = uv_buf_init((char *)peer->wire, (unsigned)peer->wire_length);
-        int written = peer->failed ? (int)peer->wire_length : uv_try_write((uv_stream_t *)&peer->tcp, &rest, 1);
+        port->moved = uv_now(connection->tcp.loop);
+        uv_buf_t rest = uv_buf_init((char *)connection->wire, (unsigned)connection->wire_length);
+        int written = connection->failed ? (int)connection->wire_length : uv_try_write((uv_stream_t *)&connection->tcp, &rest, 1);
         if (written < 0 && written != UV_EAGAIN) {
-            fail(peer);
-        } else if (written < (int)peer->wire_length) {
+            fail_connection(connection);
+        } else if (written < (int)connection->wire_length) {
             size_t done = written < 0 ? 0 : (size_t)written;
-            rest = uv_buf_init((char *)peer->wire + done, (unsigned)(peer->wire_length - done));
-            peer->writing = uv_write(&peer->write, (uv_stream_t *)&peer->tcp, &rest, 1, on_written) == 0;
-            if (!peer->writing)
-                fail(peer);
+            rest = uv_buf_init((char *)connection->wire + done, (unsigned)(connection->wire_length - done));
+            connection->writing = uv_write(&connection->write, (uv_stream_t *)&connection->tcp, &rest, 1, on_written) == 0;
+            if (!connection->writing)
+                fail_connection(connection);
         }
     }
 }
 
 size_t net_port_send(struct net_port *port, const uint8_t *bytes, size_t length)
 {
-    size_t taken = port->client && !port->client->failed ? smaller(length, NET_TO_CLIENT - port->to_client_count) : 0;
+    size_t taken = port->client && !port->client->failed ? min_size(length, NET_TO_CLIENT - port->to_client_count) : 0;
     for (size_t i = 0; i < taken; i++)
         port->to_client[(port->to_client_head + port->to_client_count++) % NET_TO_CLIENT] = bytes[i];
     port->dropped += length - taken;
-    pump(port);
+    write_output(port);
     return length - taken;
 }
 
 /* ---- From the client ------------------------------------------------------------------------------------------------ */
 
 /* Hand over what there is room for. */
-static void deliver(struct net_port *port)
+static void deliver_input(struct net_port *port)
 {
     while (port->to_line_count > 0) {
         size_t room = port->calls->room ? port->calls->room(port->context) : SIZE_MAX;
-        size_t length = smaller(smaller(port->to_line_count, NET_TO_LINE - port->to_line_head), room);
+        size_t length = min_size(min_size(port->to_line_count, NET_TO_LINE - port->to_line_head), room);
         if (length == 0)
             return;
         const uint8_t *bytes = port->to_line + port->to_line_head;
@@ -251,14 +251,14 @@ static void set_break(struct net_port *port, bool on)
 }
 
 /* Follow what the client has commanded, behind the data it sent before. */
-static void obey(struct net_port *port, enum rfc2217_event event)
+static void apply_event(struct net_port *port, enum rfc2217_event event)
 {
     const struct rfc2217 *set = &port->rfc2217;
     if (event == RFC2217_PURGE) {
         purge(port);
         return;
     }
-    deliver(port);
+    deliver_input(port);
     if (event == RFC2217_SETTINGS && port->calls->settings)
         port->calls->settings(port->context, set->baud, set->data_bits, set->parity, set->stop_bits);
     else if (event == RFC2217_LINES && port->calls->lines)
@@ -281,7 +281,7 @@ static void queue_reply(struct net_port *port)
 }
 
 /* Look at the bytes read while there is room for what they bring. Returns true if there were any. */
-static bool digest(struct net_port *port)
+static bool process_input(struct net_port *port)
 {
     size_t before = port->in_at;
     while (port->in_at < port->in_length && port->to_line_count < NET_TO_LINE &&
@@ -296,89 +296,89 @@ static bool digest(struct net_port *port)
         if (event == RFC2217_DATA)
             queue_data(port, port->rfc2217.data);
         else if (event != RFC2217_NOTHING)
-            obey(port, event);
+            apply_event(port, event);
     }
     return port->in_at > before;
 }
 
 static void on_linger(uv_timer_t *timer)
 {
-    struct net_peer *peer = timer->data;
-    struct net_port *port = peer->port;
-    if (peer->state == PEER_REFUSED)
-        close_peer(peer);
-    else if (!peer->failed && (port->to_line_count > 0 || uv_now(timer->loop) - port->moved < LINGER_MS))
+    struct net_connection *connection = timer->data;
+    struct net_port *port = connection->port;
+    if (connection->state == CONNECTION_REFUSED)
+        close_connection(connection);
+    else if (!connection->failed && (port->to_line_count > 0 || uv_now(timer->loop) - port->moved < LINGER_MS))
         uv_timer_start(timer, on_linger, LINGER_MS, 0);
     else
-        detach(port);
+        detach_client(port);
 }
 
 /* The client sends no more. It may have closed its sending side alone, as nc and socat do at the end of their input. */
-static void leave(struct net_peer *peer)
+static void end_input(struct net_connection *connection)
 {
-    struct net_port *port = peer->port;
-    uv_read_stop((uv_stream_t *)&peer->tcp);
+    struct net_port *port = connection->port;
+    uv_read_stop((uv_stream_t *)&connection->tcp);
     port->reading = false;
-    peer->state = PEER_LEAVING;
-    port->moved = uv_now(peer->tcp.loop);
-    uv_timer_start(&peer->timer, on_linger, peer->failed ? 0 : LINGER_MS, 0);
+    connection->state = CONNECTION_LEAVING;
+    port->moved = uv_now(connection->tcp.loop);
+    uv_timer_start(&connection->timer, on_linger, connection->failed ? 0 : LINGER_MS, 0);
 }
 
 static void on_room(uv_handle_t *handle, size_t suggested, uv_buf_t *buffer)
 {
     static uint8_t refused[256];
-    struct net_peer *peer = handle->data;
+    struct net_connection *connection = handle->data;
     (void)suggested;
-    if (peer->state == PEER_REFUSED)
+    if (connection->state == CONNECTION_REFUSED)
         *buffer = uv_buf_init((char *)refused, sizeof refused);
     else
-        *buffer = uv_buf_init((char *)peer->port->in, NET_IN);
+        *buffer = uv_buf_init((char *)connection->port->in, NET_IN);
 }
 
 static void on_read(uv_stream_t *stream, ssize_t length, const uv_buf_t *buffer)
 {
-    struct net_peer *peer = stream->data;
-    struct net_port *port = peer->port;
+    struct net_connection *connection = stream->data;
+    struct net_port *port = connection->port;
     (void)buffer;
     if (length == 0)
         return;
-    if (peer->state == PEER_REFUSED) {
+    if (connection->state == CONNECTION_REFUSED) {
         if (length < 0)
-            close_peer(peer);
+            close_connection(connection);
     } else if (length == UV_EOF) {
-        leave(peer);
+        end_input(connection);
     } else if (length < 0) {
-        detach(port);
+        detach_client(port);
     } else {
         port->in_at = 0;
         port->in_length = (size_t)length;
-        move(port);
+        transfer(port);
     }
 }
 
 /* Read on when all that has been read is on its way. */
 static void set_reading(struct net_port *port)
 {
-    struct net_peer *peer = port->client;
-    bool wanted = peer && peer->state == PEER_CLIENT && port->in_at == port->in_length;
+    struct net_connection *connection = port->client;
+    bool wanted = connection && connection->state == CONNECTION_CLIENT && port->in_at == port->in_length;
     if (wanted == port->reading)
         return;
     if (wanted)
-        wanted = uv_read_start((uv_stream_t *)&peer->tcp, on_room, on_read) == 0;
-    else if (peer)
-        uv_read_stop((uv_stream_t *)&peer->tcp);
+        wanted = uv_read_start((uv_stream_t *)&connection->tcp, on_room, on_read) == 0;
+    else if (connection)
+        uv_read_stop((uv_stream_t *)&connection->tcp);
     port->reading = wanted;
 }
 
-static void move(struct net_port *port)
+static void transfer(struct net_port *port)
 {
     if (port->moving)
         return;
     port->moving = true;
     do {
-        deliver(port); /* before there is another look at what is in: it may be all that there was no room for */
-        pump(port);
-    } while (digest(port));
+        deliver_input(port); /* before there is another look at what is in: it may be all that there was no room for */
+        write_output(port);
+    } while (process_input(port));
     port->moving = false;
     set_reading(port);
 }
@@ -386,136 +386,136 @@ static void move(struct net_port *port)
 void net_port_wake(struct net_port *port)
 {
     if (port->open && port->to_line_count > 0)
-        move(port);
+        transfer(port);
 }
 
 /* ---- Who comes ------------------------------------------------------------------------------------------------------ */
 
-static void attach(struct net_port *port, struct net_peer *peer)
+static void attach_client(struct net_port *port, struct net_connection *connection)
 {
-    peer->state = PEER_CLIENT;
-    port->client = peer;
+    connection->state = CONNECTION_CLIENT;
+    port->client = connection;
     port->attached = true;
     if (port->kind == NET_RFC2217) {
         rfc2217_begin(&port->rfc2217);
         queue_reply(port);
     }
-    port->calls->news(port->context, NET_ATTACHED, peer->name);
-    move(port);
+    port->calls->event(port->context, NET_ATTACHED, connection->name);
+    transfer(port);
 }
 
 /* The text of the refusal has to arrive, so what the peer sends is read until it has closed its side, or for a while. */
-static void refuse(struct net_port *port, struct net_peer *peer, const char *owner)
+static void refuse_client(struct net_port *port, struct net_connection *connection, const char *owner)
 {
-    peer->state = PEER_REFUSED;
-    int length = snprintf((char *)peer->wire, NET_WIRE, "rkm04: refused: the bus is in use by %.200s\r\n", owner);
-    uv_buf_t text = uv_buf_init((char *)peer->wire, (unsigned)length);
-    if (uv_try_write((uv_stream_t *)&peer->tcp, &text, 1) != length ||
-        uv_shutdown(&peer->shutdown, (uv_stream_t *)&peer->tcp, NULL) != 0 ||
-        uv_read_start((uv_stream_t *)&peer->tcp, on_room, on_read) != 0)
-        close_peer(peer);
+    connection->state = CONNECTION_REFUSED;
+    int length = snprintf((char *)connection->wire, NET_WIRE, "rkm04: refused: the bus is in use by %.200s\r\n", owner);
+    uv_buf_t text = uv_buf_init((char *)connection->wire, (unsigned)length);
+    if (uv_try_write((uv_stream_t *)&connection->tcp, &text, 1) != length ||
+        uv_shutdown(&connection->shutdown, (uv_stream_t *)&connection->tcp, NULL) != 0 ||
+        uv_read_start((uv_stream_t *)&connection->tcp, on_room, on_read) != 0)
+        close_connection(connection);
     else
-        uv_timer_start(&peer->timer, on_linger, LINGER_MS, 0);
-    port->calls->news(port->context, NET_REFUSED, peer->name);
+        uv_timer_start(&connection->timer, on_linger, LINGER_MS, 0);
+    port->calls->event(port->context, NET_REFUSED, connection->name);
 }
 
 /* The client may have closed its side behind more bytes than have been read. Then those that there is room for are read. */
-static void look_for_end(struct net_port *port)
+static void check_for_end(struct net_port *port)
 {
-    struct net_peer *peer = port->client;
+    struct net_connection *connection = port->client;
     struct pollfd end = {.events = POLLRDHUP};
     ssize_t length;
-    if (!peer || peer->state != PEER_CLIENT || port->moving || uv_fileno((uv_handle_t *)&peer->tcp, &end.fd) != 0 ||
-        poll(&end, 1, 0) <= 0)
+    if (!connection || connection->state != CONNECTION_CLIENT || port->moving ||
+        uv_fileno((uv_handle_t *)&connection->tcp, &end.fd) != 0 || poll(&end, 1, 0) <= 0)
         return;
-    for (unsigned i = 0; i < LAST_READS && port->in_at == port->in_length && port->client == peer; i++) {
+    for (unsigned i = 0; i < LAST_READS && port->in_at == port->in_length && port->client == connection; i++) {
         if ((length = recv(end.fd, port->in, NET_IN, MSG_DONTWAIT)) <= 0) {
-            peer->failed = peer->failed || (length < 0 && errno != EAGAIN);
+            connection->failed = connection->failed || (length < 0 && errno != EAGAIN);
             break;
         }
         port->in_at = 0;
         port->in_length = (size_t)length;
-        move(port);
+        transfer(port);
     }
-    if (port->client == peer)
-        leave(peer);
+    if (port->client == connection)
+        end_input(connection);
 }
 
 const char *net_port_client(struct net_port *port)
 {
-    look_for_end(port);
-    return port->client && port->client->state == PEER_CLIENT ? port->client->name : NULL;
+    check_for_end(port);
+    return port->client && port->client->state == CONNECTION_CLIENT ? port->client->name : NULL;
 }
 
 /* A place for one more. NULL: there is one as soon as somebody has been closed. */
-static struct net_peer *free_peer(struct net_port *port)
+static struct net_connection *find_free_connection(struct net_port *port)
 {
-    struct net_peer *oldest = NULL;
-    for (size_t i = 0; i < NET_PEERS; i++) {
-        struct net_peer *peer = &port->peers[i];
-        if (peer->state == PEER_FREE)
-            return peer;
-        if (peer->state == PEER_REFUSED && (!oldest || peer->number < oldest->number))
-            oldest = peer;
+    struct net_connection *oldest = NULL;
+    for (size_t i = 0; i < NET_CONNECTIONS; i++) {
+        struct net_connection *connection = &port->connections[i];
+        if (connection->state == CONNECTION_FREE)
+            return connection;
+        if (connection->state == CONNECTION_REFUSED && (!oldest || connection->number < oldest->number))
+            oldest = connection;
     }
     if (oldest)
-        close_peer(oldest);
+        close_connection(oldest);
     return NULL;
 }
 
 /* Returns false if it has been torn away already. */
-static bool name_peer(struct net_peer *peer)
+static bool name_connection(struct net_connection *connection)
 {
     struct sockaddr_storage from = {0};
     int size = sizeof from;
-    if (uv_tcp_getpeername(&peer->tcp, (struct sockaddr *)&from, &size) != 0)
+    if (uv_tcp_getpeername(&connection->tcp, (struct sockaddr *)&from, &size) != 0)
         return false;
-    write_name(peer->name, &from);
+    write_name(connection->name, &from);
     return true;
 }
 
 /* Take the connection that waits, if there is room to remember it; otherwise it waits on. */
-static void accept_next(struct net_port *port)
+static void accept_connection(struct net_port *port)
 {
-    struct net_peer *peer = port->open ? free_peer(port) : NULL;
+    struct net_connection *connection = port->open ? find_free_connection(port) : NULL;
     uv_loop_t *loop = port->listener.loop;
-    port->waiting = port->open && !peer;
-    if (!peer)
+    port->waiting = port->open && !connection;
+    if (!connection)
         return;
-    *peer = (struct net_peer){.port = port, .open_handles = 2, .number = port->arrived++};
-    uv_tcp_init(loop, &peer->tcp);
-    uv_timer_init(loop, &peer->timer);
-    peer->tcp.data = peer->timer.data = peer->write.data = peer;
-    if (uv_accept((uv_stream_t *)&port->listener, (uv_stream_t *)&peer->tcp) != 0) {
-        close_peer(peer);
-        return;
-    }
-    if (port->unplugged || !name_peer(peer)) {
-        close_peer(peer);
+    *connection = (struct net_connection){.port = port, .open_handles = 2, .number = port->arrived++};
+    uv_tcp_init(loop, &connection->tcp);
+    uv_timer_init(loop, &connection->timer);
+    connection->tcp.data = connection->timer.data = connection->write.data = connection;
+    if (uv_accept((uv_stream_t *)&port->listener, (uv_stream_t *)&connection->tcp) != 0) {
+        close_connection(connection);
         return;
     }
-    uv_tcp_nodelay(&peer->tcp, 1);
-    uv_tcp_keepalive(&peer->tcp, 1, KEEPALIVE_S);
+    if (port->unplugged || !name_connection(connection)) {
+        close_connection(connection);
+        return;
+    }
+    uv_tcp_nodelay(&connection->tcp, 1);
+    uv_tcp_keepalive(&connection->tcp, 1, KEEPALIVE_S);
     const char *owner = net_port_client(port);
     if (port->client && !owner)
-        detach(port); /* it gives way */
+        detach_client(port); /* it gives way */
     if (!owner && port->calls->owner)
         owner = port->calls->owner(port->context);
     if (owner)
-        refuse(port, peer, owner);
+        refuse_client(port, connection, owner);
     else
-        attach(port, peer);
+        attach_client(port, connection);
 }
 
 static void on_connection(uv_stream_t *listener, int status)
 {
     if (status == 0)
-        accept_next(listener->data);
+        accept_connection(listener->data);
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
-static bool cannot_listen(const char *address, const char *why)
+static bool report_cannot_listen(const char *address, const char *why)
 {
     log_error("cannot listen at %s: %s", address, why);
     return false;
@@ -529,11 +529,11 @@ static bool listen_at(struct net_port *port, const char *text)
     struct sockaddr_storage real = {0};
     int size = sizeof real;
     if (!read_address(&address, text))
-        return cannot_listen(text, "expected " NET_ADDRESS_EXPECTED);
+        return report_cannot_listen(text, "expected " NET_ADDRESS_EXPECTED);
     hints.ai_family = address.ipv6 ? AF_INET6 : AF_INET;
     int error = getaddrinfo(address.host, address.port, &hints, &found);
     if (error != 0)
-        return cannot_listen(text, gai_strerror(error));
+        return report_cannot_listen(text, gai_strerror(error));
     error = uv_tcp_bind(&port->listener, found->ai_addr, 0);
     freeaddrinfo(found);
     if (error == 0)
@@ -541,9 +541,9 @@ static bool listen_at(struct net_port *port, const char *text)
     if (error == 0)
         error = uv_tcp_getsockname(&port->listener, (struct sockaddr *)&real, &size);
     if (error == UV_EADDRINUSE)
-        return cannot_listen(text, "another program listens there; port 0 takes a free one");
+        return report_cannot_listen(text, "another program listens there; port 0 takes a free one");
     if (error != 0)
-        return cannot_listen(text, uv_strerror(error));
+        return report_cannot_listen(text, uv_strerror(error));
     write_name(port->address, &real);
     return true;
 }
@@ -557,7 +557,7 @@ bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, 
     port->listener.data = port;
     int error = uv_tcp_init(loop, &port->listener);
     if (error != 0)
-        return cannot_listen(address, uv_strerror(error));
+        return report_cannot_listen(address, uv_strerror(error));
     port->open = true;
     if (listen_at(port, address))
         return true;
@@ -571,7 +571,7 @@ void net_port_plug(struct net_port *port, bool plugged)
     if (plugged)
         return;
     if (port->client)
-        detach(port);
+        detach_client(port);
     port->to_line_count = 0;
 }
 
@@ -583,7 +583,7 @@ void net_port_close(struct net_port *port)
     port->client = NULL;
     port->to_line_count = port->in_at = port->in_length = 0;
     uv_close((uv_handle_t *)&port->listener, NULL);
-    for (size_t i = 0; i < NET_PEERS; i++)
-        if (port->peers[i].state != PEER_FREE && port->peers[i].state != PEER_CLOSING)
-            close_peer(&port->peers[i]);
+    for (size_t i = 0; i < NET_CONNECTIONS; i++)
+        if (port->connections[i].state != CONNECTION_FREE && port->connections[i].state != CONNECTION_CLOSING)
+            close_connection(&port->connections[i]);
 }

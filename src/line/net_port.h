@@ -18,8 +18,8 @@
 #define NET_TO_CLIENT 20480u /* bytes that wait for a client to read; as many as with a pty */
 #define NET_REPLIES 1024u    /* bytes of RFC 2217 that wait likewise; when they are many, the client is not heard */
 #define NET_WIRE 2048u       /* bytes that have been given to the system */
-#define NET_PEERS 8u         /* connections at a time: the client, those that are being sent away; one more, and the one that has
-                                been told so first is closed at once, so nobody waits */
+#define NET_CONNECTIONS 8u   /* connections at a time: the client and those being refused; for one more, the one refused first
+                                is closed at once, so that no client waits */
 #define NET_NAME_SIZE 80u
 
 enum net_kind {
@@ -27,20 +27,20 @@ enum net_kind {
     NET_RFC2217
 };
 
-enum net_news {
+enum net_event {
     NET_DETACHED, /* the client has closed the bus */
     NET_ATTACHED, /* a client has opened it */
     NET_REFUSED   /* a further client came and was sent away */
 };
 
-/* What the owner of the line is told. All but `bytes` and `news` may be NULL. */
+/* What the owner of the line is told. All but `bytes` and `event` may be NULL. */
 struct net_port_calls {
     /* Data for the units, at most room() bytes; all of them are taken. */
     void (*bytes)(void *context, const uint8_t *data, size_t length);
     /* How many bytes can be taken now; NULL: any number. See net_port_wake(). */
     size_t (*room)(void *context);
     /* `peer`: "127.0.0.1:40123". */
-    void (*news)(void *context, enum net_news news, const char *peer);
+    void (*event)(void *context, enum net_event event, const char *client);
     /* Who else has the line (by another way than this port), so that a client has to be refused; NULL: nobody. */
     const char *(*owner)(void *context);
     /* RFC 2217: the client has changed its port. A client that attaches has 19200 8N1 and sets one thing after the other: what
@@ -57,7 +57,7 @@ struct net_port_calls {
 struct net_port;
 
 /* A connection. */
-struct net_peer {
+struct net_connection {
     struct net_port *port;
     uint8_t state;
     uint8_t open_handles;
@@ -77,7 +77,7 @@ struct net_port {
     char address[NET_NAME_SIZE]; /* where it listens, with the real port: "127.0.0.1:40123", "[::1]:40123" */
     bool attached;               /* a client has the line */
     uint64_t dropped;            /* bytes that nobody was there for, or that a client did not read in time */
-    uint64_t unheard;            /* bytes that the last client has sent and nobody will hear: it gave way to another one */
+    uint64_t unread;             /* bytes that the last client has sent and nobody will hear: it gave way to another one */
     struct rfc2217 rfc2217;      /* of the client; read only */
 
     /* Inside. */
@@ -90,10 +90,10 @@ struct net_port {
     bool waiting;            /* a connection is to be accepted when another one has gone */
     bool moving;             /* in move() */
     bool reading;
-    uint64_t arrived;        /* connections so far */
-    uint64_t moved;          /* ms of the loop: when bytes last passed */
-    struct net_peer *client; /* NULL: none */
-    struct net_peer peers[NET_PEERS];
+    uint64_t arrived;              /* connections so far */
+    uint64_t moved;                /* ms of the loop: when bytes last passed */
+    struct net_connection *client; /* NULL: none */
+    struct net_connection connections[NET_CONNECTIONS];
     size_t in_at, in_length; /* what has been read of a client's bytes, and not been looked at */
     uint8_t in[NET_IN];
     size_t to_line_head, to_line_count;
@@ -126,7 +126,7 @@ size_t net_port_send(struct net_port *port, const uint8_t *bytes, size_t length)
 /* The cable of the device server is pulled out: the client is hung up, and so is whoever comes; or put in again. */
 void net_port_plug(struct net_port *port, bool plugged);
 
-/* Stop listening and let go of the client, without news. The handles are closed when the loop has run out. A port that was
+/* Stop listening and let go of the client, without an event. The handles are closed when the loop has run out. A port that was
  * never opened, or is closed, is left alone. */
 void net_port_close(struct net_port *port);
 

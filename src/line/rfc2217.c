@@ -85,7 +85,7 @@ size_t rfc2217_escape(const uint8_t *data, size_t length, uint8_t *out)
     return n;
 }
 
-static void reply(struct rfc2217 *port, const uint8_t *bytes, size_t length)
+static void put_reply(struct rfc2217 *port, const uint8_t *bytes, size_t length)
 {
     memcpy(port->reply + port->reply_length, bytes, length);
     port->reply_length += length;
@@ -93,24 +93,24 @@ static void reply(struct rfc2217 *port, const uint8_t *bytes, size_t length)
 
 static void reply_option(struct rfc2217 *port, uint8_t verb, uint8_t option)
 {
-    reply(port, (const uint8_t[]){IAC, verb, option}, 3);
+    put_reply(port, (const uint8_t[]){IAC, verb, option}, 3);
 }
 
-static void answer(struct rfc2217 *port, uint8_t command, const void *value, size_t length)
+static void put_answer(struct rfc2217 *port, uint8_t command, const void *value, size_t length)
 {
-    reply(port, (const uint8_t[]){IAC, SB, COM_PORT, (uint8_t)(command + ANSWER)}, 4);
+    put_reply(port, (const uint8_t[]){IAC, SB, COM_PORT, (uint8_t)(command + ANSWER)}, 4);
     port->reply_length += rfc2217_escape(value, length, port->reply + port->reply_length);
-    reply(port, (const uint8_t[]){IAC, SE}, 2);
+    put_reply(port, (const uint8_t[]){IAC, SE}, 2);
 }
 
 static void answer_byte(struct rfc2217 *port, uint8_t command, uint8_t value)
 {
-    answer(port, command, &value, 1);
+    put_answer(port, command, &value, 1);
 }
 
 /* ---- Telnet options ------------------------------------------------------------------------------------------------- */
 
-static void take_option(struct rfc2217 *port, uint8_t verb, uint8_t option)
+static void handle_option(struct rfc2217 *port, uint8_t verb, uint8_t option)
 {
     bool theirs = verb == WILL || verb == WONT, on = verb == WILL || verb == DO;
     uint8_t yes = theirs ? DO : WILL, no = theirs ? DONT : WONT;
@@ -124,8 +124,8 @@ static void take_option(struct rfc2217 *port, uint8_t verb, uint8_t option)
     *state = on ? ON : OFF;
     if (before == (on ? OFF : ON))
         reply_option(port, on ? yes : no, option);
-    if (on && option == COM_PORT && !port->told_lines) {
-        port->told_lines = true; /* pyserial knows nothing of the lines before it is told */
+    if (on && option == COM_PORT && !port->reported_lines) {
+        port->reported_lines = true; /* pyserial knows nothing of the lines before it is told */
         answer_byte(port, NOTIFY_MODEMSTATE, MODEM_STATE);
     }
 }
@@ -145,7 +145,7 @@ static enum rfc2217_event set_baud(struct rfc2217 *port, const uint8_t *value, s
     uint8_t now[4];
     for (unsigned i = 0; i < 4; i++)
         now[i] = (uint8_t)(port->baud >> (24 - 8 * i));
-    answer(port, SET_BAUDRATE, now, sizeof now);
+    put_answer(port, SET_BAUDRATE, now, sizeof now);
     return changed ? RFC2217_SETTINGS : RFC2217_NOTHING;
 }
 
@@ -227,13 +227,13 @@ static enum rfc2217_event purge(struct rfc2217 *port, uint8_t value)
 }
 
 /* A signature with a text tells us the client's, which nobody wants to know. */
-static void tell_signature(struct rfc2217 *port, size_t length)
+static void answer_signature(struct rfc2217 *port, size_t length)
 {
     if (length == 0)
-        answer(port, SIGNATURE, signature, strlen(signature));
+        put_answer(port, SIGNATURE, signature, strlen(signature));
 }
 
-static enum rfc2217_event take_command(struct rfc2217 *port)
+static enum rfc2217_event handle_command(struct rfc2217 *port)
 {
     size_t kept = port->command_length < RFC2217_COMMAND_MAX ? port->command_length : RFC2217_COMMAND_MAX;
     if (kept < 2 || port->command[0] != COM_PORT || (port->theirs[COM_PORT_AT] == OFF && port->ours[COM_PORT_AT] == OFF))
@@ -243,7 +243,7 @@ static enum rfc2217_event take_command(struct rfc2217 *port)
     uint8_t first = length > 0 ? *value : 0;
     switch (port->command[1]) {
     case SIGNATURE:
-        tell_signature(port, length);
+        answer_signature(port, length);
         return RFC2217_NOTHING;
     case SET_BAUDRATE:
         return set_baud(port, value, length);
@@ -303,14 +303,14 @@ void rfc2217_begin(struct rfc2217 *port)
     }
 }
 
-static enum rfc2217_event take_data(struct rfc2217 *port, uint8_t byte)
+static enum rfc2217_event handle_data(struct rfc2217 *port, uint8_t byte)
 {
     port->state = AT_DATA;
     port->data = byte;
     return RFC2217_DATA;
 }
 
-static void keep(struct rfc2217 *port, uint8_t byte)
+static void store_command_byte(struct rfc2217 *port, uint8_t byte)
 {
     port->state = AT_SUB;
     if (port->command_length < RFC2217_COMMAND_MAX)
@@ -318,12 +318,12 @@ static void keep(struct rfc2217 *port, uint8_t byte)
 }
 
 /* The byte after IAC, outside of a subnegotiation. */
-static enum rfc2217_event take_verb(struct rfc2217 *port, uint8_t byte)
+static enum rfc2217_event handle_verb(struct rfc2217 *port, uint8_t byte)
 {
     port->state = AT_DATA;
     switch (byte) {
     case IAC:
-        return take_data(port, byte);
+        return handle_data(port, byte);
     case SB:
         port->state = AT_SUB;
         port->command_length = 0;
@@ -338,7 +338,7 @@ static enum rfc2217_event take_verb(struct rfc2217 *port, uint8_t byte)
     case BRK:
         return RFC2217_BREAK_PULSE;
     case AYT:
-        reply(port, (const uint8_t[]){IAC, NOP}, 2); /* a text would get among the data */
+        put_reply(port, (const uint8_t[]){IAC, NOP}, 2); /* a text would get among the data */
         return RFC2217_NOTHING;
     default:
         return RFC2217_NOTHING;
@@ -346,16 +346,16 @@ static enum rfc2217_event take_verb(struct rfc2217 *port, uint8_t byte)
 }
 
 /* The byte after IAC in a subnegotiation. */
-static enum rfc2217_event take_sub_verb(struct rfc2217 *port, uint8_t byte)
+static enum rfc2217_event handle_sub_verb(struct rfc2217 *port, uint8_t byte)
 {
     if (byte == IAC) {
-        keep(port, byte);
+        store_command_byte(port, byte);
         return RFC2217_NOTHING;
     }
     if (byte != SE)
-        return take_verb(port, byte); /* its end is missing: forget it */
+        return handle_verb(port, byte); /* its end is missing: forget it */
     port->state = AT_DATA;
-    return take_command(port);
+    return handle_command(port);
 }
 
 enum rfc2217_event rfc2217_receive(struct rfc2217 *port, uint8_t byte)
@@ -363,22 +363,22 @@ enum rfc2217_event rfc2217_receive(struct rfc2217 *port, uint8_t byte)
     port->reply_length = 0;
     switch (port->state) {
     case AT_COMMAND:
-        return take_verb(port, byte);
+        return handle_verb(port, byte);
     case AT_OPTION:
         port->state = AT_DATA;
-        take_option(port, port->verb, byte);
+        handle_option(port, port->verb, byte);
         return RFC2217_NOTHING;
     case AT_SUB:
         if (byte == IAC)
             port->state = AT_SUB_COMMAND;
         else
-            keep(port, byte);
+            store_command_byte(port, byte);
         return RFC2217_NOTHING;
     case AT_SUB_COMMAND:
-        return take_sub_verb(port, byte);
+        return handle_sub_verb(port, byte);
     default:
         if (byte != IAC)
-            return take_data(port, byte);
+            return handle_data(port, byte);
         port->state = AT_COMMAND;
         return RFC2217_NOTHING;
     }

@@ -51,7 +51,7 @@ struct rfc2217 {
     uint8_t line_mask, modem_mask;
     uint8_t state, verb;
     uint8_t ours[3], theirs[3]; /* telnet options: how far they are agreed */
-    bool told_lines;         /* the client knows of CTS, DSR and carrier */
+    bool reported_lines;        /* the client knows of CTS, DSR and carrier */
     uint8_t command[RFC2217_COMMAND_MAX];
     size_t command_length;
 };

@@ -109,7 +109,7 @@ static void on_notice(uv_poll_t *handle, int status, int events)
     struct serve *serve = handle->data;
     (void)status;
     (void)events;
-    line_watch_follow(&serve->watch);
+    line_watch_update(&serve->watch);
 }
 
 /* ---- Begin ---------------------------------------------------------------------------------------------------------- */

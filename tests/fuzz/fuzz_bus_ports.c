@@ -51,7 +51,7 @@ static void on_presence(void *context)
 static void on_notice(uv_poll_t *handle, int status, int events)
 {
     (void)handle, (void)status, (void)events;
-    line_watch_follow(&watch);
+    line_watch_update(&watch);
 }
 
 static void start(uint8_t mode)

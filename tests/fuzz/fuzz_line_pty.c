@@ -53,10 +53,10 @@ void log_at(uint64_t tick, const char *format, ...)
     (void)tick, (void)format;
 }
 
-static void on_news(void *context, enum line_news news)
+static void on_event(void *context, enum line_event event)
 {
     (void)context;
-    FUZZ_CHECK(news != LINE_FAILED, "the line has failed");
+    FUZZ_CHECK(event != LINE_FAILED, "the line has failed");
 }
 
 int __wrap_timerfd_create(clockid_t clock, int flags)
@@ -90,12 +90,12 @@ static void follow(void)
 {
     if (used_up)
         eventfd_write(timer, 1);
-    line_watch_follow(&watch);
+    line_watch_update(&watch);
     /* One who opened it together with one that locked it and has gone is seen when it sends. */
     bool unseen = locked && line.clients == 0 && there > 0;
     FUZZ_CHECK((line.clients > 0) == (there > 0) || unseen, "%u clients, %u there", line.clients, there);
     known = known && !unseen;
-    line_watch_follow(&watch);
+    line_watch_update(&watch);
     check_settings();
     loose = false;
     if (there == 0)
@@ -183,7 +183,7 @@ static void act(uint8_t what, uint8_t value)
     case 5:
         FUZZ_CHECK(line_read(&line, bytes, sizeof bytes) >= 0, "the line is gone: %s", strerror(errno));
         if (line.clients == 0)
-            line_pty_count_again(&line);
+            line_pty_recount(&line);
         break;
     case 6:
         memset(bytes, value, sizeof bytes);
@@ -206,7 +206,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     there = 0;
     for (unsigned i = 0; i < CLIENTS; i++)
         client[i] = -1;
-    FUZZ_CHECK(line_watch_open(&watch) && line_pty_open(&line, &watch, on_news, NULL), "no pty");
+    FUZZ_CHECK(line_watch_open(&watch) && line_pty_open(&line, &watch, on_event, NULL), "no pty");
     tcgetattr(line.fd, &set);
     known = true;
     for (unsigned i = 0; i < ACTIONS && fuzz.left > 0; i++) {

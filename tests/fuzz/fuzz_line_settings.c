@@ -21,48 +21,48 @@ static struct line_settings choose(struct fuzz *fuzz)
 static void check_news(struct line_settings settings)
 {
     struct line_settings known = line_settings_unit;
-    char news[LINE_NEWS_MAX], text[LINE_SETTINGS_TEXT_MAX];
-    bool told = line_settings_news(&known, settings, news);
+    char news[LINE_SETTINGS_CHANGE_MAX], text[LINE_SETTINGS_TEXT_MAX];
+    bool told = line_settings_changed(&known, settings, news);
     FUZZ_CHECK(told != line_settings_equal(settings, line_settings_unit), "told %d", told);
     FUZZ_CHECK(!told || strstr(news, line_settings_text(settings, text)), "%s without %s", news, text);
-    FUZZ_CHECK(!line_settings_news(&known, settings, news), "told twice");
-    FUZZ_CHECK(!told || (line_settings_news(&known, line_settings_unit, news) && strstr(news, "as the unit is")), "%s", news);
+    FUZZ_CHECK(!line_settings_changed(&known, settings, news), "told twice");
+    FUZZ_CHECK(!told || (line_settings_changed(&known, line_settings_unit, news) && strstr(news, "as the unit is")), "%s", news);
 }
 
 struct session {
-    struct line_ear ear;
+    struct line_receiver receiver;
     uint64_t tick, last; /* of sending; of the last byte heard */
 };
 
-static void check_heard(struct session *session, const struct line_heard *heard, size_t count)
+static void check_received(struct session *session, const struct line_received *received, size_t count)
 {
-    FUZZ_CHECK(count <= LINE_EAR_MAX, "%zu", count);
+    FUZZ_CHECK(count <= LINE_RECEIVER_MAX, "%zu", count);
     for (size_t i = 0; i < count; i++) {
-        FUZZ_CHECK(heard[i].tick >= session->last, "%llu after %llu", (unsigned long long)heard[i].tick,
+        FUZZ_CHECK(received[i].tick >= session->last, "%llu after %llu", (unsigned long long)received[i].tick,
                    (unsigned long long)session->last);
-        FUZZ_CHECK(heard[i].byte >> session->ear.to.data_bits == 0, "%02x", heard[i].byte);
-        session->last = heard[i].tick;
+        FUZZ_CHECK(received[i].byte >> session->receiver.to.data_bits == 0, "%02x", received[i].byte);
+        session->last = received[i].tick;
     }
 }
 
 static void send_byte(struct session *session, uint8_t byte, uint64_t gap)
 {
-    struct line_heard heard[LINE_EAR_MAX];
-    const struct line_settings *from = &session->ear.from;
+    struct line_received received[LINE_RECEIVER_MAX];
+    const struct line_settings *from = &session->receiver.from;
     session->tick = session->tick > END_OF_TIME - gap ? END_OF_TIME : session->tick + gap;
-    size_t count = line_ear_byte(&session->ear, byte, session->tick, heard);
-    check_heard(session, heard, count);
-    if (!line_settings_equal(*from, session->ear.to) || from->baud == 0)
+    size_t count = line_receiver_byte(&session->receiver, byte, session->tick, received);
+    check_received(session, received, count);
+    if (!line_settings_equal(*from, session->receiver.to) || from->baud == 0)
         return;
-    FUZZ_CHECK(count == 1 && heard[0].byte == (byte & (0xffu >> (8u - from->data_bits))), "%zu heard", count);
-    FUZZ_CHECK(heard[0].tick + 1u >= session->tick, "heard at %llu, sent at %llu", (unsigned long long)heard[0].tick,
+    FUZZ_CHECK(count == 1 && received[0].byte == (byte & (0xffu >> (8u - from->data_bits))), "%zu heard", count);
+    FUZZ_CHECK(received[0].tick + 1u >= session->tick, "heard at %llu, sent at %llu", (unsigned long long)received[0].tick,
                (unsigned long long)session->tick);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct fuzz fuzz = {data, size};
-    struct line_heard heard[LINE_EAR_MAX];
+    struct line_received received[LINE_RECEIVER_MAX];
     struct session session = {0};
     uint8_t mode = fuzz_byte(&fuzz);
     struct line_settings from = mode & 1 ? line_settings_unit : choose(&fuzz), to = mode & 2 ? line_settings_unit : choose(&fuzz);
@@ -70,17 +70,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         to = from;
     check_news(from);
     check_news(to);
-    line_ear_begin(&session.ear, from, to, mode & 8);
+    line_receiver_begin(&session.receiver, from, to, mode & 8);
     for (unsigned i = 0; i < BYTES_MAX && fuzz.left > 0; i++) {
         uint8_t byte = fuzz_byte(&fuzz), gap = fuzz_byte(&fuzz);
         if (gap == 255) {
-            size_t count = line_ear_silence(&session.ear, heard);
+            size_t count = line_receiver_silence(&session.receiver, received);
             FUZZ_CHECK(count <= 1, "%zu in silence", count);
-            check_heard(&session, heard, count);
+            check_received(&session, received, count);
         }
         send_byte(&session, byte, gap == 254 ? END_OF_TIME / 3u : gap == 255 ? 100000 : (uint64_t)gap * gap);
     }
-    check_heard(&session, heard, line_ear_silence(&session.ear, heard));
-    FUZZ_CHECK(line_ear_silence(&session.ear, heard) == 0, "silence is not silent");
+    check_received(&session, received, line_receiver_silence(&session.receiver, received));
+    FUZZ_CHECK(line_receiver_silence(&session.receiver, received) == 0, "silence is not silent");
     return 0;
 }

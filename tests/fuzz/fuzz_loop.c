@@ -73,7 +73,7 @@ static void on_shutdown(void *context)
 static void on_notice(uv_poll_t *handle, int status, int events)
 {
     (void)handle, (void)status, (void)events;
-    line_watch_follow(&notices);
+    line_watch_update(&notices);
 }
 
 static void choose(uint8_t mode)

@@ -44,13 +44,13 @@ static size_t on_room(void *context)
     return room;
 }
 
-static void on_news(void *context, enum net_news news, const char *peer)
+static void on_event(void *context, enum net_event event, const char *peer)
 {
     (void)context;
-    FUZZ_CHECK(strncmp(peer, "127.0.0.1:", 10) == 0 || news != NET_ATTACHED, "'%s'", peer);
-    attached += news == NET_ATTACHED;
-    detached += news == NET_DETACHED;
-    refused += news == NET_REFUSED;
+    FUZZ_CHECK(strncmp(peer, "127.0.0.1:", 10) == 0 || event != NET_ATTACHED, "'%s'", peer);
+    attached += event == NET_ATTACHED;
+    detached += event == NET_DETACHED;
+    refused += event == NET_REFUSED;
     FUZZ_CHECK(attached - detached <= 1, "%u have come, %u have gone", attached, detached);
 }
 
@@ -79,7 +79,7 @@ static void on_purge(void *context)
 static const struct net_port_calls calls = {
     .bytes = on_bytes,
     .room = on_room,
-    .news = on_news,
+    .event = on_event,
     .owner = on_owner,
     .settings = on_settings,
     .line_break = on_break,

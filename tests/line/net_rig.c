@@ -38,11 +38,11 @@ static size_t on_room(void *context)
     return line.room;
 }
 
-static void on_news(void *context, enum net_news news, const char *peer)
+static void on_event(void *context, enum net_event event, const char *peer)
 {
     static const char *const words[] = {"detached ", "attached ", "refused "};
     (void)context;
-    tell(words[news]);
+    tell(words[event]);
     ck_assert(strchr(peer, ':') != NULL);
 }
 
@@ -81,7 +81,7 @@ static void on_purge(void *context)
 const struct net_port_calls net_rig_calls = {
     .bytes = on_bytes,
     .room = on_room,
-    .news = on_news,
+    .event = on_event,
     .owner = on_owner,
     .settings = on_settings,
     .line_break = on_break,

@@ -13,14 +13,14 @@
 
 #include "line/line_settings.h"
 
-#define HEARD_MAX 2000
+#define RECEIVED_MAX 2000
 
 static const struct line_settings at_9600 = {9600, 8, 'N', 2}, at_19200 = {19200, 8, 'N', 2}, at_38400 = {38400, 8, 'N', 2};
 
 /* What has been heard since listen_to(). */
-static struct line_heard heard[HEARD_MAX];
+static struct line_received received[RECEIVED_MAX];
 static size_t count;
-static struct line_ear ear;
+static struct line_receiver receiver;
 
 /* ---- The client's settings ------------------------------------------------------------------------------------------ */
 
@@ -85,16 +85,16 @@ END_TEST
 START_TEST(U7_a_difference_is_told_once_and_again_when_it_changes)
 {
     struct line_settings known = line_settings_unit;
-    char news[LINE_NEWS_MAX];
-    ck_assert(!line_settings_news(&known, at_19200, news));
-    ck_assert(line_settings_news(&known, at_9600, news));
-    ck_assert_str_eq(news, "client is 9600 8N1, unit is 19200 8N1");
-    ck_assert(!line_settings_news(&known, at_9600, news));
-    ck_assert(line_settings_news(&known, line_settings_of(9600, 7, 'E', 3), news));
-    ck_assert_str_eq(news, "client is 9600 7E1.5, unit is 19200 8N1");
-    ck_assert(line_settings_news(&known, at_19200, news));
-    ck_assert_str_eq(news, "client is 19200 8N1, as the unit is");
-    ck_assert(!line_settings_news(&known, at_19200, news));
+    char change[LINE_SETTINGS_CHANGE_MAX];
+    ck_assert(!line_settings_changed(&known, at_19200, change));
+    ck_assert(line_settings_changed(&known, at_9600, change));
+    ck_assert_str_eq(change, "client is 9600 8N1, unit is 19200 8N1");
+    ck_assert(!line_settings_changed(&known, at_9600, change));
+    ck_assert(line_settings_changed(&known, line_settings_of(9600, 7, 'E', 3), change));
+    ck_assert_str_eq(change, "client is 9600 7E1.5, unit is 19200 8N1");
+    ck_assert(line_settings_changed(&known, at_19200, change));
+    ck_assert_str_eq(change, "client is 19200 8N1, as the unit is");
+    ck_assert(!line_settings_changed(&known, at_19200, change));
 }
 END_TEST
 
@@ -102,13 +102,13 @@ END_TEST
 
 static void say(uint8_t byte, uint64_t tick)
 {
-    ck_assert_uint_le(count + LINE_EAR_MAX, HEARD_MAX);
-    count += line_ear_byte(&ear, byte, tick, heard + count);
+    ck_assert_uint_le(count + LINE_RECEIVER_MAX, RECEIVED_MAX);
+    count += line_receiver_byte(&receiver, byte, tick, received + count);
 }
 
 static void listen_to(struct line_settings from, struct line_settings to, bool keeps_bad)
 {
-    line_ear_begin(&ear, from, to, keeps_bad);
+    line_receiver_begin(&receiver, from, to, keeps_bad);
     count = 0;
 }
 
@@ -118,7 +118,7 @@ static void hear_all(struct line_settings from, struct line_settings to, bool ke
     listen_to(from, to, keeps_bad);
     for (size_t i = 0; i < length; i++)
         say(bytes[i], 0);
-    count += line_ear_silence(&ear, heard + count);
+    count += line_receiver_silence(&receiver, received + count);
 }
 
 /* One byte alone; `expected` is what is heard. */
@@ -128,8 +128,8 @@ static void assert_heard(struct line_settings from, struct line_settings to, uin
     hear_all(from, to, false, &byte, 1);
     ck_assert_msg(count == length, "of %02X %zu bytes are heard, not %zu", byte, count, length);
     for (size_t i = 0; i < length; i++)
-        ck_assert_uint_eq(heard[i].byte, (uint8_t)expected[i]);
-    ck_assert_uint_eq(ear.framing_errors, framing_errors);
+        ck_assert_uint_eq(received[i].byte, (uint8_t)expected[i]);
+    ck_assert_uint_eq(receiver.framing_errors, framing_errors);
 }
 
 START_TEST(U7_equal_ends_hear_what_is_said)
@@ -146,8 +146,8 @@ START_TEST(U7_equal_ends_hear_what_is_said)
                 hear_all(both, both, false, bytes, 256);
                 ck_assert_uint_eq(count, 256);
                 for (unsigned j = 0; j < 256; j++)
-                    ck_assert_uint_eq(heard[j].byte, j & ((1u << data_bits) - 1));
-                ck_assert_uint_eq(ear.framing_errors, 0);
+                    ck_assert_uint_eq(received[j].byte, j & ((1u << data_bits) - 1));
+                ck_assert_uint_eq(receiver.framing_errors, 0);
             }
 }
 END_TEST
@@ -158,11 +158,11 @@ START_TEST(a_byte_begins_when_it_is_said_or_when_the_line_is_free)
     say('a', 1000000);
     say('b', 1000000);
     say('c', 3000000000000);
-    count += line_ear_silence(&ear, heard + count);
+    count += line_receiver_silence(&receiver, received + count);
     ck_assert_uint_eq(count, 3);
-    ck_assert_uint_eq(heard[0].tick, 1000000);
-    ck_assert_uint_eq(heard[1].tick, 1000520); /* 520 5/6 us a byte */
-    ck_assert_uint_eq(heard[2].tick, 3000000000000);
+    ck_assert_uint_eq(received[0].tick, 1000000);
+    ck_assert_uint_eq(received[1].tick, 1000520); /* 520 5/6 us a byte */
+    ck_assert_uint_eq(received[2].tick, 3000000000000);
 }
 END_TEST
 
@@ -172,11 +172,11 @@ START_TEST(silence_takes_no_time_from_what_follows)
     for (unsigned i = 0; i < 2; i++) {
         say('A', 0);
         ck_assert_uint_eq(count, i); /* what begins with its last bit is under way still */
-        count += line_ear_silence(&ear, heard + count);
+        count += line_receiver_silence(&receiver, received + count);
         ck_assert_uint_eq(count, i + 1);
     }
-    ck_assert_uint_eq(heard[0].tick, 833);  /* eight bits at 9600 baud */
-    ck_assert_uint_eq(heard[1].tick, 1875); /* ten more */
+    ck_assert_uint_eq(received[0].tick, 833);  /* eight bits at 9600 baud */
+    ck_assert_uint_eq(received[1].tick, 1875); /* ten more */
 }
 END_TEST
 
@@ -234,23 +234,23 @@ START_TEST(a_client_on_Linux_hears_characters_with_a_wrong_stop_bit_too)
     const uint8_t zero = 0x00;
     hear_all(at_19200, line_settings_of(38400, 8, 'N', 1), true, &zero, 1);
     ck_assert_uint_eq(count, 1);
-    ck_assert_uint_eq(heard[0].byte, 0x00);
-    ck_assert_uint_eq(ear.framing_errors, 1);
+    ck_assert_uint_eq(received[0].byte, 0x00);
+    ck_assert_uint_eq(receiver.framing_errors, 1);
 }
 END_TEST
 
 START_TEST(only_the_ratio_of_the_speeds_matters)
 {
-    static struct line_heard slow[HEARD_MAX];
+    static struct line_received slow[RECEIVED_MAX];
     for (unsigned i = 0; i < 65536; i += 13) {
         const uint8_t bytes[] = {(uint8_t)i, (uint8_t)(i >> 8)};
         hear_all(at_9600, at_19200, false, bytes, 2);
         size_t heard_slow = count;
-        memcpy(slow, heard, sizeof heard[0] * count);
+        memcpy(slow, received, sizeof received[0] * count);
         hear_all(at_19200, at_38400, false, bytes, 2);
         ck_assert_uint_eq(count, heard_slow);
         for (size_t j = 0; j < count; j++)
-            ck_assert_uint_eq(heard[j].byte, slow[j].byte);
+            ck_assert_uint_eq(received[j].byte, slow[j].byte);
     }
 }
 END_TEST
@@ -305,7 +305,7 @@ START_TEST(any_bytes_at_any_two_speeds_are_heard_as_a_second_receiver_hears_them
     const size_t number = sizeof speeds / sizeof speeds[0];
     srand(7);
     for (unsigned round = 0; round < 2000; round++) {
-        uint8_t bytes[20], expected[HEARD_MAX];
+        uint8_t bytes[20], expected[RECEIVED_MAX];
         const struct line_settings from = {speeds[(size_t)rand() % number], 8, 'N', (uint8_t)(2 + rand() % 3)};
         const struct line_settings to = {speeds[(size_t)rand() % number], 8, 'N', 2};
         const size_t length = 1 + (size_t)rand() % sizeof bytes;
@@ -315,7 +315,7 @@ START_TEST(any_bytes_at_any_two_speeds_are_heard_as_a_second_receiver_hears_them
         size_t found = reference(&(struct row){&from, &to, bytes, length}, expected);
         ck_assert_msg(found == count, "%u -> %u: %zu bytes heard, not %zu", from.baud, to.baud, count, found);
         for (size_t i = 0; i < found; i++)
-            ck_assert_uint_eq(heard[i].byte, expected[i]);
+            ck_assert_uint_eq(received[i].byte, expected[i]);
     }
 }
 END_TEST
@@ -330,7 +330,7 @@ START_TEST(U7_two_per_cent_off_the_speed_does_no_harm)
         hear_all(off[i], at_19200, false, bytes, 256);
         ck_assert_uint_eq(count, 256);
         for (unsigned j = 0; j < 256; j++)
-            ck_assert_uint_eq(heard[j].byte, j);
+            ck_assert_uint_eq(received[j].byte, j);
     }
 }
 END_TEST
@@ -351,7 +351,7 @@ static unsigned requests_taken(struct line_settings client)
     hear_all(client, line_settings_unit, false, frame, length);
     rkm04_init(&unit, &config, &nothing, NULL);
     for (size_t i = 0; i < count; i++)
-        ck_assert_uint_eq(rkm04_receive(&unit, &heard[i].byte, 1), 1);
+        ck_assert_uint_eq(rkm04_receive(&unit, &received[i].byte, 1), 1);
     return rkm04_counters(&unit).requests;
 }
 

@@ -118,7 +118,7 @@ END_TEST
 
 START_TEST(many_at_once_are_all_sent_away)
 {
-    enum { CROWD = 3 * NET_PEERS };
+    enum { CROWD = 3 * NET_CONNECTIONS };
     int crowd[CROWD];
     char text[200];
     open_line(NET_RAW, "0");
@@ -234,9 +234,9 @@ START_TEST(a_client_that_has_sent_much_and_gone_gives_way_at_once)
     size_t data = _i ? sizeof much / 2 : sizeof much;
     size_t taken = 100 + line.port.to_line_count;
     ck_assert_uint_le(taken, 100 + NET_TO_LINE);
-    ck_assert_uint_gt(line.port.unheard, 0);
+    ck_assert_uint_gt(line.port.unread, 0);
     if (_i == 0)
-        ck_assert_uint_eq(taken + line.port.unheard, data);
+        ck_assert_uint_eq(taken + line.port.unread, data);
     close(second);
     close_line();
 }
@@ -291,7 +291,7 @@ static size_t count_refused(void)
 /* Each of them would be waited for, a second long. */
 START_TEST(a_crowd_that_is_sent_away_and_stays_delays_nobody)
 {
-    enum { CROWD = 12 * NET_PEERS };
+    enum { CROWD = 12 * NET_CONNECTIONS };
     int crowd[CROWD];
     open_line(NET_RAW, "0");
     line.owner = "the pty";
