@@ -87,6 +87,7 @@ static int flash_program(void *context, unsigned number, unsigned block, unsigne
 static bool open_flash(struct bus *bus)
 {
     const struct bus_options *options = bus->options;
+    const struct device_kind *device = options->device ? options->device : &rkm04_device;
     for (unsigned at = 0; options->flash && at < options->nodes.count; at++) {
         struct bus_unit *unit = &bus->unit[at];
         char path[PATH_MAX], name[NODE_NAME_SIZE];
@@ -96,7 +97,7 @@ static bool open_flash(struct bus *bus)
             return false;
         }
         unit->flash_path = strdup(path);
-        if (!flash_file_open(&unit->flash, unit->flash_path))
+        if (!flash_file_open(&unit->flash, unit->flash_path, device->flash_blocks, device->flash_block_size))
             return false;
         unit->open = true;
     }
@@ -201,7 +202,7 @@ static const struct bus_ports_calls ports_calls = {
 static uint64_t on_due(const void *context)
 {
     const struct bus *bus = context;
-    return bus->gathered > 0 ? bus->answered : RKM04_NEVER;
+    return bus->gathered > 0 ? bus->answered : DEVICE_NEVER;
 }
 
 static void on_advanced(void *context)

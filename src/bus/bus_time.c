@@ -76,9 +76,9 @@ static void serve_waiters(struct bus_time *time)
 /* The tick up to which nobody who waits has to look. */
 static uint64_t next_waiter_tick(const struct bus_time *time)
 {
-    uint64_t next = RKM04_NEVER, now = sim_now(time->sim);
+    uint64_t next = DEVICE_NEVER, now = sim_now(time->sim);
     for (const struct bus_waiter *waiter = time->waiters; waiter; waiter = waiter->next) {
-        uint64_t when = waiter->condition ? condition_next(waiter->condition) : RKM04_NEVER;
+        uint64_t when = waiter->condition ? condition_next(waiter->condition) : DEVICE_NEVER;
         if (waiter->limit < when)
             when = waiter->limit;
         if (when <= now)
@@ -121,19 +121,19 @@ static uint64_t next_byte_tick(const struct bus_time *time)
 }
 
 /* --clock max: the tick to leap to at `now` (ns): that of the next byte under way; else, unless the rest of a frame is on its
- * way, past the next thing that happens. RKM04_NEVER: no reason to leap. */
+ * way, past the next thing that happens. DEVICE_NEVER: no reason to leap. */
 static uint64_t leap_target(const struct bus_time *time, uint64_t now)
 {
     if (!time->clock.runs_ahead || sim_time_is_over(time->sim))
-        return RKM04_NEVER;
+        return DEVICE_NEVER;
     uint64_t byte = next_byte_tick(time);
-    if (byte != RKM04_NEVER)
+    if (byte != DEVICE_NEVER)
         return byte < SIM_TIME_MAX ? byte : SIM_TIME_MAX;
     if (segment_in_frame(&time->sim->segment) && now - time->last_byte < FRAME_SILENCE)
-        return RKM04_NEVER;
+        return DEVICE_NEVER;
     uint64_t event = sim_next_event(time->sim), least = sim_now(time->sim) + LEAP;
-    if (event == RKM04_NEVER)
-        return RKM04_NEVER;
+    if (event == DEVICE_NEVER)
+        return DEVICE_NEVER;
     uint64_t leap = event < least ? least : event + 1;
     return leap < SIM_TIME_MAX ? leap : SIM_TIME_MAX;
 }
@@ -144,7 +144,7 @@ static uint64_t find_target(struct bus_time *time, uint64_t now)
     if (bus_time_is_stepped(time))
         return time->goal;
     uint64_t tick = clock_tick(time, now), leap = leap_target(time, now);
-    if (leap == RKM04_NEVER || leap <= tick)
+    if (leap == DEVICE_NEVER || leap <= tick)
         return tick;
     virtual_clock_leap(&time->clock, now, leap);
     return leap;
@@ -157,7 +157,7 @@ static void report_cuts(struct bus_time *time)
     if (counters.cuts > time->cuts && time->cuts < CUTS_TOLD)
         bus_log(time->log, "units have answered one another more than %u times without a request, for %" PRIu64 ".%06" PRIu64
                      " s in all: stopped; do two units have the same address?", SEGMENT_UNASKED_MAX,
-                counters.cut_ticks / RKM04_TICKS_PER_SECOND, counters.cut_ticks % RKM04_TICKS_PER_SECOND);
+                counters.cut_ticks / US_PER_SECOND, counters.cut_ticks % US_PER_SECOND);
     time->cuts = counters.cuts;
 }
 
@@ -169,7 +169,7 @@ static void advance_sim(struct bus_time *time, uint64_t tick)
     if (end < tick) {
         uint64_t event = sim_next_event(time->sim);
         if (end <= event)
-            end = event == RKM04_NEVER ? RKM04_NEVER : event + 1;
+            end = event == DEVICE_NEVER ? DEVICE_NEVER : event + 1;
     }
     if (wanted < end)
         end = wanted;
@@ -189,17 +189,17 @@ static uint64_t next_wake_time(const struct bus_time *time, uint64_t now)
     uint64_t byte = next_byte_tick(time), event = sim_next_event(time->sim), wanted = next_waiter_tick(time), when = 0;
     if (bus_time_is_stepped(time) || sim_time_is_over(time->sim))
         return 0;
-    if (leap_target(time, now) != RKM04_NEVER)
+    if (leap_target(time, now) != DEVICE_NEVER)
         return now;
     if (wanted < byte)
         byte = wanted;
     if (faults_next(&time->sim->faults) < byte)
         byte = faults_next(&time->sim->faults); /* an adapter that is unplugged shows at once */
-    if (byte != RKM04_NEVER) {
+    if (byte != DEVICE_NEVER) {
         when = virtual_clock_when(&time->clock, byte);
         when = when > 0 ? when : now;
     }
-    if (event != RKM04_NEVER) {
+    if (event != DEVICE_NEVER) {
         uint64_t look = virtual_clock_when(&time->clock, event + 1), rest = is_watched(time) ? REST_WATCHED : REST;
         if (look < now + rest)
             look = now + rest;
@@ -248,7 +248,7 @@ static void log_end_of_time(struct bus_time *time)
     if (time->over_logged || !sim_time_is_over(time->sim))
         return;
     bus_log(time->log, "virtual time has reached its end, %" PRIu64 " s: the units' time does not go on, and they "
-            "answer no more. Start again", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND);
+            "answer no more. Start again", SIM_TIME_MAX / US_PER_SECOND);
     time->over_logged = true;
 }
 
@@ -263,7 +263,7 @@ void bus_time_catch_up(struct bus_time *time)
         advance_sim(time, tick);
         time->calls->advanced(time->context);
         now = uv_hrtime();
-    } while (now - start < STINT && (sim_now(time->sim) < tick || leap_target(time, now) != RKM04_NEVER));
+    } while (now - start < STINT && (sim_now(time->sim) < tick || leap_target(time, now) != DEVICE_NEVER));
     log_if_behind(time, now, sim_now(time->sim) < tick);
     log_end_of_time(time);
     time->calls->before_sleep(time->context);

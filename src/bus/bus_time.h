@@ -24,7 +24,7 @@ struct bus_waiter {
 };
 
 struct bus_time_calls {
-    uint64_t (*due)(const void *context); /* returns the tick at which gathered bytes are to leave; RKM04_NEVER: there are none */
+    uint64_t (*due)(const void *context); /* tick at which gathered bytes are to leave; DEVICE_NEVER: there are none */
     void (*advanced)(void *context);      /* the units have been advanced: gathered bytes may be due */
     void (*before_sleep)(void *context);  /* nothing more to do for now */
 };

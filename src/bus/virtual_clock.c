@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "device/device.h"
+
 #define REAL 1000u        /* thousandths */
 #define FASTEST 10000000u /* thousandths */
 #define NS_PER_TICK 1000u
@@ -68,7 +70,7 @@ uint64_t virtual_clock_when(const struct virtual_clock *clock, uint64_t tick)
     if (tick <= clock->leapt)
         return clock->start;
     if (clock->stands)
-        return RKM04_NEVER;
+        return DEVICE_NEVER;
     uint64_t ticks = tick - clock->leapt;
     uint64_t rest = ticks % clock->thousandths * unit;
     return clock->start + ticks / clock->thousandths * unit + (rest + clock->thousandths - 1) / clock->thousandths;

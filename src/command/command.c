@@ -128,7 +128,7 @@ bool param_time(const json_t *params, const char *name, uint64_t missing, uint64
 {
     const json_t *value = json_object_get(params, name);
     size_t wrong;
-    if (!value && missing != RKM04_NEVER) {
+    if (!value && missing != DEVICE_NEVER) {
         *ticks = missing;
         return true;
     }

@@ -58,7 +58,7 @@ bool param_integer(const json_t *params, const char *name, int64_t low, int64_t 
 bool param_integer_or(const json_t *params, const char *name, int64_t low, int64_t high, int64_t missing, int64_t *value,
                       struct refusal *refusal);
 
-/* Read a time: a whole number of us, or a string as in time_value.h ("1.5s"). Refused as above; `missing`: RKM04_NEVER must be
+/* Read a time: a whole number of us, or a string as in time_value.h ("1.5s"). Refused as above; `missing`: DEVICE_NEVER must be
  * given. */
 bool param_time(const json_t *params, const char *name, uint64_t missing, uint64_t *ticks, struct refusal *refusal);
 

@@ -41,7 +41,7 @@ static json_t *command_state(struct sim *sim, const json_t *params, struct refus
 /* ---- Inputs --------------------------------------------------------------------------------------------------------- */
 
 /* Read the inputs named in `di` into `given`, and their levels. */
-static bool read_inputs(const json_t *di, unsigned inputs, uint8_t *given, uint8_t *levels, struct refusal *refusal)
+static bool read_inputs(const json_t *di, unsigned inputs, uint32_t *given, uint32_t *levels, struct refusal *refusal)
 {
     const char *name;
     const json_t *value;
@@ -52,7 +52,7 @@ static bool read_inputs(const json_t *di, unsigned inputs, uint8_t *given, uint8
             refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': expected 1 to %u", name, inputs);
             return false;
         }
-        uint8_t bit = (uint8_t)(1u << (input - 1));
+        uint32_t bit = UINT32_C(1) << (input - 1);
         if (level < 0) {
             refuse(refusal, REFUSED_PARAMS, "di: input %u: expected 0 or 1", input);
             return false;
@@ -62,12 +62,12 @@ static bool read_inputs(const json_t *di, unsigned inputs, uint8_t *given, uint8
             return false;
         }
         *given |= bit;
-        *levels = (uint8_t)(level ? *levels | bit : *levels & ~bit);
+        *levels = level ? *levels | bit : *levels & ~bit;
     }
     return true;
 }
 
-static bool read_di(const json_t *params, unsigned inputs, uint8_t *given, uint8_t *levels, struct refusal *refusal)
+static bool read_di(const json_t *params, unsigned inputs, uint32_t *given, uint32_t *levels, struct refusal *refusal)
 {
     const json_t *di = json_object_get(params, "di"), *mask = json_object_get(params, "mask");
     int64_t value;
@@ -79,8 +79,8 @@ static bool read_di(const json_t *params, unsigned inputs, uint8_t *given, uint8
     }
     if (!param_integer(params, "mask", 0, (INT64_C(1) << inputs) - 1, &value, refusal))
         return false;
-    *given = UINT8_MAX;
-    *levels = (uint8_t)value;
+    *given = UINT32_MAX;
+    *levels = (uint32_t)value;
     return true;
 }
 
@@ -90,16 +90,16 @@ static json_t *command_di_set(struct sim *sim, const json_t *params, struct refu
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
     if (number == 0)
         return NULL;
-    uint8_t given = 0, levels = sim->unit[number - 1].di;
+    uint32_t given = 0, levels = sim->unit[number - 1].di;
     if (!read_di(params, sim_device(sim)->inputs, &given, &levels, refusal))
         return NULL;
     sim_set_di(sim, number, levels);
-    uint8_t inputs = (uint8_t)sim_device(sim)->inputs_of(sim_core(sim, number));
+    uint32_t inputs = sim_device(sim)->inputs_of(sim_core(sim, number));
     json_t *overridden = json_array();
     for (unsigned input = 1; input <= sim_device(sim)->inputs; input++)
         if (((inputs ^ levels) & given) >> (input - 1) & 1)
             json_array_append_new(overridden, json_integer((json_int_t)input));
-    return json_pack("{s:I, s:i, s:o}", "t_us", (json_int_t)sim_now(sim), "di", (int)inputs, "overridden", overridden);
+    return json_pack("{s:I, s:I, s:o}", "t_us", (json_int_t)sim_now(sim), "di", (json_int_t)inputs, "overridden", overridden);
 }
 
 /* ---- Power and address ---------------------------------------------------------------------------------------------- */

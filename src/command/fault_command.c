@@ -68,12 +68,12 @@ static bool read_byte(const json_t *params, struct fault *fault, struct refusal 
 
 static bool read_delay(const json_t *params, struct fault *fault, struct refusal *refusal)
 {
-    if (!param_time(params, "delay", RKM04_NEVER, &fault->ticks, refusal))
+    if (!param_time(params, "delay", DEVICE_NEVER, &fault->ticks, refusal))
         return false;
     if (fault->ticks <= SEGMENT_DELAY_MAX)
         return true;
     refuse(refusal, REFUSED_PARAMS, "delay: expected a time up to %llus",
-           (unsigned long long)(SEGMENT_DELAY_MAX / RKM04_TICKS_PER_SECOND));
+           (unsigned long long)(SEGMENT_DELAY_MAX / US_PER_SECOND));
     return false;
 }
 
@@ -201,17 +201,17 @@ static bool read_occasions(const json_t *params, struct fault *fault, struct ref
 
 static bool read_window(const struct sim *sim, const json_t *params, struct fault *fault, struct refusal *refusal)
 {
-    uint64_t after, length = RKM04_NEVER;
+    uint64_t after, length = DEVICE_NEVER;
     if (!param_time(params, "after", 0, &after, refusal))
         return false;
-    if (json_object_get(params, "for") && !param_time(params, "for", RKM04_NEVER, &length, refusal))
+    if (json_object_get(params, "for") && !param_time(params, "for", DEVICE_NEVER, &length, refusal))
         return false;
     if (length == 0) {
         refuse(refusal, REFUSED_PARAMS, "for: expected a time of at least 1us");
         return false;
     }
     fault->from = sim_now(sim) + after;
-    fault->until = length == RKM04_NEVER ? RKM04_NEVER : fault->from + length;
+    fault->until = length == DEVICE_NEVER ? DEVICE_NEVER : fault->from + length;
     return true;
 }
 
@@ -220,15 +220,15 @@ static bool read_spell(const json_t *params, unsigned takes, struct fault *fault
     if (!(takes & DURATION))
         return true;
     bool given = json_object_get(params, "duration") != NULL;
-    fault->ticks = RKM04_NEVER;
-    if (given && !param_time(params, "duration", RKM04_NEVER, &fault->ticks, refusal))
+    fault->ticks = DEVICE_NEVER;
+    if (given && !param_time(params, "duration", DEVICE_NEVER, &fault->ticks, refusal))
         return false;
     if (!param_time(params, "every", 0, &fault->every, refusal))
         return false;
     const char *wrong = NULL;
     if (given && fault->ticks == 0)
         wrong = "duration: expected a time of at least 1us";
-    else if (fault->kind == FAULT_BREAK && !given && fault->until == RKM04_NEVER)
+    else if (fault->kind == FAULT_BREAK && !given && fault->until == DEVICE_NEVER)
         wrong = "duration: missing: how long the bus is held at 0, as in \"20ms\"";
     else if (fault->every > 0 && (!given || fault->ticks >= fault->every))
         wrong = "every: expected a duration, too, and a time longer than the duration";
@@ -309,7 +309,7 @@ static void put(json_t *object, const char *name, json_t *value)
 
 static void put_time(json_t *object, const char *name, uint64_t ticks)
 {
-    put(object, name, ticks == RKM04_NEVER ? json_null() : json_integer((json_int_t)ticks));
+    put(object, name, ticks == DEVICE_NEVER ? json_null() : json_integer((json_int_t)ticks));
 }
 
 static const char *state_of(const struct fault *fault, uint64_t now)
@@ -386,7 +386,7 @@ static json_t *show(const struct sim *sim, const struct fault *fault)
     if (fault->kind >= FAULT_POWER)
         put_time(object, "duration_us", fault->ticks);
     if (fault->kind >= FAULT_BREAK)
-        put_time(object, "every_us", fault->every > 0 ? fault->every : RKM04_NEVER);
+        put_time(object, "every_us", fault->every > 0 ? fault->every : DEVICE_NEVER);
     put_own(object, fault);
     return object;
 }

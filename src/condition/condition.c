@@ -167,7 +167,7 @@ void condition_free(struct condition *condition)
 /* The next tick, of those after `now`, from which a term about time may turn out otherwise. */
 static uint64_t next_time(const struct term *term, uint64_t now)
 {
-    uint64_t next = RKM04_NEVER;
+    uint64_t next = DEVICE_NEVER;
     if (term->kind == TERM_TIME && term->value >= 0) {
         uint64_t at = (uint64_t)term->value;
         if (at > now)
@@ -201,7 +201,7 @@ uint64_t condition_next(const struct condition *condition)
     if (!asks_units(&condition->root))
         return next;
     uint64_t event = sim_next_event(sim), due = sim_due(sim);
-    if (event != RKM04_NEVER && event + 1 < next)
+    if (event != DEVICE_NEVER && event + 1 < next)
         next = event + 1; /* it is over then */
     if (due < next)
         next = due > now ? due : now + 1;
@@ -215,7 +215,7 @@ bool condition_step(struct condition *condition, uint64_t limit)
     uint64_t next = condition_next(condition);
     if (next > limit)
         next = limit;
-    if (next != RKM04_NEVER && next > sim_now(condition->sim))
+    if (next != DEVICE_NEVER && next > sim_now(condition->sim))
         sim_advance(condition->sim, next);
     return condition_holds(condition);
 }
@@ -224,7 +224,7 @@ bool condition_run(struct condition *condition, uint64_t limit)
 {
     bool held = condition_holds(condition);
     while (!held && sim_now(condition->sim) < limit) {
-        if ((limit == RKM04_NEVER && condition_next(condition) == RKM04_NEVER) || sim_time_is_over(condition->sim))
+        if ((limit == DEVICE_NEVER && condition_next(condition) == DEVICE_NEVER) || sim_time_is_over(condition->sim))
             break; /* nothing will ever happen */
         held = condition_step(condition, limit);
     }
@@ -248,7 +248,7 @@ static void print_value(FILE *out, const struct term *term, const struct sim *si
 {
     switch ((enum term_kind)term->kind) {
     case TERM_TIME:
-        fprintf(out, "%" PRId64 ".%06" PRId64 " s", number / RKM04_TICKS_PER_SECOND, number % RKM04_TICKS_PER_SECOND);
+        fprintf(out, "%" PRId64 ".%06" PRId64 " s", number / US_PER_SECOND, number % US_PER_SECOND);
         break;
     case TERM_STATE:
         fputs(sim_device(sim)->state_name((unsigned)number), out);

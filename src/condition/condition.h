@@ -29,7 +29,7 @@ void condition_arm(struct condition *condition);
 /* Does it hold at the present tick? A pulse at tick t counts from t + 1 on. */
 bool condition_holds(struct condition *condition);
 
-/* When it may hold next if nothing comes from outside: no need to look before. RKM04_NEVER: never of itself. */
+/* When it may hold next if nothing comes from outside: no need to look before. DEVICE_NEVER: never of itself. */
 uint64_t condition_next(const struct condition *condition);
 
 /* One step of time towards `limit`, no further than to where the condition may have come to hold. Returns whether it holds. */

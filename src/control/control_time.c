@@ -90,13 +90,13 @@ static uint64_t slice_end(const struct sim *sim)
     uint64_t from = event < byte ? event : byte;
     if (from < sim_now(sim))
         from = sim_now(sim);
-    return from > RKM04_NEVER - SLICE ? RKM04_NEVER : from + SLICE;
+    return from > DEVICE_NEVER - SLICE ? DEVICE_NEVER : from + SLICE;
 }
 
 /* Let time run: to the limit, or to the end of a slice. Returns false if the clock no longer stands. */
 static bool continue_call(struct control_call *call)
 {
-    uint64_t end = call->client->subscriptions ? slice_end(&call->bus->sim) : RKM04_NEVER;
+    uint64_t end = call->client->subscriptions ? slice_end(&call->bus->sim) : DEVICE_NEVER;
     call->waiter.limit = end < call->limit ? end : call->limit;
     call->pausing = false;
     return bus_advance(call->bus, &call->waiter);
@@ -164,7 +164,7 @@ json_t *control_wait(struct control_context *context, struct refusal *refusal)
 {
     static const char *const names[] = {"until", "limit", NULL};
     const json_t *params = context->request->params;
-    uint64_t limit = RKM04_NEVER;
+    uint64_t limit = DEVICE_NEVER;
     if (!params_known(params, names, refusal) ||
         (json_object_get(params, "limit") && !param_time(params, "limit", 0, &limit, refusal)))
         return NULL;
@@ -194,7 +194,7 @@ static bool read_advance(struct control_context *context, struct condition **con
         return false;
     }
     if (given)
-        return param_time(params, "ticks", RKM04_NEVER, ticks, refusal);
+        return param_time(params, "ticks", DEVICE_NEVER, ticks, refusal);
     if (!param_time(params, "limit", HOUR, ticks, refusal))
         return false;
     *condition = read_until(context, refusal);

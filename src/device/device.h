@@ -25,7 +25,8 @@
 #include "coverage.h"
 #include "serve_names.h"
 
-#define DEVICE_FLASH_BLOCK_MAX 4096u /* bytes of a block of flash */
+#define DEVICE_FLASH_BLOCKS_MAX 64u  /* blocks of flash */
+#define DEVICE_FLASH_BLOCK_MAX 4096u /* bytes of a block */
 #define DEVICE_NEVER UINT64_MAX   /* no time */
 #define DEVICE_AXES_MAX 16u       /* of a unit; axis 1..DEVICE_AXES_MAX, 0 is the unit */
 #define DEVICE_BITS_MAX 32u       /* inputs, outputs, variables: bit 0 is the first */

@@ -94,21 +94,21 @@ const struct fault *fault_in_force(const struct faults *faults, enum fault_kind 
     return NULL;
 }
 
-uint8_t faults_hold_inputs(const struct faults *faults, unsigned unit, uint8_t levels)
+uint32_t faults_hold_inputs(const struct faults *faults, unsigned unit, uint32_t levels)
 {
     for (unsigned i = 0; i < faults->count; i++) {
         const struct fault *fault = &faults->fault[i];
         if (fault->kind != FAULT_INPUT || !fault->active || (fault->unit != 0 && fault->unit != unit))
             continue;
-        uint8_t bit = (uint8_t)(1u << (fault->number - 1u));
-        levels = fault->level ? (uint8_t)(levels | bit) : (uint8_t)(levels & ~bit);
+        uint32_t bit = UINT32_C(1) << (fault->number - 1u);
+        levels = fault->level ? levels | bit : levels & ~bit;
     }
     return levels;
 }
 
 static uint64_t later(uint64_t tick, uint64_t ticks)
 {
-    return ticks >= RKM04_NEVER - tick ? RKM04_NEVER : tick + ticks;
+    return ticks >= DEVICE_NEVER - tick ? DEVICE_NEVER : tick + ticks;
 }
 
 static uint64_t earlier(uint64_t a, uint64_t b)
@@ -136,13 +136,13 @@ static void update_spells(struct faults *faults, struct fault *fault)
     }
     while (!fault->active && fault->next <= now) {
         uint64_t at = fault->next;
-        fault->next = fault->every > 0 ? later(at, fault->every) : RKM04_NEVER;
+        fault->next = fault->every > 0 ? later(at, fault->every) : DEVICE_NEVER;
         if (fault->next >= fault->until)
-            fault->next = RKM04_NEVER;
+            fault->next = DEVICE_NEVER;
         if (!use_occasion(faults, fault))
             continue;
         if (fault->counted && fault->left == 0)
-            fault->next = RKM04_NEVER;
+            fault->next = DEVICE_NEVER;
         fault->ends = earlier(later(at, fault->ticks), fault->until);
         fault->active = fault->ends > now;
         if (fault->active)
@@ -155,7 +155,7 @@ static void give_power(struct faults *faults, struct fault *fault)
 {
     unsigned unit = fault->victim;
     fault->victim = 0;
-    fault->ends = RKM04_NEVER;
+    fault->ends = DEVICE_NEVER;
     if (faults->segment->unit[unit - 1u].powered)
         return;
     fault_report(faults, fault, unit, "the power is back");
@@ -196,7 +196,7 @@ void faults_update(struct faults *faults)
 
 uint64_t faults_next(const struct faults *faults)
 {
-    uint64_t next = faults->dying != 0 ? segment_now(faults->segment) : RKM04_NEVER;
+    uint64_t next = faults->dying != 0 ? segment_now(faults->segment) : DEVICE_NEVER;
     for (unsigned i = 0; i < faults->count; i++) {
         const struct fault *fault = &faults->fault[i];
         if (has_spells(fault))
@@ -248,7 +248,7 @@ bool fault_spent(const struct fault *fault, uint64_t now)
 {
     bool done = fault->until <= now || (fault->counted && fault->left == 0);
     if (has_spells(fault))
-        return !fault->active && (done || fault->next == RKM04_NEVER);
+        return !fault->active && (done || fault->next == DEVICE_NEVER);
     return done && fault->victim == 0;
 }
 
@@ -277,8 +277,8 @@ uint32_t faults_add(struct faults *faults, const struct fault *fault)
     struct fault *added = &faults->fault[faults->count++];
     *added = *fault;
     added->id = ++faults->last_id;
-    added->next = has_spells(fault) ? fault->from : RKM04_NEVER;
-    added->ends = RKM04_NEVER;
+    added->next = has_spells(fault) ? fault->from : DEVICE_NEVER;
+    added->ends = DEVICE_NEVER;
     added->acted = 0;
     added->victim = 0;
     added->active = false;

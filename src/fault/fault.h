@@ -39,7 +39,7 @@ enum fault_kind {
     FAULT_BREAK,       /* from here on kinds with spells, `ticks` long. The line is held at 0 */
     FAULT_UNPLUGGED,   /* the adapter is gone: the pty goes away, later a new one comes under the same link */
     FAULT_CABLE,       /* the cable is cut: silence both ways, the port stays. `unit`: that unit's own cable */
-    FAULT_INPUT,       /* input `number` (1..8) is held at `level` */
+    FAULT_INPUT,       /* input `number` (from 1) is held at `level` */
     FAULT_KINDS
 };
 
@@ -69,11 +69,11 @@ struct fault {
     uint32_t acted;      /* times it has */
     uint32_t millionths; /* probability, 1..1 000 000 */
     uint32_t number;     /* a mask, byte, number of bytes, or input */
-    uint64_t from, until; /* window: acts at from <= tick < until; RKM04_NEVER: no end */
-    uint64_t ticks;      /* how long; RKM04_NEVER: to the end of the window */
+    uint64_t from, until; /* window: acts at from <= tick < until; DEVICE_NEVER: no end */
+    uint64_t ticks;      /* how long; DEVICE_NEVER: to the end of the window */
     uint64_t every;      /* spells: from one occasion to the next; 0: there is one only */
-    uint64_t next;       /* spells: tick of the next occasion; RKM04_NEVER: none */
-    uint64_t ends;       /* of the present spell, or when the power comes back; RKM04_NEVER: open */
+    uint64_t next;       /* spells: tick of the next occasion; DEVICE_NEVER: none */
+    uint64_t ends;       /* of the present spell, or when the power comes back; DEVICE_NEVER: open */
     uint8_t victim;      /* FAULT_POWER: the unit that has lost its power; 0: none */
     bool active;         /* a spell is in force */
 };
@@ -134,7 +134,7 @@ bool fault_spent(const struct fault *fault, uint64_t now);
 const struct fault *fault_in_force(const struct faults *faults, enum fault_kind kind, unsigned unit);
 
 /* `levels` of the inputs of a unit, with those that a fault holds as it holds them. */
-uint8_t faults_hold_inputs(const struct faults *faults, unsigned unit, uint8_t levels);
+uint32_t faults_hold_inputs(const struct faults *faults, unsigned unit, uint32_t levels);
 
 /* The flash as the unit finds it: calls.flash_read(), … with what goes wrong. */
 int faults_flash_read(struct faults *faults, unsigned unit, unsigned block, unsigned offset, void *data, unsigned length);
@@ -145,7 +145,7 @@ int faults_flash_program(struct faults *faults, unsigned unit, unsigned block, u
 /* Begin and end what is due by now, and do what follows (inputs, line, adapter, power). */
 void faults_update(struct faults *faults);
 
-/* The next tick at which that is due, which may be over; RKM04_NEVER: never. */
+/* The next tick at which that is due, which may be over; DEVICE_NEVER: never. */
 uint64_t faults_next(const struct faults *faults);
 
 /* All times `shift` ticks later. */

@@ -34,7 +34,7 @@ static bool is_done(struct faults *faults, unsigned unit, enum fault_operation o
     if ((fault = fault_apply(faults, FAULT_POWER, unit, 0, operation))) {
         fault->victim = (uint8_t)unit;
         uint64_t now = segment_now(faults->segment);
-        fault->ends = fault->ticks < RKM04_NEVER - now ? now + fault->ticks : RKM04_NEVER;
+        fault->ends = fault->ticks < DEVICE_NEVER - now ? now + fault->ticks : DEVICE_NEVER;
         faults->dying |= UINT32_C(1) << unit;
         fault_report(faults, fault, unit, "power is lost during %s of block %u", name_of(operation), block);
         tear(faults, unit, block, offset, data, length);
@@ -56,7 +56,8 @@ int faults_flash_read(struct faults *faults, unsigned unit, unsigned block, unsi
 
 int faults_flash_erase(struct faults *faults, unsigned unit, unsigned block)
 {
-    bool done = is_done(faults, unit, FAULT_ERASE, block, 0, NULL, RKM04_FLASH_BLOCK_SIZE);
+    unsigned size = segment_kind(faults->segment)->flash_block_size;
+    bool done = is_done(faults, unit, FAULT_ERASE, block, 0, NULL, size);
     return done ? faults->calls->flash_erase(faults->context, unit, block) : 1;
 }
 

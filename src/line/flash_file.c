@@ -32,17 +32,22 @@ static void sync_folder(const char *path)
     close(fd);
 }
 
+static unsigned size_of(const struct flash_file *flash)
+{
+    return flash->blocks * flash->block_size;
+}
+
 /* Write an erased flash to the new file, which is empty or was left unfinished. */
 static bool make_image(struct flash_file *flash)
 {
-    uint8_t bytes[FLASH_FILE_SIZE];
-    memset(bytes, ERASED, sizeof bytes);
-    ssize_t written = pwrite(flash->fd, bytes, sizeof bytes, 0);
-    if (written == (ssize_t)sizeof bytes && fsync(flash->fd) == 0) {
+    static uint8_t bytes[DEVICE_FLASH_BLOCKS_MAX * DEVICE_FLASH_BLOCK_MAX];
+    memset(bytes, ERASED, size_of(flash));
+    ssize_t written = pwrite(flash->fd, bytes, size_of(flash), 0);
+    if (written == (ssize_t)size_of(flash) && fsync(flash->fd) == 0) {
         sync_folder(flash->path);
         return true;
     }
-    bool full = written >= 0 && written < (ssize_t)sizeof bytes;
+    bool full = written >= 0 && written < (ssize_t)size_of(flash);
     log_error("cannot write the flash image %s: %s", flash->path, full ? "the disk is full" : strerror(errno));
     if (ftruncate(flash->fd, 0) != 0)
         log_error("%s is incomplete: remove it", flash->path);
@@ -52,8 +57,8 @@ static bool make_image(struct flash_file *flash)
 /* Is there nothing in the file but the beginning of an erased flash? Then its making was cut. */
 static bool is_unfinished(const struct flash_file *flash, off_t size)
 {
-    uint8_t bytes[FLASH_FILE_SIZE];
-    if (size >= FLASH_FILE_SIZE || pread(flash->fd, bytes, sizeof bytes, 0) != (ssize_t)size)
+    static uint8_t bytes[DEVICE_FLASH_BLOCKS_MAX * DEVICE_FLASH_BLOCK_MAX];
+    if (size >= (off_t)size_of(flash) || pread(flash->fd, bytes, size_of(flash), 0) != (ssize_t)size)
         return false;
     for (off_t i = 0; i < size; i++)
         if (bytes[i] != ERASED)
@@ -76,8 +81,8 @@ static bool check_image(struct flash_file *flash)
     struct stat found;
     char *why;
     if (fstat(flash->fd, &found) != 0 || !S_ISREG(found.st_mode)) {
-        log_error("--flash: %s is not a file: expected a flash image of %d bytes, or a new name", flash->path,
-                  FLASH_FILE_SIZE);
+        log_error("--flash: %s is not a file: expected a flash image of %u bytes, or a new name", flash->path,
+                  size_of(flash));
         return false;
     }
     if (!output_file_claim(flash->fd, flash->path, &why)) {
@@ -92,10 +97,10 @@ static bool check_image(struct flash_file *flash)
     /* The size under the lock: it may have been made just now. */
     if (fstat(flash->fd, &found) == 0 && is_unfinished(flash, found.st_size))
         return make_image(flash);
-    if (found.st_size == FLASH_FILE_SIZE)
+    if (found.st_size == (off_t)size_of(flash))
         return sync_image(flash);
-    log_error("--flash: %s has %lld bytes and is no flash image: expected %d bytes, or a new name", flash->path,
-              (long long)found.st_size, FLASH_FILE_SIZE);
+    log_error("--flash: %s has %lld bytes and is no flash image: expected %u bytes, or a new name", flash->path,
+              (long long)found.st_size, size_of(flash));
     return false;
 }
 
@@ -118,9 +123,9 @@ static int open_or_make(const char *path)
     return fd < 0 && errno == EEXIST ? open(path, flags) : fd; /* another emulator has made it just now */
 }
 
-bool flash_file_open(struct flash_file *flash, const char *path)
+bool flash_file_open(struct flash_file *flash, const char *path, unsigned blocks, unsigned block_size)
 {
-    *flash = (struct flash_file){.path = path, .unsynced = -1};
+    *flash = (struct flash_file){.path = path, .blocks = blocks, .block_size = block_size, .unsynced = -1};
     flash->fd = open_or_make(path);
     if (flash->fd < 0) {
         log_error("cannot open the flash image %s: %s", path, strerror(errno));
@@ -136,9 +141,9 @@ bool flash_file_open(struct flash_file *flash, const char *path)
 
 /* ---- Operations ----------------------------------------------------------------------------------------------------- */
 
-static bool is_within(unsigned block, unsigned offset, unsigned length)
+static bool is_within(const struct flash_file *flash, unsigned block, unsigned offset, unsigned length)
 {
-    return block < RKM04_FLASH_BLOCKS && offset <= RKM04_FLASH_BLOCK_SIZE && length <= RKM04_FLASH_BLOCK_SIZE - offset;
+    return block < flash->blocks && offset <= flash->block_size && length <= flash->block_size - offset;
 }
 
 bool flash_file_sync(struct flash_file *flash)
@@ -159,7 +164,7 @@ static int write_at(struct flash_file *flash, unsigned block, unsigned offset, c
 {
     flash->unsynced = (int)block;
     flash->end = offset + length;
-    ssize_t written = pwrite(flash->fd, data, length, block * RKM04_FLASH_BLOCK_SIZE + offset);
+    ssize_t written = pwrite(flash->fd, data, length, block * flash->block_size + offset);
     if (written == (ssize_t)length)
         return 0;
     log_error("cannot write the flash image %s: %s", flash->path, written >= 0 ? "the disk is full" : strerror(errno));
@@ -168,13 +173,13 @@ static int write_at(struct flash_file *flash, unsigned block, unsigned offset, c
 
 int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, void *data, unsigned length)
 {
-    if (!is_within(block, offset, length))
+    if (!is_within(flash, block, offset, length))
         return 1;
     if (flash->unsynced == (int)block)
         flash_file_sync(flash);
     if (flash->lost[block])
         return 1;
-    if (pread(flash->fd, data, length, block * RKM04_FLASH_BLOCK_SIZE + offset) == (ssize_t)length)
+    if (pread(flash->fd, data, length, block * flash->block_size + offset) == (ssize_t)length)
         return 0;
     log_error("cannot read the flash image %s", flash->path);
     return 1;
@@ -182,20 +187,20 @@ int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, v
 
 int flash_file_erase(struct flash_file *flash, unsigned block)
 {
-    uint8_t bytes[RKM04_FLASH_BLOCK_SIZE];
-    if (!is_within(block, 0, sizeof bytes))
+    uint8_t bytes[DEVICE_FLASH_BLOCK_MAX];
+    if (!is_within(flash, block, 0, flash->block_size))
         return 1;
-    memset(bytes, ERASED, sizeof bytes);
+    memset(bytes, ERASED, flash->block_size);
     if (flash->unsynced != (int)block && !flash_file_sync(flash))
         return 1;
-    int result = write_at(flash, block, 0, bytes, sizeof bytes);
+    int result = write_at(flash, block, 0, bytes, flash->block_size);
     flash->lost[block] = flash->lost[block] && result != 0;
     return result;
 }
 
 int flash_file_program(struct flash_file *flash, unsigned block, unsigned offset, const void *data, unsigned length)
 {
-    if (!is_within(block, offset, length))
+    if (!is_within(flash, block, offset, length))
         return 1;
     bool follows = flash->unsynced == (int)block && offset == flash->end;
     if ((!follows && !flash_file_sync(flash)) || flash->lost[block])

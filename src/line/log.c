@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <rkm04/limits.h>
+#include "text/text.h"
 
 #include "delivery.h"
 
@@ -157,7 +157,7 @@ void log_at(uint64_t tick, const char *format, ...)
 {
     char head[64];
     va_list list;
-    snprintf(head, sizeof head, "[%6" PRIu64 ".%06" PRIu64 "] ", tick / RKM04_TICKS_PER_SECOND, tick % RKM04_TICKS_PER_SECOND);
+    snprintf(head, sizeof head, "[%6" PRIu64 ".%06" PRIu64 "] ", tick / US_PER_SECOND, tick % US_PER_SECOND);
     va_start(list, format);
     put_line(head, format, list);
     va_end(list);

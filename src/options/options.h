@@ -2,7 +2,6 @@
 /* options.h: what the command lines of all programs share; the face of the room.
  *
  *     arguments        reading a command line, with --help and --version
- *     nearest          the known name next to a wrong one, for messages
  *     process          what a program must not inherit from whoever starts it
  *     readings_option  --readings
  *     socket_address   the address of a Unix socket
@@ -12,7 +11,6 @@
 #define RKM04_OPTIONS_H
 
 #include "arguments.h"
-#include "nearest.h"
 #include "process.h"
 #include "readings_option.h"
 #include "socket_address.h"

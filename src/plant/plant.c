@@ -7,13 +7,20 @@
 
 #include "plant_model.h"
 
-struct plant *plant_new(void)
+static size_t size_of(unsigned axes)
 {
-    struct plant *plant = calloc(1, sizeof *plant);
-    for (unsigned at = 0; plant && at < PLANT_AXES; at++) {
+    return sizeof(struct plant) + axes * sizeof(struct plant_motor);
+}
+
+struct plant *plant_new(unsigned axes)
+{
+    struct plant *plant = calloc(1, size_of(axes));
+    if (plant)
+        plant->axes = axes;
+    for (unsigned at = 0; plant && at < axes; at++) {
         plant->motor[at].low = INT64_MIN;
         plant->motor[at].high = INT64_MAX;
-        plant->motor[at].stall.last = RKM04_NEVER;
+        plant->motor[at].stall.last = DEVICE_NEVER;
     }
     return plant;
 }
@@ -108,7 +115,7 @@ static bool within(const struct plant_motor *motor, const struct plant_switch *c
 void plant_switch_begin(const struct plant *plant, struct plant_switch *contact)
 {
     contact->on = contact->contact = within(&plant->motor[contact->motor - 1u], contact, 0);
-    contact->next = RKM04_NEVER;
+    contact->next = DEVICE_NEVER;
 }
 
 static uint64_t next_random(uint64_t *state)
@@ -135,7 +142,7 @@ static void switch_follows(const struct plant *plant, struct plant_switch *conta
         return;
     contact->on = contact->contact = on;
     contact->settled = tick + contact->bounce;
-    contact->next = RKM04_NEVER;
+    contact->next = DEVICE_NEVER;
     if (contact->bounce > 0)
         plan_bounce(contact, tick);
 }
@@ -143,7 +150,7 @@ static void switch_follows(const struct plant *plant, struct plant_switch *conta
 static void bounce(struct plant_switch *contact)
 {
     uint64_t tick = contact->next;
-    contact->next = RKM04_NEVER;
+    contact->next = DEVICE_NEVER;
     contact->contact = tick < contact->settled ? !contact->contact : contact->on;
     if (tick < contact->settled)
         plan_bounce(contact, tick);
@@ -156,23 +163,23 @@ static void switches_follow(struct plant *plant, unsigned motor, uint64_t tick)
             switch_follows(plant, &plant->contact[i], tick);
 }
 
-uint8_t plant_contacts(const struct plant *plant)
+uint32_t plant_contacts(const struct plant *plant)
 {
-    unsigned levels = 0;
+    uint32_t levels = 0;
     for (unsigned i = 0; i < plant->switches; i++) {
         const struct plant_switch *contact = &plant->contact[i];
         if (contact->contact != contact->normally_closed)
-            levels |= 1u << (contact->input - 1u);
+            levels |= UINT32_C(1) << (contact->input - 1u);
     }
-    return (uint8_t)levels;
+    return levels;
 }
 
-uint8_t plant_mask(const struct plant *plant)
+uint32_t plant_mask(const struct plant *plant)
 {
     return plant->mask;
 }
 
-uint8_t plant_levels(const struct plant *plant)
+uint32_t plant_levels(const struct plant *plant)
 {
     return plant->levels;
 }
@@ -250,7 +257,7 @@ void plant_step(struct plant *plant, uint64_t tick, unsigned number, bool forwar
 
 bool plant_position(const struct plant *plant, unsigned number, int64_t *position)
 {
-    const struct plant_motor *motor = number >= 1 && number <= PLANT_AXES ? &plant->motor[number - 1u] : NULL;
+    const struct plant_motor *motor = number >= 1 && number <= plant->axes ? &plant->motor[number - 1u] : NULL;
     if (!motor || !motor->present)
         return false;
     *position = motor->position;
@@ -264,7 +271,7 @@ static struct plant_switch *next_bounce(struct plant *plant)
 {
     struct plant_switch *next = NULL;
     for (unsigned i = 0; i < plant->switches; i++)
-        if (plant->contact[i].next != RKM04_NEVER && (!next || plant->contact[i].next < next->next))
+        if (plant->contact[i].next != DEVICE_NEVER && (!next || plant->contact[i].next < next->next))
             next = &plant->contact[i];
     return next;
 }
@@ -273,9 +280,9 @@ static struct plant_switch *next_bounce(struct plant *plant)
 static bool do_next(struct plant *plant, uint64_t tick)
 {
     struct plant_switch *contact = next_bounce(plant);
-    uint64_t first = contact ? contact->next : RKM04_NEVER;
-    unsigned at = PLANT_AXES;
-    for (unsigned i = 0; i < PLANT_AXES; i++) {
+    uint64_t first = contact ? contact->next : DEVICE_NEVER;
+    unsigned at = plant->axes;
+    for (unsigned i = 0; i < plant->axes; i++) {
         const struct plant_motor *motor = &plant->motor[i];
         if (motor->pulses == 0 || motor->pulse[motor->first].tick + 1u >= first)
             continue;
@@ -286,7 +293,7 @@ static bool do_next(struct plant *plant, uint64_t tick)
         plant->now = tick > plant->now ? tick : plant->now;
         return false;
     }
-    if (at < PLANT_AXES)
+    if (at < plant->axes)
         move(plant, at);
     else
         bounce(contact);
@@ -296,16 +303,17 @@ static bool do_next(struct plant *plant, uint64_t tick)
 
 bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *change)
 {
-    uint8_t levels;
+    uint32_t levels;
     do {
         levels = plant_contacts(plant) & plant->mask;
     } while (levels == plant->levels && do_next(plant, tick));
     if (levels == plant->levels)
         return false;
-    unsigned differ = levels ^ (unsigned)plant->levels, input = 1;
+    uint32_t differ = levels ^ plant->levels;
+    unsigned input = 1;
     while ((differ >> (input - 1u) & 1u) == 0)
         input++;
-    uint8_t bit = (uint8_t)(1u << (input - 1u));
+    uint32_t bit = UINT32_C(1) << (input - 1u);
     plant->levels ^= bit;
     *change = (struct plant_change){plant->now, (uint8_t)input, (levels & bit) != 0};
     return true;
@@ -313,7 +321,7 @@ bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *
 
 uint64_t plant_next(const struct plant *plant)
 {
-    uint64_t next = RKM04_NEVER;
+    uint64_t next = DEVICE_NEVER;
     for (unsigned i = 0; i < plant->switches; i++)
         if (plant->contact[i].next < next)
             next = plant->contact[i].next;
@@ -322,7 +330,7 @@ uint64_t plant_next(const struct plant *plant)
 
 static void shift_time(uint64_t *tick, uint64_t shift)
 {
-    if (*tick != RKM04_NEVER)
+    if (*tick != DEVICE_NEVER)
         *tick += shift;
 }
 
@@ -340,11 +348,11 @@ static void shift_motor(struct plant_motor *motor, uint64_t shift)
 
 struct plant *plant_copy(const struct plant *plant, uint64_t shift)
 {
-    struct plant *copy = malloc(sizeof *copy);
+    struct plant *copy = malloc(size_of(plant->axes));
     if (!copy)
         return NULL;
-    *copy = *plant;
-    for (unsigned at = 0; at < PLANT_AXES; at++)
+    memcpy(copy, plant, size_of(plant->axes));
+    for (unsigned at = 0; at < copy->axes; at++)
         shift_motor(&copy->motor[at], shift);
     for (unsigned i = 0; i < copy->switches; i++) {
         shift_time(&copy->contact[i].next, shift);
@@ -360,7 +368,7 @@ struct plant *plant_copy(const struct plant *plant, uint64_t shift)
 
 static struct plant_motor *motor_of(struct plant *plant, unsigned number)
 {
-    struct plant_motor *motor = plant && number >= 1 && number <= PLANT_AXES ? &plant->motor[number - 1u] : NULL;
+    struct plant_motor *motor = plant && number >= 1 && number <= plant->axes ? &plant->motor[number - 1u] : NULL;
     return motor && motor->present ? motor : NULL;
 }
 

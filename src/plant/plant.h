@@ -13,13 +13,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include <rkm04/limits.h>
+#include "device/device.h"
 
 struct config_node; /* text/config_tree.h */
 struct plant;
 
-#define PLANT_AXES 4u
-#define PLANT_INPUTS 8u
 #define PLANT_POSITION_MAX INT64_C(1000000000000) /* steps, either way, of everything configured */
 
 enum plant_news {
@@ -35,7 +33,7 @@ enum plant_news {
 /* Something that a motor of the plant does. */
 struct plant_report {
     uint64_t tick; /* of the line: that of the pulse */
-    uint8_t motor; /* 1..4 */
+    uint8_t motor; /* 1..axes */
     uint8_t news;  /* enum plant_news */
     char text[PLANT_TEXT_SIZE];
 };
@@ -43,14 +41,14 @@ struct plant_report {
 /* A change of an input that the plant drives. */
 struct plant_change {
     uint64_t tick; /* of the line, at which it may be seen: one after the pulse that led to it, later with bouncing */
-    uint8_t input; /* 1..8 */
+    uint8_t input; /* 1..inputs */
     bool level;
 };
 
 /* What a plant has to know of the device whose motors it moves. */
 struct plant_device {
-    unsigned axes, inputs;        /* at most PLANT_AXES, PLANT_INPUTS */
-    int64_t position[PLANT_AXES]; /* the counters, in steps */
+    unsigned axes, inputs;             /* at most DEVICE_AXES_MAX, DEVICE_BITS_MAX */
+    int64_t position[DEVICE_AXES_MAX]; /* the counters, in steps */
 };
 
 /* Read the plant of one unit from a map, to begin at tick `now`: true positions are the counters plus the configured offsets.
@@ -61,8 +59,8 @@ struct plant *plant_read(const struct config_node *node, const struct plant_devi
 void plant_free(struct plant *plant);
 
 /* Inputs it drives, mask; and their levels now. */
-uint8_t plant_mask(const struct plant *plant);
-uint8_t plant_levels(const struct plant *plant);
+uint32_t plant_mask(const struct plant *plant);
+uint32_t plant_levels(const struct plant *plant);
 
 /* A pulse. Called from within the unit: must not change the unit. */
 void plant_step(struct plant *plant, uint64_t tick, unsigned motor, bool forward);
@@ -77,10 +75,10 @@ bool plant_take_report(struct plant *plant, struct plant_report *report);
 /* "stall", "end_stop", "jam", "free", "missing_lead". Never NULL. */
 const char *plant_news_name(enum plant_news news);
 
-/* When something changes without a pulse (a switch bounces); RKM04_NEVER: never. */
+/* When something changes without a pulse (a switch bounces); DEVICE_NEVER: never. */
 uint64_t plant_next(const struct plant *plant);
 
-/* True position of motor 1..4, in steps. Motors without a plant follow their counter; then false. */
+/* True position of a motor, from 1, in steps. Motors without a plant follow their counter; then false. */
 bool plant_position(const struct plant *plant, unsigned motor, int64_t *position);
 
 /* What a hand does, at `tick`: put the carriage somewhere; hold it, or let it go; take a lead of the motor off, or put it on

@@ -20,7 +20,7 @@ static json_t *angle_json(const struct plant_motor *motor)
 static json_t *motors_json(const struct plant *plant)
 {
     json_t *list = json_array();
-    for (unsigned at = 0; at < PLANT_AXES; at++) {
+    for (unsigned at = 0; at < plant->axes; at++) {
         const struct plant_motor *motor = &plant->motor[at];
         if (!motor->present)
             continue;
@@ -42,7 +42,7 @@ static json_t *switches_json(const struct plant *plant)
     for (unsigned i = 0; i < plant->switches; i++) {
         const struct plant_switch *contact = &plant->contact[i];
         json_t *item = json_pack("{s:i, s:i, s:b, s:b}", "input", (int)contact->input, "motor", (int)contact->motor, "actuated",
-                                 (int)contact->on, "bouncing", (int)(contact->next != RKM04_NEVER));
+                                 (int)contact->on, "bouncing", (int)(contact->next != DEVICE_NEVER));
         if (json_array_append_new(list, item) != 0) {
             json_decref(list);
             return NULL;

@@ -17,7 +17,7 @@
 enum plant_hold { PLANT_MOVES, PLANT_AT_STOP, PLANT_JAMMED, PLANT_STALLED, PLANT_NO_LEAD };
 
 struct plant_window {
-    uint64_t from, until; /* from <= tick < until; RKM04_NEVER: no end */
+    uint64_t from, until; /* from <= tick < until; DEVICE_NEVER: no end */
 };
 
 /* The acceleration that the motor can give at a speed. */
@@ -30,7 +30,7 @@ struct plant_stall {
     unsigned points; /* 0: it never stalls */
     struct plant_point point[PLANT_POINTS]; /* speeds increase; beyond the last one it stalls */
 
-    uint64_t last;   /* tick of the last pulse; RKM04_NEVER: none yet */
+    uint64_t last;   /* tick of the last pulse; DEVICE_NEVER: none yet */
     bool forward;    /* its direction */
     bool out_of_step;
     int64_t base;    /* steps/s: highest speed that it may have had when it last was calm: slow, or standing */
@@ -64,7 +64,7 @@ struct plant_motor {
 };
 
 struct plant_switch {
-    uint8_t input, motor; /* 1..8, 1..4 */
+    uint8_t input, motor; /* from 1 */
     bool normally_closed; /* the input is 0 while it is actuated */
     int64_t low, high;    /* actuated from low to high; with `turn` also the other way round */
     int64_t hysteresis;   /* steps beyond that until it lets go */
@@ -73,30 +73,31 @@ struct plant_switch {
     bool on;              /* actuated */
     bool contact;         /* what it says: differs from `on` while it bounces */
     uint64_t settled;     /* tick at which it no longer bounces */
-    uint64_t next;        /* tick of the next bounce; RKM04_NEVER: it does not */
+    uint64_t next;        /* tick of the next bounce; DEVICE_NEVER: it does not */
     uint64_t random;
 };
 
 struct plant {
-    struct plant_motor motor[PLANT_AXES];
     unsigned switches;
     struct plant_switch contact[PLANT_SWITCHES];
-    uint8_t mask, levels; /* as told */
+    uint32_t mask, levels; /* as told */
     uint64_t now;         /* everything before it is done */
     unsigned reports;
     struct plant_report report[PLANT_REPORTS];
+    unsigned axes;
+    struct plant_motor motor[]; /* one for each axis of the device */
 };
 
 /* Set a switch to where its motor stands, without bouncing. */
 void plant_switch_begin(const struct plant *plant, struct plant_switch *contact);
 
-/* A new plant without motors. NULL: out of memory. */
-struct plant *plant_new(void);
+/* A new plant for a device with so many axes, without motors. NULL: out of memory. */
+struct plant *plant_new(unsigned axes);
 
 /* All inputs as its switches have them. */
-uint8_t plant_contacts(const struct plant *plant);
+uint32_t plant_contacts(const struct plant *plant);
 
-/* Is motor 1..4 jammed now? */
+/* Is a motor, from 1, jammed now? */
 bool plant_jammed(const struct plant *plant, unsigned motor);
 
 /* A pulse comes: can the rotor follow it? */

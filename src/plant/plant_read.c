@@ -52,7 +52,7 @@ static bool read_stops(const struct config_node *motor, struct plant_motor *to)
 static bool read_jam(const struct config_node *node, struct plant_motor *to)
 {
     static const char *const names[] = {"from", "to", NULL};
-    struct plant_window window = {0, RKM04_NEVER};
+    struct plant_window window = {0, DEVICE_NEVER};
     if (!is_map(node, "a jam, as in {from: 2s, to: 2500ms}") || !config_keys(node, names) ||
         !read_time(node, "from", "the beginning of the jam", &window.from) ||
         !read_time(node, "to", "the end of the jam", &window.until))
@@ -160,16 +160,18 @@ static bool read_motor(const struct config_node *node, int64_t counter, struct p
 
 static bool read_motors(const struct config_node *node, const struct plant_device *device, struct plant *plant)
 {
-    static const char *const names[PLANT_AXES] = {"1", "2", "3", "4"};
-    const char *numbers[PLANT_AXES + 1u] = {NULL};
-    for (unsigned at = 0; at < device->axes; at++)
+    char names[DEVICE_AXES_MAX][12];
+    const char *numbers[DEVICE_AXES_MAX + 1u] = {NULL};
+    for (unsigned at = 0; at < device->axes; at++) {
+        snprintf(names[at], sizeof names[at], "%u", at + 1u);
         numbers[at] = names[at];
+    }
     if (!node)
         return true;
     if (!is_map(node, "motors by number, as in {1: {offset: 0}}") || !config_keys(node, numbers))
         return false;
     for (size_t i = 0; i < config_count(node); i++) {
-        unsigned at = (unsigned)(config_key(node, i)[0] - '1');
+        unsigned at = (unsigned)strtoul(config_key(node, i), NULL, 10) - 1u;
         if (!read_motor(config_at(node, i), device->position[at], &plant->motor[at]))
             return false;
     }
@@ -265,7 +267,7 @@ static bool read_switches(const struct config_node *node, const struct plant_dev
             return false;
         to->random = ((seed ^ plant->switches) + 1u) * UINT64_C(0x9E3779B97F4A7C15) | 1u; /* not 0 */
         plant->switches++;
-        plant->mask |= (uint8_t)(1u << (to->input - 1u));
+        plant->mask |= UINT32_C(1) << (to->input - 1u);
         if (!add_motor(item, device->position[to->motor - 1u], &plant->motor[to->motor - 1u]))
             return false;
         plant_switch_begin(plant, to);
@@ -279,7 +281,7 @@ struct plant *plant_read(const struct config_node *node, const struct plant_devi
     struct plant *plant = NULL;
     if (!is_map(node, "motors and switches") || !config_keys(node, names))
         return NULL;
-    plant = plant_new();
+    plant = plant_new(device->axes);
     if (!plant) {
         config_error(node, "out of memory");
         return NULL;

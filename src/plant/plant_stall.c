@@ -97,7 +97,7 @@ bool stall_follows(struct plant_stall *stall, uint64_t tick, bool forward)
 {
     if (stall->points == 0)
         return true;
-    uint64_t interval = stall->last == RKM04_NEVER ? MICRO : tick - stall->last;
+    uint64_t interval = stall->last == DEVICE_NEVER ? MICRO : tick - stall->last;
     if (forward != stall->forward)
         interval = MICRO; /* however short it was: it stood in between */
     bool slow = may_be_slow(stall, interval);

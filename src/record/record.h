@@ -55,7 +55,7 @@ struct replay_counts {
 struct replay *replay_open(const char *name, FILE *in);
 struct sim *replay_sim(struct replay *replay);
 
-/* Last tick to be done; RKM04_NEVER, without this: to the end of the record. */
+/* Last tick to be done; DEVICE_NEVER, without this: to the end of the record. */
 void replay_until(struct replay *replay, uint64_t tick);
 
 /* Do it all. Traces may have joined the sim before. `interrupted`: NULL, or looked at before each line, and after each tenth of a

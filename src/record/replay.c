@@ -18,7 +18,7 @@ static uint64_t step_end(struct replay *replay, uint64_t tick)
         uint64_t event = sim_next_event(replay->sim), due = sim_due(replay->sim);
         event = due < event ? due : event;
         if (end <= event)
-            end = event == RKM04_NEVER ? RKM04_NEVER : event + 1u;
+            end = event == DEVICE_NEVER ? DEVICE_NEVER : event + 1u;
     }
     return end < tick ? end : tick;
 }
@@ -69,14 +69,14 @@ static bool reach(struct replay *replay, uint64_t tick, size_t bytes)
 /* Come to a line about what came in: everything before has gone out, and was recorded. */
 static bool come_to_input(struct replay *replay, const char *const *keys, uint64_t *tick)
 {
-    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, tick) ||
+    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, tick) ||
         !reach(replay, *tick, 0))
         return false;
     sim_settle(replay->sim);
     if (!replay->outputs)
         return true;
     tally_settle(&replay->tally);
-    return replay_nothing_more(replay, RKM04_NEVER, 0);
+    return replay_nothing_more(replay, DEVICE_NEVER, 0);
 }
 
 /* ---- Lines about what came in --------------------------------------------------------------------------------------- */
@@ -139,8 +139,8 @@ static bool do_embedded(struct replay *replay)
 {
     static const char *const keys[] = {"t", "embedded", NULL};
     uint64_t lines, tick;
-    if (!replay_keys(replay, keys) || !replay_number(replay, "t", 0, TIME_VALUE_MAX, RKM04_NEVER, &tick) ||
-        !replay_number(replay, "embedded", 1, RECORD_EMBEDDED_MAX, RKM04_NEVER, &lines))
+    if (!replay_keys(replay, keys) || !replay_number(replay, "t", 0, TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
+        !replay_number(replay, "embedded", 1, RECORD_EMBEDDED_MAX, DEVICE_NEVER, &lines))
         return false;
     if (replay->depth == REPLAY_DEPTH_MAX)
         return replay_wrong(replay, "embedded", "expected at most %u nested recordings", REPLAY_DEPTH_MAX);
@@ -217,13 +217,13 @@ static bool do_moved(struct replay *replay)
 {
     static const char *const keys[] = {"t", "moved", NULL};
     uint64_t tick, by;
-    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, &tick) ||
-        !replay_number(replay, "moved", 0, TIME_VALUE_MAX - tick, RKM04_NEVER, &by))
+    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
+        !replay_number(replay, "moved", 0, TIME_VALUE_MAX - tick, DEVICE_NEVER, &by))
         return false;
     if (replay->outputs)
         return replay_wrong(replay, "moved", "expected {\"outputs\":false} before this line");
     if (tick + by > replay->until)
-        return reach(replay, RKM04_NEVER, 0);
+        return reach(replay, DEVICE_NEVER, 0);
     return reach(replay, tick, 0) && (snapshot_move(replay->sim, by) || replay_no_memory(replay));
 }
 
@@ -252,7 +252,7 @@ static bool do_out(struct replay *replay)
     uint64_t from, until;
     size_t length;
     if (!wants_outputs(replay, "out") || !replay_keys(replay, keys) ||
-        !replay_number(replay, "t", 0, TIME_VALUE_MAX, RKM04_NEVER, &from) ||
+        !replay_number(replay, "t", 0, TIME_VALUE_MAX, DEVICE_NEVER, &from) ||
         !replay_number(replay, "to", from, TIME_VALUE_MAX, from, &until))
         return false;
     const uint8_t *bytes = replay_bytes(replay, "out", SEGMENT_ROOM, &length);
@@ -277,10 +277,10 @@ static bool read_span(struct replay *replay, struct replay_span *span)
 {
     uint64_t unit, motor;
     json_int_t position = json_integer_value(json_object_get(replay->json, "position"));
-    if (!replay_number(replay, "t", 0, TIME_VALUE_MAX, RKM04_NEVER, &span->tick) ||
-        !replay_number(replay, "unit", 0, sim_units(replay->sim), RKM04_NEVER, &unit) ||
-        !replay_number(replay, "motor", 0, unit > 0 ? sim_device(replay->sim)->axes : 0, RKM04_NEVER, &motor) ||
-        !replay_number(replay, "events", 0, INT64_MAX, RKM04_NEVER, &span->stream.events) ||
+    if (!replay_number(replay, "t", 0, TIME_VALUE_MAX, DEVICE_NEVER, &span->tick) ||
+        !replay_number(replay, "unit", 0, sim_units(replay->sim), DEVICE_NEVER, &unit) ||
+        !replay_number(replay, "motor", 0, unit > 0 ? sim_device(replay->sim)->axes : 0, DEVICE_NEVER, &motor) ||
+        !replay_number(replay, "events", 0, INT64_MAX, DEVICE_NEVER, &span->stream.events) ||
         !replay_number(replay, "steps", 0, INT64_MAX, 0, &span->stream.steps) || !read_digest(replay, &span->stream.digest))
         return false;
     if (position < INT32_MIN || position > INT32_MAX)
@@ -312,7 +312,7 @@ static bool do_end(struct replay *replay)
 {
     static const char *const keys[] = {"t", "end", NULL};
     uint64_t tick;
-    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, RKM04_NEVER, &tick) ||
+    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
         !reach(replay, tick, 0))
         return false;
     sim_settle(replay->sim);
@@ -362,7 +362,7 @@ static bool check_line(struct replay *replay)
         return do_embedded(replay);
     if (strcmp(key, "out") == 0 || strcmp(key, "digest") == 0 || strcmp(key, "outputs") == 0)
         return true;
-    return replay_number(replay, "t", replay->checked, TIME_VALUE_MAX, RKM04_NEVER, &replay->checked);
+    return replay_number(replay, "t", replay->checked, TIME_VALUE_MAX, DEVICE_NEVER, &replay->checked);
 }
 
 /* Deal with all lines, or pause. Returns false if it has paused. */
@@ -417,7 +417,7 @@ struct replay *replay_open_within(const char *name, FILE *in, unsigned depth)
     replay->name = name;
     replay->in = in;
     replay->depth = depth;
-    replay->until = RKM04_NEVER;
+    replay->until = DEVICE_NEVER;
     replay->begun = replay_begin(replay);
     if (!replay->begun && !replay->ended)
         replay_no_memory(replay);

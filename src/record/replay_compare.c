@@ -239,7 +239,7 @@ bool replay_compare_stream(struct replay *replay, const struct replay_span *reco
 
 bool replay_compare_rest(struct replay *replay)
 {
-    if (!replay_nothing_more(replay, RKM04_NEVER, 0))
+    if (!replay_nothing_more(replay, DEVICE_NEVER, 0))
         return false;
     for (unsigned unit = 0; unit < TALLY_UNITS; unit++)
         for (unsigned motor = 0; motor < TALLY_MOTORS; motor++)

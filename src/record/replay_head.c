@@ -61,8 +61,8 @@ static bool read_images(struct replay *replay, unsigned units)
             replay->again = true;
             return true;
         }
-        if (!replay_keys(replay, keys) || !replay_number(replay, "flash", 1, units, RKM04_NEVER, &number) ||
-            !replay_number(replay, "block", 0, replay->device->flash_blocks - 1u, RKM04_NEVER, &block))
+        if (!replay_keys(replay, keys) || !replay_number(replay, "flash", 1, units, DEVICE_NEVER, &number) ||
+            !replay_number(replay, "block", 0, replay->device->flash_blocks - 1u, DEVICE_NEVER, &block))
             return false;
         const uint8_t *bytes = replay_bytes(replay, "hex", replay->device->flash_block_size, &length);
         if (!bytes || flash_program(replay, (unsigned)number, (unsigned)block, 0, bytes, (unsigned)length) != 0)
@@ -163,7 +163,7 @@ static bool read_head(struct replay *replay, struct sim_config *config, char **p
         return replay->ended || replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
     if (!json_object_get(replay->json, "rkm04_record"))
         return replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
-    if (!replay_number(replay, "rkm04_record", RECORD_VERSION, RECORD_VERSION, RKM04_NEVER, &version) ||
+    if (!replay_number(replay, "rkm04_record", RECORD_VERSION, RECORD_VERSION, DEVICE_NEVER, &version) ||
         !read_device(replay, config) || !has_known_keys(replay) ||
         !replay_text_of(replay, "program", TEXT_MAX, &replay->program) || !read_settings(replay, config))
         return false;

@@ -187,7 +187,7 @@ bool replay_read_embedded(struct replay *replay, uint64_t lines)
 bool replay_number(struct replay *replay, const char *key, uint64_t low, uint64_t high, uint64_t missing, uint64_t *value)
 {
     const json_t *given = json_object_get(replay->json, key);
-    if (!given && missing != RKM04_NEVER) {
+    if (!given && missing != DEVICE_NEVER) {
         *value = missing;
         return true;
     }

@@ -158,8 +158,8 @@ static void say_endless(struct exec_run *run)
         if (run->device->is_endless(exec_run_unit(run), motor, text))
             fprintf(stderr, "motor %u %s; ", motor, text);
     if (period != slot)
-        fprintf(stderr, "its state repeats every %" PRIu64 ".%06" PRIu64 " s; ", period / RKM04_TICKS_PER_SECOND,
-                period % RKM04_TICKS_PER_SECOND);
+        fprintf(stderr, "its state repeats every %" PRIu64 ".%06" PRIu64 " s; ", period / US_PER_SECOND,
+                period % US_PER_SECOND);
     fputs("set an end with --until\n", stderr);
 }
 
@@ -258,7 +258,7 @@ static int run_traced(struct exec_run *run, const struct options *options)
 int exec_main(int argc, char **argv)
 {
     static struct exec_run run;
-    struct options options = {.until = RKM04_NEVER, .device = &rkm04_device, .config.node = 1};
+    struct options options = {.until = DEVICE_NEVER, .device = &rkm04_device, .config.node = 1};
     int status = STATUS_FAILURE;
 
     if (exec_inputs_begin(&options.inputs, "rkm04 exec", argc)) {

@@ -80,8 +80,8 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
     };
     const struct device_kind *kind = run->device;
     const struct device_unit *unit = exec_run_unit(run);
-    fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / RKM04_TICKS_PER_SECOND,
-            run->reached % RKM04_TICKS_PER_SECOND, ends[end]);
+    fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / US_PER_SECOND,
+            run->reached % US_PER_SECOND, ends[end]);
     fprintf(out, "motor     position  state   command  led    fault\n");
     for (unsigned motor = 1; motor <= kind->axes; motor++) {
         struct device_axis state;

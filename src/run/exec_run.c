@@ -76,7 +76,7 @@ static void progress_look(struct progress *progress, const struct exec_run *run)
         return;
     progress->next = real + PROGRESS_EVERY;
     progress->shown = true;
-    double virtual = (double)sim_now(&run->sim) / RKM04_TICKS_PER_SECOND;
+    double virtual = (double)sim_now(&run->sim) / US_PER_SECOND;
     fprintf(stderr, "\r%.1f s of the unit's time, %.0f times real time; Ctrl-C ends the run\033[K", virtual, virtual / real);
 }
 
@@ -90,9 +90,8 @@ static void progress_end(const struct progress *progress)
 
 static void deliver_input(struct exec_run *run, const struct stimulus *s)
 {
-    uint8_t mask = (uint8_t)run->device->inputs_of(exec_run_unit(run));
-    uint8_t bit = (uint8_t)(1u << (s->input - 1));
-    sim_set_di(&run->sim, 1, s->level ? (uint8_t)(mask | bit) : (uint8_t)(mask & ~bit));
+    uint32_t mask = run->device->inputs_of(exec_run_unit(run)), bit = UINT32_C(1) << (s->input - 1u);
+    sim_set_di(&run->sim, 1, s->level ? mask | bit : mask & ~bit);
 }
 
 static void deliver(struct exec_run *run, const struct stimulus *s)
@@ -118,7 +117,7 @@ static void deliver(struct exec_run *run, const struct stimulus *s)
 }
 
 /* First tick not to be done in the next leap: it ends with the slot in which something is due, or where something comes from
- * outside. RKM04_NEVER: nothing is to be done. */
+ * outside. DEVICE_NEVER: nothing is to be done. */
 static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
 {
     uint64_t end = sim_next_report(&run->sim);
@@ -128,7 +127,7 @@ static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
         end = (end + run->device->slot - 1) / run->device->slot * run->device->slot + 1;
     if (stimulus < end)
         end = stimulus;
-    return end == RKM04_NEVER || end <= run->until ? end : run->until + 1;
+    return end == DEVICE_NEVER || end <= run->until ? end : run->until + 1;
 }
 
 static bool repeats(struct exec_run *run)
@@ -143,7 +142,7 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
     while (!interrupted) {
         uint64_t now = sim_now(&run->sim);
         bool left = run->next < run->stimuli->count;
-        uint64_t stimulus = left ? run->stimuli->list[run->next].tick : RKM04_NEVER;
+        uint64_t stimulus = left ? run->stimuli->list[run->next].tick : DEVICE_NEVER;
         if (now > run->until)
             return EXEC_UNTIL;
         if (stimulus <= now) {
@@ -151,7 +150,7 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
             continue;
         }
         uint64_t end = leap_end(run, stimulus);
-        if (end == RKM04_NEVER)
+        if (end == DEVICE_NEVER)
             return EXEC_DONE;
         sim_advance(&run->sim, end);
         run->reached = end - 1;
@@ -167,7 +166,7 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
 enum exec_end exec_run(struct exec_run *run)
 {
     struct progress progress;
-    run->open = run->until == RKM04_NEVER;
+    run->open = run->until == DEVICE_NEVER;
     if (run->until >= SIM_TIME_MAX)
         run->until = SIM_TIME_MAX - 1u;
     progress_begin(&progress);

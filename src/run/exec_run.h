@@ -23,7 +23,7 @@ struct exec_run {
     const struct stimuli *stimuli;
     const char *stimulus_name;      /* for messages */
     const struct trace_file *trace; /* the run ends when it fails; NULL: none */
-    uint64_t until;                 /* last tick to be done; RKM04_NEVER: no limit */
+    uint64_t until;                 /* last tick to be done; DEVICE_NEVER: no limit */
     const struct device_kind *device; /* of the unit */
     struct device_config config;    /* of the unit */
     bool progress;                  /* show a line on stderr while it takes long */

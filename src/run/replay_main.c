@@ -27,7 +27,7 @@ struct options {
     const char *path;
     const char *trace[FILES_MAX], *wire[FILES_MAX];
     size_t traces, wires;
-    uint64_t until; /* RKM04_NEVER: to the end */
+    uint64_t until; /* DEVICE_NEVER: to the end */
     bool json;
     unsigned output_flags; /* of output_file.h */
 };
@@ -154,7 +154,7 @@ static bool look(void *context)
         return false;
     progress->next = now + PROGRESS_EVERY;
     progress->shown = true;
-    double virtual = (double)sim_now(replay_sim(progress->replay)) / RKM04_TICKS_PER_SECOND;
+    double virtual = (double)sim_now(replay_sim(progress->replay)) / US_PER_SECOND;
     fprintf(stderr, "\r%.1f s of the line's time, %.0f times real time", virtual, virtual / (now - progress->begin));
     if (progress->size > 0)
         fprintf(stderr, "; %.0f %% of the recording", 100.0 * (double)ftello(progress->in) / (double)progress->size);
@@ -269,7 +269,7 @@ static bool report_text(struct replay *replay, const char *name, enum replay_end
     uint64_t now = sim_now(replay_sim(replay));
     return printf("%s: the same: %" PRIu64 ".%06" PRIu64 " s, %" PRIu64 " inputs, %" PRIu64 " bytes in, %" PRIu64
                   " bytes out, %" PRIu64 " pulses\n",
-                  name, now / RKM04_TICKS_PER_SECOND, now % RKM04_TICKS_PER_SECOND, counts.inputs,
+                  name, now / US_PER_SECOND, now % US_PER_SECOND, counts.inputs,
                   counts.bytes_in, counts.bytes_out, counts.steps) > 0;
 }
 
@@ -301,7 +301,7 @@ static int run(struct replay *replay, FILE *in, const char *name, const struct o
 int replay_main(int argc, char **argv)
 {
     static const struct argp argp = {option_table, parse_option, "FILE", doc, NULL, NULL, NULL};
-    struct options options = {.until = RKM04_NEVER};
+    struct options options = {.until = DEVICE_NEVER};
     arguments_parse(&argp, argc, argv, &options);
     bool is_stdin = strcmp(options.path, "-") == 0;
     const char *name = is_stdin ? "<stdin>" : options.path;

@@ -190,7 +190,7 @@ static void show(struct test_progress *progress, uint64_t tick)
     double real = now();
     if (!progress->wanted || real < progress->next)
         return;
-    double virtual = (double)tick / RKM04_TICKS_PER_SECOND;
+    double virtual = (double)tick / US_PER_SECOND;
     progress->next = real + PROGRESS_EVERY;
     progress->shown = true;
     fprintf(stderr, "\r%zu of %zu: %.60s: %.1f s of the units' time; Ctrl-C ends the run\033[K", progress->at, progress->count,

@@ -9,7 +9,7 @@
 #include "test_readings.h"
 
 #define TIME_FORMAT "%" PRIu64 ".%06" PRIu64 " s"
-#define TIME_OF(ticks) (ticks) / RKM04_TICKS_PER_SECOND, (ticks) % RKM04_TICKS_PER_SECOND
+#define TIME_OF(ticks) (ticks) / US_PER_SECOND, (ticks) % US_PER_SECOND
 
 size_t test_report_count(const struct test_case *tests, size_t count, enum test_outcome outcome)
 {

@@ -7,7 +7,7 @@
 #include "scenario_running.h"
 
 #define TIME_FORMAT "%" PRIu64 ".%06" PRIu64 " s"
-#define TIME_OF(ticks) (ticks) / RKM04_TICKS_PER_SECOND, (ticks) % RKM04_TICKS_PER_SECOND
+#define TIME_OF(ticks) (ticks) / US_PER_SECOND, (ticks) % US_PER_SECOND
 
 /* "TEXT within 5.000000 s"; takes `text` over. */
 static char *with_time(char *text, const char *word, uint64_t ticks)
@@ -175,10 +175,10 @@ static bool act(struct running *running, const struct scenario_step *step)
 bool running_do(struct running *running, const struct scenario_step *step)
 {
     uint64_t now = sim_now(running->sim);
-    if (step->at != RKM04_NEVER && step->at < now)
+    if (step->at != DEVICE_NEVER && step->at < now)
         return running_failed(running, step, now, running_text("to begin at " TIME_FORMAT, TIME_OF(step->at)),
                               running_text("the step before has just ended"));
-    if (step->at != RKM04_NEVER && !go_to(running, step->at))
+    if (step->at != DEVICE_NEVER && !go_to(running, step->at))
         return false;
     return act(running, step);
 }

@@ -137,8 +137,8 @@ static char *silence_text(const struct running *running, uint64_t since)
                  receiver->malformed, receiver->too_long);
     else if (receiver->length > 0)
         snprintf(why, sizeof why, "; an incomplete one, of %u bytes so far", receiver->length);
-    return running_text("no answer within %" PRIu64 ".%06" PRIu64 " s%s", ticks / RKM04_TICKS_PER_SECOND,
-                        ticks % RKM04_TICKS_PER_SECOND, why);
+    return running_text("no answer within %" PRIu64 ".%06" PRIu64 " s%s", ticks / US_PER_SECOND,
+                        ticks % US_PER_SECOND, why);
 }
 
 /* `wrong`: what is wrong with the program; NULL: nothing is known of it. */

@@ -52,7 +52,7 @@ struct scenario_step {
     uint8_t unit;                   /* its number; 0: all */
     uint8_t flag;                   /* of the answer to a program */
     uint8_t answer;                 /* enum scenario_answer */
-    uint64_t at;                    /* RKM04_NEVER: when the step before is done */
+    uint64_t at;                    /* DEVICE_NEVER: when the step before is done */
     uint64_t within, not_before;    /* ticks */
     uint64_t time;                  /* ticks to let pass */
     const char *method;             /* of a command */
@@ -63,7 +63,7 @@ struct scenario_step {
 };
 
 struct scenario_stimulus {
-    struct scenario_step step; /* step.at: its time, or RKM04_NEVER */
+    struct scenario_step step; /* step.at: its time, or DEVICE_NEVER */
     json_t *when;              /* NULL: none */
     uint64_t after;
 };

@@ -60,13 +60,13 @@ bool running_failed(struct running *running, const struct scenario_step *step, u
 static void see(void *context, const struct watch_event *event)
 {
     struct running *running = context;
-    uint8_t bit = (uint8_t)(1u << (event->motor & 7u) >> 1);
-    uint8_t *forward = &running->forward[event->unit - 1u];
+    uint32_t bit = (UINT32_C(1) << event->motor) >> 1;
+    uint32_t *forward = &running->forward[event->unit - 1u];
     struct pulse_count *count = event->motor > 0 ? &running->count[event->unit - 1u][event->motor - 1u] : NULL;
     if (event->kind == WATCH_POWER) {
         *forward = 0;
     } else if (event->kind == WATCH_DIRECTION) {
-        *forward = event->value > 0 ? (uint8_t)(*forward | bit) : (uint8_t)(*forward & ~bit);
+        *forward = event->value > 0 ? *forward | bit : *forward & ~bit;
     } else if (event->kind == WATCH_STEP) {
         *(*forward & bit ? &count->forward : &count->back) += 1;
     } else if (event->value != 0 && !running->fault.there) {
@@ -131,12 +131,12 @@ static bool do_stimuli(struct running *running)
         struct scenario_step step = stimulus->step;
         if (state->acted)
             continue;
-        if (state->due == RKM04_NEVER && condition_holds(state->when))
+        if (state->due == DEVICE_NEVER && condition_holds(state->when))
             state->due = now + stimulus->after;
         if (state->due > now)
             continue;
         state->acted = true;
-        step.at = RKM04_NEVER; /* now */
+        step.at = DEVICE_NEVER; /* now */
         if (running_do(running, &step))
             i = SIZE_MAX; /* from the first one again */
     }
@@ -145,11 +145,11 @@ static bool do_stimuli(struct running *running)
 
 static uint64_t stimuli_next(const struct running *running)
 {
-    uint64_t next = RKM04_NEVER;
+    uint64_t next = DEVICE_NEVER;
     for (size_t i = 0; i < running->scenario->stimuli; i++) {
         const struct running_stimulus *state = &running->stimulus[i];
         uint64_t at = state->due;
-        if (!state->acted && at == RKM04_NEVER)
+        if (!state->acted && at == DEVICE_NEVER)
             at = condition_next(state->when);
         if (!state->acted && at < next)
             next = at;
@@ -164,7 +164,7 @@ static bool check_all_acted(struct running *running)
         const struct running_stimulus *state = &running->stimulus[i];
         if (state->acted)
             continue;
-        char *seen = state->due == RKM04_NEVER ? condition_found(state->when)
+        char *seen = state->due == DEVICE_NEVER ? condition_found(state->when)
                                                : running_text("the last step ended before its time");
         return running_failed(running, &running->scenario->stimulus[i].step, now,
                               running_text("the stimulus to act before the last step ends"), seen);
@@ -193,11 +193,11 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 bool running_turn(struct running *running, uint64_t limit, struct condition *condition)
 {
     uint64_t now = sim_now(running->sim), quiet = earlier(sim_next_event(running->sim), sim_due(running->sim));
-    uint64_t next = now + RKM04_TICKS_PER_SECOND;
+    uint64_t next = now + US_PER_SECOND;
     next = earlier(limit, quiet > next ? quiet : next); /* not longer, so that the run can be interrupted */
     if (sim_time_is_over(running->sim))
         return running_failed(running, running->step, now, running_text("virtual time to continue"),
-                              running_text("its end, after %" PRIu64 " s", SIM_TIME_MAX / RKM04_TICKS_PER_SECOND));
+                              running_text("its end, after %" PRIu64 " s", SIM_TIME_MAX / US_PER_SECOND));
     if (condition != NULL)
         next = earlier(next, condition_next(condition));
     for (size_t i = 0; i < always_count(running); i++)

@@ -10,7 +10,7 @@
 
 struct running_stimulus {
     struct condition *when; /* NULL: at a time */
-    uint64_t due;           /* RKM04_NEVER: not known yet */
+    uint64_t due;           /* DEVICE_NEVER: not known yet */
     bool acted;
 };
 
@@ -49,7 +49,7 @@ struct running {
     struct master master;
     struct watcher watcher;
     struct running_fault fault;
-    uint8_t forward[SEGMENT_UNITS]; /* direction outputs, bit 0: motor 1 */
+    uint32_t forward[SEGMENT_UNITS]; /* direction outputs, bit 0: motor 1 */
     struct pulse_count count[SEGMENT_UNITS][DEVICE_AXES_MAX], last[SEGMENT_UNITS][DEVICE_AXES_MAX];
 };
 

@@ -451,7 +451,7 @@ static bool read(struct scenario_reader *reader, const struct config_node *node,
     for (size_t i = 0; i < EXTRAS_MAX && actions[action].extra[i] != NULL; i++)
         known[count++] = actions[action].extra[i];
     known[count] = NULL;
-    if (!config_keys(node, known) || !read_time(node, "at", RKM04_NEVER, &step->at))
+    if (!config_keys(node, known) || !read_time(node, "at", DEVICE_NEVER, &step->at))
         return false;
     if (config_get(node, "label") != NULL) {
         step->label = read_text(config_get(node, "label"), "label");
@@ -472,7 +472,7 @@ bool scenario_stimulus_read(struct scenario_reader *reader, const struct config_
     if (!read(reader, node, &stimulus->step, true))
         return false;
     const struct config_node *when = config_get(node, "when");
-    if ((when == NULL) == (stimulus->step.at == RKM04_NEVER))
+    if ((when == NULL) == (stimulus->step.at == DEVICE_NEVER))
         return config_error(node, "expected either at or when");
     if (!read_time(node, "after", 0, &stimulus->after))
         return false;

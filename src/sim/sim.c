@@ -134,10 +134,10 @@ static void look_who_watches(struct sim *sim)
 /* ---- Inputs --------------------------------------------------------------------------------------------------------- */
 
 /* What holds an input comes before what drives it, and that before what was set by hand. */
-static uint8_t inputs_of(struct sim *sim, const struct sim_unit *unit)
+static uint32_t inputs_of(struct sim *sim, const struct sim_unit *unit)
 {
-    uint8_t mask = unit->plant ? plant_mask(unit->plant) : 0;
-    uint8_t levels = (uint8_t)((unit->di & ~mask) | (unit->plant ? plant_levels(unit->plant) & mask : 0));
+    uint32_t mask = unit->plant ? plant_mask(unit->plant) : 0;
+    uint32_t levels = (unit->di & ~mask) | (unit->plant ? plant_levels(unit->plant) & mask : 0);
     return faults_hold_inputs(&sim->faults, unit->number, levels);
 }
 
@@ -145,10 +145,10 @@ static void set_inputs(struct sim *sim, struct sim_unit *unit, uint64_t tick)
 {
     const struct device_kind *kind = sim_device(sim);
     struct device_unit *core = segment_unit(&sim->segment, unit->number);
-    uint8_t levels = inputs_of(sim, unit);
+    uint32_t levels = inputs_of(sim, unit);
     if (levels == kind->inputs_of(core))
         return;
-    struct watch_event event = {.tick = tick, .value = levels, .kind = WATCH_INPUTS, .unit = (uint8_t)unit->number};
+    struct watch_event event = {.tick = tick, .value = (int32_t)levels, .kind = WATCH_INPUTS, .unit = (uint8_t)unit->number};
     watch_add(&sim->watch, WATCH_DELIVERED, event);
     kind->set_inputs(core, levels); /* what comes of it follows */
 }
@@ -159,7 +159,7 @@ void sim_update_inputs(struct sim *sim, unsigned number)
     look_who_watches(sim); /* a plant may have come or gone */
 }
 
-void sim_set_di(struct sim *sim, unsigned number, uint8_t mask)
+void sim_set_di(struct sim *sim, unsigned number, uint32_t mask)
 {
     sim->unit[number - 1u].di = mask;
     sim_update_inputs(sim, number);

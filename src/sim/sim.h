@@ -64,7 +64,7 @@ struct sim_unit {
     unsigned number;            /* on the line, 1..16 */
     char name[NODE_NAME_SIZE];  /* its address, as in "3"; with a suffix if it is not the only one with it, "3-2" */
     struct device_port port;    /* `steps` is set while somebody wants pulses */
-    uint8_t di;                 /* inputs set by hand: DI 01 in bit 0 */
+    uint32_t di;                /* inputs set by hand: DI 01 in bit 0 */
     uint32_t forward;           /* direction outputs: motor 1 in bit 0 */
     struct plant *plant;        /* NULL: none. Who changes it calls sim_update_inputs() */
     uint8_t *memory;            /* flash without a file, the device's flash_blocks, inverted; NULL: not used yet */
@@ -109,11 +109,11 @@ void sim_advance(struct sim *sim, uint64_t tick);
  * that what follows does not depend on how time was cut. */
 void sim_settle(struct sim *sim);
 
-/* A tick before which no byte moves; RKM04_NEVER: none is under way (segment_due()). */
+/* A tick before which no byte moves; DEVICE_NEVER: none is under way (segment_due()). */
 uint64_t sim_due(const struct sim *sim);
 
 /* The earliest tick at which something happens of itself: a unit, a switch of the plant, the begin or end of a fault.
- * RKM04_NEVER: nothing ever does. */
+ * DEVICE_NEVER: nothing ever does. */
 uint64_t sim_next_event(const struct sim *sim);
 
 /* The same, without pulses that nobody sees: for who does not look at counters on the way. */
@@ -154,7 +154,7 @@ bool sim_powered(const struct sim *sim, unsigned number);
 void sim_power(struct sim *sim, unsigned number, bool on);
 
 /* Inputs set by hand, mask of DI. What the plant drives or a fault holds comes before it. */
-void sim_set_di(struct sim *sim, unsigned number, uint8_t mask);
+void sim_set_di(struct sim *sim, unsigned number, uint32_t mask);
 
 /* Set the inputs of a unit anew from what is set by hand, driven by the plant, held by a fault. To be called by whoever changed
  * one of these. */

@@ -5,6 +5,7 @@
  *     number, digits, time_value    numbers and times as people write them: "1.5s", "20ms"
  *     program_text, diagnose        program texts of a unit, and what a unit would refuse in them
  *     readings       names and values of the readings of the manual
+ *     nearest        the known name next to a wrong one, for messages
  *     wire_text      text of limited length, put together piece by piece
  *     exit_status    exit statuses of all programs
  *
@@ -17,6 +18,7 @@
 #include "digits.h"
 #include "exit_status.h"
 #include "invisible.h"
+#include "nearest.h"
 #include "number.h"
 #include "program_text.h"
 #include "readings.h"

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#define US_PER_SECOND 1000000u                     /* virtual time is counted in us: ticks of 1 us */
 #define TIME_VALUE_MAX UINT64_C(1000000000000000) /* ticks: 10^9 s */
 
 /* Read text[0..length) as a time. Exact or refused: more digits than a tick can show are an error.

@@ -108,6 +108,10 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
         return put_string(put_text(put_string(at, plant_news_name((enum plant_news)event->value)), ",\"text\":"), event->text);
     case WATCH_INJECTED:
         return put_string(put_text(put_signed(at, event->value), ",\"text\":"), event->text);
+    case WATCH_INPUTS:
+    case WATCH_OUTPUTS:
+    case WATCH_VARIABLES:
+        return put_number(at, (uint32_t)event->value);
     default:
         return put_signed(at, event->value);
     }
@@ -121,8 +125,7 @@ char *event_json(char *at, const struct sim *sim, const struct watch_event *even
     if (event->unit != 0)
         at = put_string(put_text(at, ",\"unit\":"), sim->unit[event->unit - 1u].name);
     if (event->motor != 0) {
-        at = put_text(at, ",\"motor\":");
-        *at++ = (char)('0' + event->motor);
+        at = put_number(put_text(at, ",\"motor\":"), event->motor);
     }
     return put_value(put_text(at, ",\"value\":"), sim, event);
 }

@@ -22,6 +22,10 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
         return put_text(at, sim_device(sim)->led_name((unsigned)event->value));
     case WATCH_POWER:
         return put_text(at, event->value ? "on" : "off");
+    case WATCH_INPUTS:
+    case WATCH_OUTPUTS:
+    case WATCH_VARIABLES:
+        return put_number(at, (uint32_t)event->value);
     default:
         return put_signed(at, event->value);
     }

@@ -33,6 +33,12 @@ static char *put_member(char *at, const char *name, int32_t value)
     return put_signed(put_text(at, name), value);
 }
 
+/* All inputs, outputs or variables, the first in bit 0. */
+static char *put_mask(char *at, const char *name, uint32_t mask)
+{
+    return put_number(put_text(at, name), mask);
+}
+
 static char *put_motor(char *at, struct sim *sim, unsigned number, unsigned motor)
 {
     const struct device_axis state = sim_axis(sim, number, motor);
@@ -54,9 +60,9 @@ static void put_unit(struct trace_file *file, unsigned number)
     at = put_text(at, number == 1 ? "{\"unit\":\"" : ",{\"unit\":\"");
     at = put_text(at, file->sim->unit[number - 1u].name);
     at = put_member(at, "\",\"power\":", sim_powered(file->sim, number));
-    at = put_member(at, ",\"inputs\":", (int32_t)kind->inputs_of(core));
-    at = put_member(at, ",\"outputs\":", (int32_t)kind->outputs_of(core));
-    at = put_member(at, ",\"variables\":", (int32_t)kind->variables_of(core));
+    at = put_mask(at, ",\"inputs\":", kind->inputs_of(core));
+    at = put_mask(at, ",\"outputs\":", kind->outputs_of(core));
+    at = put_mask(at, ",\"variables\":", kind->variables_of(core));
     at = put_text(at, ",\"motors\":[");
     for (unsigned motor = 1; motor <= kind->axes; motor++)
         at = put_motor(at, file->sim, number, motor);

@@ -8,7 +8,7 @@
 #include "text/text.h"
 #include "trace_writer.h"
 
-#define BLINK (RKM04_TICKS_PER_SECOND / 2u) /* ticks bright, then dark (U6) */
+#define BLINK (US_PER_SECOND / 2u) /* ticks bright, then dark (U6) */
 #define GATE 1000u                          /* ticks: shortest time over which a speed is taken */
 #define FALLS 256u                          /* pulses that may be under way: one a motor is less; a power of 2 */
 #define CHANGE_MAX 64u                      /* characters of one change: a time and a number are 40 */
@@ -27,7 +27,7 @@ struct vcd_motor {
     uint64_t speed;   /* 1/1000 steps/s */
     uint64_t gate;
     uint64_t fall;    /* tick at which the pulse ends */
-    uint64_t toggle;  /* of the blinking LED; RKM04_NEVER: it does not */
+    uint64_t toggle;  /* of the blinking LED; DEVICE_NEVER: it does not */
 };
 
 struct vcd_unit {
@@ -39,7 +39,7 @@ struct vcd_unit {
 struct vcd {
     struct vcd_places place;
     uint64_t tick;   /* that has been written */
-    uint64_t toggle; /* the next one of all LEDs; RKM04_NEVER: none */
+    uint64_t toggle; /* the next one of all LEDs; DEVICE_NEVER: none */
     unsigned first, falls;
     struct {
         uint64_t tick;
@@ -147,7 +147,7 @@ static void end_first_pulse(struct trace_file *file)
 static void find_toggle(const struct trace_file *file)
 {
     struct vcd *vcd = file->state;
-    vcd->toggle = RKM04_NEVER;
+    vcd->toggle = DEVICE_NEVER;
     for (unsigned unit = 1; unit <= sim_units(file->sim); unit++)
         for (unsigned motor = 1; motor <= sim_device(file->sim)->axes; motor++)
             if (motor_of(vcd, unit, motor)->toggle < vcd->toggle)
@@ -177,7 +177,7 @@ static void go_to(struct trace_file *file, uint64_t tick)
 {
     const struct vcd *vcd = file->state;
     for (;;) {
-        uint64_t fall = vcd->falls > 0 ? vcd->fall[vcd->first].tick : RKM04_NEVER;
+        uint64_t fall = vcd->falls > 0 ? vcd->fall[vcd->first].tick : DEVICE_NEVER;
         if (fall > tick && vcd->toggle > tick)
             break;
         if (fall <= vcd->toggle)
@@ -226,7 +226,7 @@ static void see_step(struct trace_file *file, const struct watch_event *event, s
     state->pulses++;
     if (event->tick - state->gate < GATE)
         return;
-    set_speed(file, event, state, state->pulses * UINT64_C(1000) * RKM04_TICKS_PER_SECOND / (event->tick - state->gate));
+    set_speed(file, event, state, state->pulses * UINT64_C(1000) * US_PER_SECOND / (event->tick - state->gate));
     open_gate(state, event->tick);
 }
 
@@ -247,7 +247,7 @@ static void see_led(struct trace_file *file, const struct watch_event *event, st
     if (state->lit != lit)
         write_bit(file, signal_of(file, event->unit, event->motor, LED), lit);
     state->lit = lit;
-    state->toggle = event->value == DEVICE_LED_BLINK ? event->tick + BLINK : RKM04_NEVER;
+    state->toggle = event->value == DEVICE_LED_BLINK ? event->tick + BLINK : DEVICE_NEVER;
     find_toggle(file);
 }
 
@@ -292,7 +292,7 @@ static void see_power(struct trace_file *file, const struct watch_event *event)
     if (event->value == 0) {
         *unit = (struct vcd_unit){.inputs = inputs};
         for (unsigned motor = 0; motor < DEVICE_AXES_MAX; motor++)
-            unit->motor[motor].toggle = RKM04_NEVER;
+            unit->motor[motor].toggle = DEVICE_NEVER;
         find_toggle(file);
     }
     unit->power = event->value != 0;
@@ -469,7 +469,7 @@ static void look_at_unit(struct trace_file *file, unsigned unit)
     state->outputs = state->power ? kind->outputs_of(core) : 0;
     state->variables = state->power ? kind->variables_of(core) : 0;
     for (unsigned motor = 1; motor <= DEVICE_AXES_MAX; motor++)
-        state->motor[motor - 1u].toggle = RKM04_NEVER;
+        state->motor[motor - 1u].toggle = DEVICE_NEVER;
     for (unsigned motor = 1; motor <= kind->axes; motor++)
         look_at_motor(file, unit, motor);
 }

@@ -148,8 +148,8 @@ static void put_packet(struct wire_text *out, const struct packet *packet, const
     put_little(out, packet->time & UINT32_MAX, 4);
     put_little(out, HEAD_SIZE + packet->length, 4);
     put_little(out, HEAD_SIZE + packet->whole, 4);
-    put_big(out, (uint32_t)(packet->time / RKM04_TICKS_PER_SECOND));
-    put_big(out, (uint32_t)(packet->time % RKM04_TICKS_PER_SECOND));
+    put_big(out, (uint32_t)(packet->time / US_PER_SECOND));
+    put_big(out, (uint32_t)(packet->time % US_PER_SECOND));
     wire_text_put(out, (char)packet->event);
     put_little(out, 0, 3); /* control lines: RS485 has none; footer */
     put_raw(out, packet->bytes, packet->length);

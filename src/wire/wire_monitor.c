@@ -9,7 +9,7 @@
 #define MASTER_BIT 1u
 #define HDLC_FLAG 0x7E
 #define HDLC_ESCAPE 0x7D
-#define SILENCE (RKM04_TICKS_PER_SECOND / 10u) /* L2 */
+#define SILENCE (US_PER_SECOND / 10u) /* L2 */
 #define ASTRAY_MAX 256u /* bytes without a frame that are told of at a time */
 #define REASON_MAX 120u /* characters of a reason put together */
 

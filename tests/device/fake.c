@@ -59,9 +59,9 @@ uint64_t fake_end(const struct fake_unit *unit)
     return unit->due == FAKE_NEVER ? FAKE_NEVER : unit->due + (uint64_t)(unit->left - 1) * (TICKS_PER_S / unit->rate);
 }
 
-void fake_set_inputs(struct fake_unit *unit, uint8_t mask)
+void fake_set_inputs(struct fake_unit *unit, uint32_t mask)
 {
-    unit->inputs = mask & 3u;
+    unit->inputs = mask & ((1u << FAKE_INPUTS) - 1u);
     if ((mask & LIMIT_SWITCH) == 0 || unit->due == FAKE_NEVER || !unit->forward)
         return;
     end_motion(unit);
@@ -133,7 +133,7 @@ const char *fake_obey(struct fake_unit *unit, const char *text)
     if (strcmp(text, "POS?") == 0)
         return write_number(unit, unit->position);
     if (strcmp(text, "IN?") == 0)
-        return write_number(unit, unit->inputs);
+        return write_number(unit, (int32_t)unit->inputs);
     if (strncmp(text, "MOVE ", 5) == 0)
         return obey_move(unit, text + 5);
     if (strcmp(text, "STOP") == 0)

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* fake.h: the core of the example in docs/DEVICES.md: one axis that steps at a constant speed, two inputs, one output.
+/* fake.h: the core of the example in docs/DEVICES.md: one axis that steps at a constant speed, twenty inputs, one output.
  *
  * A request is an address byte (80h + address), a text, and CR; the answer is a text and CR:
  *
  *     MOVE n     n steps, forward if n > 0     STOP     end the motion at once
  *     RATE n     n steps/s, 1..10000           SAVE     keep the rate in the flash
  *     OUT n      switch the output, 0 or 1     ZERO     call this position 0
- *     POS?       answers the position          IN?      answers the inputs, 0..3
+ *     POS?       answers the position          IN?      answers the inputs, 0..1048575
  *
  * The others answer OK, or: E1 unknown, E2 out of range, E3 the limit switch is on, E4 the flash failed. A request that is too
  * long is not answered. Input 1 is the limit switch: it ends motions forward. Nothing is heard while an answer is being sent.
@@ -22,7 +22,9 @@
 #define FAKE_PULSE 2u          /* us */
 #define FAKE_ADDRESSES 100u
 #define FAKE_TEXT_MAX 16u      /* bytes of a request or an answer, without address and CR */
-#define FAKE_FLASH_SIZE 16u    /* bytes of the one flash block */
+#define FAKE_INPUTS 20u
+#define FAKE_FLASH_BLOCKS 12u  /* the last one is used */
+#define FAKE_FLASH_SIZE 16u    /* bytes of a block */
 #define FAKE_MOVE_MAX 1000000  /* steps */
 #define FAKE_RATE_MAX 10000u   /* steps/s */
 #define FAKE_NEVER UINT64_MAX
@@ -47,7 +49,8 @@ struct fake_unit {
     int32_t position;
     uint32_t left, done;     /* steps of the motion */
     uint16_t rate;           /* steps/s */
-    uint8_t address, inputs; /* input 1 is bit 0 */
+    uint32_t inputs;         /* input 1 is bit 0 */
+    uint8_t address;
     bool forward, output, limit;
     bool addressed;          /* the request that comes in is for this unit */
     uint8_t length, answer_length, answer_sent;
@@ -60,7 +63,7 @@ void fake_advance(struct fake_unit *unit, uint64_t ticks);
 uint64_t fake_end(const struct fake_unit *unit);  /* tick of the last step of the motion; FAKE_NEVER */
 size_t fake_receive(struct fake_unit *unit, const uint8_t *bytes, size_t length);
 size_t fake_send(struct fake_unit *unit, uint8_t *bytes, size_t room);
-void fake_set_inputs(struct fake_unit *unit, uint8_t mask);
+void fake_set_inputs(struct fake_unit *unit, uint32_t mask);
 const char *fake_obey(struct fake_unit *unit, const char *text); /* returns the answer, valid until the next call */
 
 #endif

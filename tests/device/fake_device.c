@@ -7,6 +7,8 @@
 
 #include "fake.h"
 
+#define FLASH (FAKE_FLASH_BLOCKS - 1u) /* the block that is used */
+
 /* A unit: what struct device_unit is for this kind. */
 struct fake_device {
     struct fake_unit core;
@@ -72,15 +74,15 @@ static void on_output(void *context, uint64_t tick, bool on)
 static bool on_load(void *context, uint8_t data[4])
 {
     const struct fake_device *device = context;
-    return device->port->flash_read && device->port->flash_read(device->context, 0, 0, data, 4) == 0;
+    return device->port->flash_read && device->port->flash_read(device->context, FLASH, 0, data, 4) == 0;
 }
 
 static bool on_save(void *context, const uint8_t data[4])
 {
     const struct fake_device *device = context;
     const struct device_port *port = device->port;
-    return port->flash_erase && port->flash_program && port->flash_erase(device->context, 0) == 0 &&
-           port->flash_program(device->context, 0, 0, data, 4) == 0;
+    return port->flash_erase && port->flash_program && port->flash_erase(device->context, FLASH) == 0 &&
+           port->flash_program(device->context, FLASH, 0, data, 4) == 0;
 }
 
 static const struct fake_calls calls = {
@@ -242,7 +244,7 @@ static bool has_check_value(const struct device_config *config)
 
 static void set_inputs(struct device_unit *unit, uint32_t mask)
 {
-    fake_set_inputs(&device_of(unit)->core, (uint8_t)mask);
+    fake_set_inputs(&device_of(unit)->core, mask);
 }
 
 static uint32_t inputs_of(const struct device_unit *unit)
@@ -386,16 +388,16 @@ static const char *unlike(const struct device_config *a, const struct device_con
 
 const struct device_kind fake_device = {
     .name = "fake",
-    .description = "one axis at constant speed, two inputs, one output (example)",
+    .description = "one axis at constant speed, twenty inputs, one output (example)",
     .size = sizeof(struct fake_device),
     .axes = 1,
-    .inputs = 2,
+    .inputs = FAKE_INPUTS,
     .outputs = 1,
     .addresses = FAKE_ADDRESSES,
     .ticks_per_us = FAKE_TICKS_PER_US,
     .slot = 1,
     .pulse = FAKE_PULSE,
-    .flash_blocks = 1,
+    .flash_blocks = FAKE_FLASH_BLOCKS,
     .flash_block_size = FAKE_FLASH_SIZE,
     .request_max = FAKE_TEXT_MAX,
     .answer_max = FAKE_TEXT_MAX,

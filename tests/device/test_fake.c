@@ -222,7 +222,9 @@ START_TEST(fault_holds_an_input)
     fake_rig_expect_answer(&rig, 1, "MOVE 5", "E3");
     sim_advance(&rig.sim, 30000);
     fake_rig_expect_answer(&rig, 1, "IN?", "0");
-    fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"input\", \"input\": 3, \"level\": 1}", "2");
+    fake_rig_do(&rig, "fault.inject", "{\"kind\": \"input\", \"input\": 20, \"level\": 1, \"duration\": \"20ms\"}");
+    fake_rig_expect_answer(&rig, 1, "IN?", "524288");
+    fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"input\", \"input\": 21, \"level\": 1}", "20");
 }
 END_TEST
 
@@ -232,8 +234,13 @@ START_TEST(inputs_are_set_by_hand)
 {
     fake_rig_do(&rig, "di.set", "{\"di\": {\"02\": 1}}");
     fake_rig_expect_answer(&rig, 1, "IN?", "2");
-    fake_rig_expect_refusal(&rig, "di.set", "{\"di\": {\"03\": 1}}", "expected 1 to 2");
-    fake_rig_expect_refusal(&rig, "di.set", "{\"mask\": 4}", "3");
+    fake_rig_do(&rig, "di.set", "{\"di\": {\"20\": 1}}");
+    fake_rig_expect_answer(&rig, 1, "IN?", "524290");
+    fake_rig_expect_state(&rig, "di", "524290");
+    fake_rig_do(&rig, "di.set", "{\"mask\": 1024}");
+    fake_rig_expect_answer(&rig, 1, "IN?", "1024");
+    fake_rig_expect_refusal(&rig, "di.set", "{\"di\": {\"21\": 1}}", "expected 1 to 20");
+    fake_rig_expect_refusal(&rig, "di.set", "{\"mask\": 1048576}", "1048575");
 }
 END_TEST
 
@@ -271,7 +278,11 @@ END_TEST
 START_TEST(plant_has_the_axes_and_inputs_of_the_device)
 {
     set_plant("motors: {2: {offset: 1}}", "plant:1:10: error: expected 1, found");
-    set_plant("switches: [{input: 3, motor: 1, at_least: 5}]", "expected an input, a whole number 1..2, found 3");
+    set_plant("switches: [{input: 20, motor: 1, at_least: 0}]", NULL);
+    fake_rig_expect_answer(&rig, 1, "IN?", "524288");
+    fake_rig_do(&rig, "di.set", "{\"mask\": 2}");
+    fake_rig_expect_answer(&rig, 1, "IN?", "524290");
+    set_plant("switches: [{input: 21, motor: 1, at_least: 5}]", "expected an input, a whole number 1..20, found 21");
 }
 END_TEST
 
@@ -308,7 +319,9 @@ START_TEST(conditions_know_the_names_and_numbers_of_the_device)
     expect_no_condition("{\"motor\": 2, \"position\": 5}", "1");
     expect_no_condition("{\"motor\": 1, \"state\": \"dwell\"}", "moving");
     expect_no_condition("{\"motor\": 1, \"fault\": \"no_label\"}", "limit");
-    expect_no_condition("{\"di\": {\"3\": 1}}", "2");
+    fake_rig_do(&rig, "di.set", "{\"di\": {\"20\": 1}}");
+    expect_condition("{\"di\": {\"20\": 1, \"12\": 0}}", true, SECOND, 150000);
+    expect_no_condition("{\"di\": {\"21\": 1}}", "20");
     expect_no_condition("{\"do\": {\"2\": 1}}", "1");
     expect_no_condition("{\"var\": {\"80\": 1}}", "var");
 }

@@ -69,19 +69,20 @@ START_TEST(vcd_has_the_signals_of_the_device)
     expect_part(text, "$scope module fake $end\n"
                 "$var wire 1 ! power $end\n"
                 "$var wire 1 \" di01 $end\n"
-                "$var wire 1 # di02 $end\n"
-                "$var wire 1 $ do01 $end\n"
+                "$var wire 1 # di02 $end\n");
+    expect_part(text, "$var wire 1 5 di20 $end\n"
+                "$var wire 1 6 do01 $end\n"
                 "$scope module m1 $end\n"
-                "$var wire 1 % m1_step $end\n"
-                "$var wire 1 & m1_dir $end\n"
-                "$var wire 1 ' m1_led $end\n"
-                "$var wire 1 ( m1_moving $end\n"
-                "$var real 64 ) m1_command $end\n"
-                "$var real 64 * m1_speed $end\n"
-                "$var real 64 + m1_position $end\n"
+                "$var wire 1 7 m1_step $end\n"
+                "$var wire 1 8 m1_dir $end\n"
+                "$var wire 1 9 m1_led $end\n"
+                "$var wire 1 : m1_moving $end\n"
+                "$var real 64 ; m1_command $end\n"
+                "$var real 64 < m1_speed $end\n"
+                "$var real 64 = m1_position $end\n"
                 "$upscope $end\n"
                 "$upscope $end\n");
-    expect_part(text, "#10000\n1%\nr1 +\nr100 *\n#10002\n0%\n#20000\n1%\nr2 +\n0(\nr0 *\n0'\n#20002\n0%\n#30000\n1#\n1$\n");
+    expect_part(text, "#10000\n17\nr1 =\nr100 <\n#10002\n07\n#20000\n17\nr2 =\n0:\nr0 <\n09\n#20002\n07\n#30000\n1#\n16\n");
     free(text);
 }
 END_TEST
@@ -229,7 +230,7 @@ START_TEST(scenario_is_held_to_the_numbers_of_the_device)
         {"device: fake\nunits: 101\nsteps: [{advance: 1s}]\n", "test.yaml:2:8: error: "},
         {"device: fake\nsteps: [{expect: {motor: 2, position: 1}}]\n", "test.yaml:2:"},
         {"device: fake\nsteps: [{expect: {motor: 1, state: dwell}}]\n", "idle, moving"},
-        {"device: fake\nsteps: [{di: {\"03\": 1}}]\n", "test.yaml:2:"},
+        {"device: fake\nsteps: [{di: {\"21\": 1}}]\n", "test.yaml:2:"},
         {"device: fake\nsteps: [{pulses: {motor: 2, count: 1}}]\n", "test.yaml:2:"},
         {"device: fake\nreadings: {planning: 20ms}\nsteps: [{advance: 1s}]\n", "test.yaml:2:"},
         {"device: fake\nframing: plain\nsteps: [{advance: 1s}]\n", "test.yaml:2:"},

@@ -9,6 +9,8 @@
 
 #include "line/flash_file.h"
 
+#define FLASH_FILE_SIZE (RKM04_FLASH_BLOCKS * RKM04_FLASH_BLOCK_SIZE) /* the image of these tests */
+
 enum disk_fault {
     DISK_WELL,
     DISK_KILL,        /* the process ends in the middle of the call; what was written stays */

@@ -49,6 +49,11 @@ static int port_program(void *context, unsigned block, unsigned offset, const vo
     return flash_file_program(context, block, offset, data, length);
 }
 
+static bool open_image(void)
+{
+    return flash_file_open(&file, path, RKM04_FLASH_BLOCKS, RKM04_FLASH_BLOCK_SIZE);
+}
+
 static void get_image(uint8_t image[FLASH_FILE_SIZE])
 {
     FILE *from = fopen(path, "rb");
@@ -68,7 +73,7 @@ static void start_process(void)
     static const struct rkm04_config config = {.node = 1};
     static const struct rkm04_port port = {.flash_read = port_read, .flash_erase = port_erase, .flash_program = port_program};
     disk_next_process();
-    ck_assert(flash_file_open(&file, path));
+    ck_assert(open_image());
     rkm04_init(&unit, &config, &port, &file);
 }
 
@@ -338,7 +343,7 @@ START_TEST(U5_an_image_whose_making_was_cut_is_made_anew)
     make_erased();
     for (unsigned length = 0; length < FLASH_FILE_SIZE; length += length < 20 ? 1 : length < 32700 ? 509 : 1) {
         put_file(erased, length);
-        ck_assert_msg(flash_file_open(&file, path), "%u bytes of an erased image were refused", length);
+        ck_assert_msg(open_image(), "%u bytes of an erased image were refused", length);
         end();
         assert_erased();
     }
@@ -351,7 +356,7 @@ START_TEST(a_short_file_with_something_in_it_is_refused_and_stays_as_it_is)
     static const uint8_t text[] = {0xff, 0xff, 0xff, 'a'};
     disk_arm(0, DISK_WELL, 0);
     put_file(text, sizeof text);
-    ck_assert(!flash_file_open(&file, path));
+    ck_assert(!open_image());
     ck_assert_uint_eq(complaints, 1);
     ck_assert_uint_eq(disk_calls(), 0);
 }
@@ -365,12 +370,12 @@ START_TEST(U5_an_image_can_be_made_after_the_disk_was_too_full_for_it)
         for (unsigned n = 1; n <= 2; n++) {
             disk_well(erased);
             disk_arm(n, n == 1 ? DISK_FULL : DISK_FULL_LATE, room[i]);
-            ck_assert(!flash_file_open(&file, path));
+            ck_assert(!open_image());
             ck_assert_uint_gt(complaints, 0);
             struct stat found;
             ck_assert(stat(path, &found) == 0 && found.st_size == 0);
             disk_well(erased);
-            ck_assert(flash_file_open(&file, path));
+            ck_assert(open_image());
             end();
             assert_erased();
             unlink(path);
@@ -384,13 +389,13 @@ START_TEST(U5_a_new_image_is_on_the_disk_with_its_name_before_it_is_used)
     static uint8_t image[FLASH_FILE_SIZE];
     make_erased();
     unsigned before = disk_folders_synced();
-    ck_assert(flash_file_open(&file, path));
+    ck_assert(open_image());
     ck_assert_uint_eq(disk_folders_synced(), before + 1);
     end();
     assert_erased();
     disk_survives(image, 1);
     ck_assert(memcmp(image, erased, sizeof image) == 0);
-    ck_assert(flash_file_open(&file, path));
+    ck_assert(open_image());
     ck_assert_uint_eq(disk_folders_synced(), before + 1);
 }
 END_TEST

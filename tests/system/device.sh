@@ -40,9 +40,9 @@ END
 test_devices_are_listed_with_a_line_each() {
     exits 0 "$RKM04" devices
     same "rkm04    unit for four stepper motors on RS485 (SofCon RKM04)
-fake     one axis at constant speed, two inputs, one output (example)" "$said" "rkm04 devices"
+fake     one axis at constant speed, twenty inputs, one output (example)" "$said" "rkm04 devices"
     exits 0 "$RKM04" devices --json
-    same "['rkm04', 'fake'] 1 2 1 100" \
+    same "['rkm04', 'fake'] 1 20 1 100" \
         "$(python3 -c 'import json, sys; all = json.load(sys.stdin); fake = all[1]; print([d["name"] for d in all], fake["axes"],
 fake["inputs"], fake["outputs"], fake["addresses"])' <<<"$said")" "rkm04 devices --json"
     exits 0 "$PRODUCT" devices
@@ -76,8 +76,8 @@ test_the_control_socket_sees_and_sets() {
     emulator
     call di.set '{"unit": "5", "di": {"02": 1}}'
     holds "$said" '"di":2' "di.set"
-    call di.set '{"unit": "5", "di": {"03": 1}}'
-    holds "$said" "expected 1 to 2" "di.set of input 3"
+    call di.set '{"unit": "5", "di": {"21": 1}}'
+    holds "$said" "expected 1 to 20" "di.set of input 21"
     dialogue 9 "85 4d 4f 56 45 20 33 0d" "4f 4b 0d" "MOVE 3"
     call advance '{"until": {"unit": "5", "motor": 1, "position": 2}, "limit": "1s"}'
     holds "$said" '"t_us":20001' "advance to the second step"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* nearest.h: what somebody may have meant who has mistyped a name. */
-#ifndef RKM04_OPTIONS_NEAREST_H
-#define RKM04_OPTIONS_NEAREST_H
+#ifndef RKM04_TEXT_NEAREST_H
+#define RKM04_TEXT_NEAREST_H
 
 /* Find the word of `list` ("serve, exec, test or replay") nearest to `word`: up to two letters are wrong, missing, too many or
  * changed places, and one at least is right. Returns "; did you mean `serve'?", valid until the next call; "" if none is near. */
