@@ -8,16 +8,18 @@
 #include <rkm04/limits.h>
 
 #include "options/options.h"
+#include "program_tools/program_tools.h"
 #include "run/run.h"
 #include "serve/serve.h"
 
-#define NAMES "serve, exec, test, replay or devices"
+#define NAMES "serve, exec, check, test, replay or devices"
 
 const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
 static const char help[] =
     "Usage: rkm04 serve [OPTION...]\n"
     "  or:  rkm04 exec [OPTION...] [M=]FILE...\n"
+    "  or:  rkm04 check [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 test [OPTION...] SCENARIO...\n"
     "  or:  rkm04 replay [OPTION...] RECORDING\n"
     "  or:  rkm04 devices [--json]\n"
@@ -25,6 +27,7 @@ static const char help[] =
     "\n"
     "  serve      units on a bus (pseudo terminal, serial device or TCP), in real time\n"
     "  exec       run programs in virtual time, as fast as the machine can\n"
+    "  check      report what is wrong with programs\n"
     "  test       run scenarios in virtual time and report which pass\n"
     "  replay     repeat a recording of `serve' or `test' and compare\n"
     "  devices    list the devices that serve and scenarios know\n"
@@ -36,6 +39,7 @@ static const char help[] =
     "  rkm04 serve --node 3 --flash unit3.flash\n"
     "  rkm04 serve --node 1-16 --tcp 4001\n"
     "  rkm04 exec --trace pulses.vcd program.rks\n"
+    "  rkm04 check --werror program.rks\n"
     "  rkm04 test --junit report.xml homing.yaml\n"
     "  rkm04 replay --trace pulses.vcd session.record\n"
     "\n"
@@ -48,6 +52,7 @@ static const struct {
 } subcommands[] = {
     {"serve", "rkm04 serve", serve_main},
     {"exec", "rkm04 exec", exec_main},
+    {"check", "rkm04 check", check_main},
     {"test", "rkm04 test", test_main},
     {"replay", "rkm04 replay", replay_main},
     {"devices", "rkm04 devices", devices_main},

@@ -9,6 +9,7 @@
 #include <rkm04/limits.h>
 
 #include "file/file.h"
+#include "options/options.h"
 
 /* How texts are checked. */
 struct check {
@@ -35,24 +36,10 @@ static void take_path(struct exec_inputs *inputs, const char *path, struct argp_
     inputs->stdin_taken = true;
 }
 
-bool exec_program_argument(const char *text, char *motor, const char **path)
-{
-    size_t digits = strspn(text, "0123456789");
-    *motor = '1';
-    *path = text;
-    if (digits == 0 || text[digits] != '=')
-        return true;
-    if (digits > 1 || text[0] > '0' + RKM04_MOTORS)
-        return false;
-    *motor = text[0];
-    *path = text + digits + 1;
-    return true;
-}
-
 void exec_inputs_argument(struct exec_inputs *inputs, const char *text, struct argp_state *state)
 {
     struct exec_program *program = &inputs->program[inputs->programs++];
-    if (!exec_program_argument(text, &program->motor, &program->path))
+    if (!program_argument_read(text, &program->motor, &program->path))
         argp_error(state, "%s: expected a motor 1 to 4, or 0 for all, before '='", text);
     take_path(inputs, program->path, state);
 }

@@ -42,10 +42,6 @@ bool exec_inputs_begin(struct exec_inputs *inputs, const char *command, int argc
 void exec_inputs_argument(struct exec_inputs *inputs, const char *text, struct argp_state *state);
 void exec_inputs_stimulus(struct exec_inputs *inputs, const char *path, struct argp_state *state);
 
-/* Take an argument [M=]FILE apart; M is a motor 0..4, 1 if it is missing. *path points into `text`.
- * Returns false if M is a number but not a motor. */
-bool exec_program_argument(const char *text, char *motor, const char **path);
-
 /* Was neither given? */
 bool exec_inputs_are_none(const struct exec_inputs *inputs);
 

@@ -12,8 +12,7 @@
 
 /* ---- Characters and places ---------------------------------------------------------------------------------------- */
 
-/* Bytes of the UTF-8 character at `at`; 1 for what is none: texts in the code pages of old are taken, too. */
-static size_t character_length(const char *text, size_t length, size_t at)
+size_t text_character_length(const char *text, size_t length, size_t at)
 {
     const unsigned char *c = (const unsigned char *)text + at;
     size_t bytes = c[0] >= 0xF0 && c[0] <= 0xF4 ? 4 : c[0] >= 0xE0 && c[0] < 0xF0 ? 3 : c[0] >= 0xC2 && c[0] < 0xE0 ? 2 : 1;
@@ -39,7 +38,7 @@ void text_place_move(struct text_place *place, size_t offset)
         } else {
             place->column++;
         }
-        place->at += character_length(place->text, place->length, place->at);
+        place->at += text_character_length(place->text, place->length, place->at);
     }
 }
 
@@ -80,7 +79,7 @@ static void print_found(const struct rkm04_reader *reader, FILE *out)
         fprintf(out, "%.*s%s", shown, text + at, end - at > 24 ? "..." : "");
         return;
     }
-    size_t bytes = character_length(text, reader->length, at);
+    size_t bytes = text_character_length(text, reader->length, at);
     bool control = bytes == 2 && reader->text[at] == 0xC2 && reader->text[at + 1] < 0xA0;
     const char *name = invisible_name(text + at, bytes);
     if (name != NULL)
@@ -149,7 +148,28 @@ static void print_unknown(const struct rkm04_reader *reader, FILE *out)
         fputs("; no comment is open here", out);
 }
 
+void diagnose_error(const struct rkm04_reader *reader, enum rkm04_read found, FILE *out)
+{
+    if (found == RKM04_READ_BAD_VALUE)
+        print_bad_value(reader, out);
+    else
+        print_unknown(reader, out);
+}
+
 /* ---- The whole text ----------------------------------------------------------------------------------------------- */
+
+enum rkm04_read diagnose_read(struct rkm04_reader *reader, struct rkm04_command *command)
+{
+    const enum rkm04_read found = rkm04_read(reader, command);
+    if (found != RKM04_READ_BAD_VALUE && found != RKM04_READ_UNKNOWN)
+        return found;
+    size_t end = reader->length;
+    if (reader->wrong < end)
+        end = reader->wrong + text_character_length((const char *)reader->text, end, reader->wrong);
+    if (reader->at > reader->wrong && reader->at < end)
+        reader->at = end;
+    return found;
+}
 
 int diagnose_text(const char *name, const char *text, size_t length, FILE *out)
 {
@@ -159,22 +179,15 @@ int diagnose_text(const char *name, const char *text, size_t length, FILE *out)
     struct text_place place = text_place_begin(text, length);
     int errors = 0;
     rkm04_read_begin(&reader, text, length);
-    while ((found = rkm04_read(&reader, &command)) != RKM04_READ_END) {
+    while ((found = diagnose_read(&reader, &command)) != RKM04_READ_END) {
         if (found == RKM04_READ_COMMAND)
             continue;
         text_place_move(&place, reader.start);
         fprintf(out, "%s:%zu:%zu: error: ", name, place.line, place.column);
-        if (found == RKM04_READ_BAD_VALUE)
-            print_bad_value(&reader, out);
-        else
-            print_unknown(&reader, out);
+        diagnose_error(&reader, found, out);
         fputc('\n', out);
         if (errors < INT_MAX)
             errors++;
-        /* One wrong letter of several bytes is one error. */
-        size_t end = reader.wrong < length ? reader.wrong + character_length(text, length, reader.wrong) : length;
-        if (reader.at > reader.wrong && reader.at < end)
-            reader.at = end;
     }
     return errors;
 }

@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include <rkm04/readings.h>
+#include <rkm04/text.h>
 
 /* A place in a text as an editor shows it: both count from 1, a UTF-8 character is one column. Plain data. */
 struct text_place {
@@ -21,6 +22,15 @@ struct text_place text_place_begin(const char *text, size_t length);
 
 /* Go on to `offset`, not before the present place, at most the end of the text. */
 void text_place_move(struct text_place *place, size_t offset);
+
+/* Bytes of the UTF-8 character at `at` < length; 1 for what is none: texts in the code pages of old are taken, too. */
+size_t text_character_length(const char *text, size_t length, size_t at);
+
+/* As rkm04_read(), but a wrong character of several bytes is one error. */
+enum rkm04_read diagnose_read(struct rkm04_reader *reader, struct rkm04_command *command);
+
+/* Print what was expected and what was found there, without place and newline, behind an error of diagnose_read(). */
+void diagnose_error(const struct rkm04_reader *reader, enum rkm04_read found, FILE *out);
 
 /* Read a whole program text and print one line `NAME:LINE:COLUMN: error: …` to `out` for each command that the unit would
  * refuse (flags 1 and 2 of message 2), at the place of the command. Returns their number; 0: the unit takes the text. */

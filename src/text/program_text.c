@@ -59,19 +59,39 @@ static const char *read_all(struct program_text *text, FILE *file)
     return "too long for a program";
 }
 
-const char *program_text_read(struct program_text *text, const char *path)
+bool program_text_map_in_place(char *text, size_t length)
+{
+    bool any = false;
+    if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
+        memset(text, ' ', 3);
+    for (size_t at = 0; at < length; at++) {
+        size_t bytes = apostrophe_at(text + at, length - at);
+        if (bytes == 0)
+            continue;
+        any = true;
+        text[at] = '\'';
+        memset(text + at + 1, ' ', bytes - 1);
+        at += bytes - 1;
+    }
+    return any;
+}
+
+const char *program_text_read_raw(struct program_text *text, const char *path)
 {
     *text = (struct program_text){0};
-    if (strcmp(path, "-") == 0) {
-        const char *wrong = read_all(text, stdin);
-        text->length = program_text_map(text->text, text->length);
-        return wrong;
-    }
+    if (strcmp(path, "-") == 0)
+        return read_all(text, stdin);
     FILE *file = fopen(path, "rb");
     if (file == NULL)
         return strerror(errno);
     const char *wrong = read_all(text, file);
     fclose(file);
+    return wrong;
+}
+
+const char *program_text_read(struct program_text *text, const char *path)
+{
+    const char *wrong = program_text_read_raw(text, path);
     text->length = program_text_map(text->text, text->length);
     return wrong;
 }

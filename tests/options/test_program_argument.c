@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* test_exec_inputs.c: the arguments [M=]FILE of `rkm04 exec`. One test alone: CK_RUN_CASE=arguments ./test_exec_inputs */
+/* test_program_argument.c: the arguments [M=]FILE of those subcommands that take programs.
+ * One test alone: CK_RUN_CASE=arguments ./test_program_argument */
 #include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "run/exec_inputs.h"
+#include "options/program_argument.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
@@ -22,7 +23,7 @@ START_TEST(an_argument_names_its_motor_or_means_motor_1)
     for (size_t i = 0; i < COUNT(good); i++) {
         char motor = '?';
         const char *path = NULL;
-        ck_assert_msg(exec_program_argument(good[i].argument, &motor, &path), "'%s' refused", good[i].argument);
+        ck_assert_msg(program_argument_read(good[i].argument, &motor, &path), "'%s' refused", good[i].argument);
         ck_assert_int_eq(motor, good[i].motor);
         ck_assert_str_eq(path, good[i].path);
     }
@@ -35,14 +36,14 @@ START_TEST(a_number_that_is_no_motor_is_refused)
     for (size_t i = 0; i < COUNT(bad); i++) {
         char motor;
         const char *path;
-        ck_assert_msg(!exec_program_argument(bad[i], &motor, &path), "'%s' taken", bad[i]);
+        ck_assert_msg(!program_argument_read(bad[i], &motor, &path), "'%s' taken", bad[i]);
     }
 }
 END_TEST
 
 static Suite *program_suite(void)
 {
-    Suite *suite = suite_create("exec_inputs");
+    Suite *suite = suite_create("program_argument");
     TCase *arguments = tcase_create("arguments");
     tcase_add_test(arguments, an_argument_names_its_motor_or_means_motor_1);
     tcase_add_test(arguments, a_number_that_is_no_motor_is_refused);
@@ -57,6 +58,6 @@ int main(void)
     int failed = srunner_ntests_failed(runner);
     srunner_free(runner);
     if (failed > 0)
-        puts("one test case alone: CK_RUN_CASE=arguments ./test_exec_inputs");
+        puts("one test case alone: CK_RUN_CASE=arguments ./test_program_argument");
     return failed > 0;
 }

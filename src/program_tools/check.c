@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT */
+#include "check.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check_inside.h"
+#include "text/text.h"
+
+/* ---- Names ---------------------------------------------------------------------------------------------------------- */
+
+#define CHECK_ROW(constant, name, says) {name, says},
+static const struct {
+    const char *name, *says;
+} warnings[] = {CHECK_TABLE(CHECK_ROW)};
+#undef CHECK_ROW
+
+const char *check_warning_name(enum check_warning warning)
+{
+    return warnings[warning].name;
+}
+
+const char *check_warning_says(enum check_warning warning)
+{
+    return warnings[warning].says;
+}
+
+enum check_warning check_warning_named(const char *name, size_t length)
+{
+    for (unsigned i = 0; i < CHECK_WARNINGS; i++)
+        if (strlen(warnings[i].name) == length && memcmp(warnings[i].name, name, length) == 0)
+            return (enum check_warning)i;
+    return CHECK_WARNINGS;
+}
+
+const char *check_warning_names(void)
+{
+#define CHECK_NAME(constant, name, says) name ", "
+    static const char names[] = CHECK_TABLE(CHECK_NAME);
+#undef CHECK_NAME
+    return names;
+}
+
+/* ---- Reports -------------------------------------------------------------------------------------------------------- */
+
+static void warn(struct check *check, struct diagnostic place, enum check_warning warning, const char *hint, const char *format,
+                 va_list arguments)
+{
+    char message[512];
+    if (check->options->off >> warning & 1)
+        return;
+    place.severity = DIAGNOSTIC_WARNING;
+    place.name = warnings[warning].name;
+    vsnprintf(message, sizeof message, format, arguments);
+    diagnostics_add(check->found, &place, hint, "%s", message);
+}
+
+void check_warn_at(struct check *check, struct diagnostic place, enum check_warning warning, const char *hint,
+                   const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    warn(check, place, warning, hint, format, arguments);
+    va_end(arguments);
+}
+
+void check_warn(struct check *check, const struct check_motor *motor, enum check_warning warning, size_t first, size_t last,
+                const char *hint, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    warn(check, code_place(&motor->code, first, last), warning, hint, format, arguments);
+    va_end(arguments);
+}
+
+/* ---- The check ------------------------------------------------------------------------------------------------------ */
+
+static bool map_texts(struct check *check)
+{
+    check->texts = calloc(check->count + 1, sizeof *check->texts);
+    for (size_t i = 0; check->texts != NULL && i < check->count; i++) {
+        const struct program_source *source = &check->sources[i];
+        check->texts[i] = malloc(source->length + 1);
+        if (check->texts[i] == NULL)
+            return false;
+        if (source->length > 0)
+            memcpy(check->texts[i], source->text, source->length);
+        program_text_map_in_place(check->texts[i], source->length);
+    }
+    return check->texts != NULL;
+}
+
+static struct check_motor *motor_of(struct check *check, unsigned number)
+{
+    for (size_t i = 0; i < check->motor_count; i++)
+        if (check->motors[i].motor == number)
+            return &check->motors[i];
+    struct check_motor *added = &check->motors[check->motor_count++];
+    *added = (struct check_motor){.motor = number};
+    code_begin(&added->code, check->sources, check->count);
+    return added;
+}
+
+static bool read_sources(struct check *check)
+{
+    check->motors = calloc(check->count + 1, sizeof *check->motors);
+    if (check->motors == NULL)
+        return false;
+    for (size_t i = 0; i < check->count; i++)
+        if (!check_read(check, motor_of(check, check->sources[i].motor), i))
+            return false;
+    return true;
+}
+
+static bool look_at(struct check *check, struct check_motor *motor)
+{
+    if (!flow_begin(&motor->flow, &motor->code, UINT16_MAX))
+        return false;
+    check_labels(check, motor);
+    if (motor->flow.first_node == NULL)
+        return true;
+    check_flow(check, motor);
+    check_motions(check, motor);
+    check_guards(check, motor);
+    return !motor->flow.no_memory;
+}
+
+static bool run_check(struct check *check)
+{
+    if (!map_texts(check) || !read_sources(check))
+        return false;
+    for (size_t i = 0; i < check->motor_count; i++)
+        if (!look_at(check, &check->motors[i]))
+            return false;
+    check_outputs(check);
+    if (!check_variables(check))
+        return false;
+    check_nolint(check);
+    return !check->found->no_memory;
+}
+
+bool check_programs(const struct program_source *sources, size_t count, const struct check_options *options,
+                    struct diagnostics *found)
+{
+    struct check check = {.sources = sources, .count = count, .options = options, .found = found};
+    *found = (struct diagnostics){0};
+    bool well = run_check(&check);
+    diagnostics_arrange(found, sources);
+    for (size_t i = 0; i < check.motor_count; i++) {
+        flow_end(&check.motors[i].flow);
+        code_free(&check.motors[i].code);
+    }
+    for (size_t i = 0; check.texts != NULL && i < count; i++)
+        free(check.texts[i]);
+    free(check.texts);
+    free(check.motors);
+    planner_end(&check.planner);
+    return well;
+}

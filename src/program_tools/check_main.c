@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT */
+/* rkm04 check: what is wrong with programs. */
+#include <argp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "check_print.h"
+#include "options/options.h"
+#include "program_tools.h"
+#include "tool_files.h"
+
+enum option_key { KEY_NO_WARN = 256, KEY_WERROR, KEY_FORMAT, KEY_READINGS, KEY_LIST };
+
+struct options {
+    struct tool_files files;
+    struct check_options check;
+    readings_set named;
+    enum check_format format;
+    bool werror, list;
+};
+
+static const struct argp_option option_table[] = {
+    {"no-warn", KEY_NO_WARN, "NAME,...", 0, "Switch warnings off; `all' switches off all of them", 0},
+    {"werror", KEY_WERROR, NULL, 0, "Exit status 1 also for warnings", 0},
+    {"format", KEY_FORMAT, "FORMAT", 0, "Print as " CHECK_FORMAT_NAMES, 0},
+    {"json", 'j', NULL, 0, "The same as --format json", 0},
+    {"list", KEY_LIST, NULL, 0, "List the warnings and what they say", 0},
+    {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
+    {0},
+};
+
+static const char doc[] =
+    "Report what is wrong with programs of the RKM04: everything that a unit would refuse, and what it takes although it is "
+    "hardly meant. FILE is a program text (.rks), - standard input. Files given as M=FILE are the programs of one unit, M "
+    "the motor, 1 to 4 or 0 for all: then it is also reported when motors wait for each other. Other files are checked each "
+    "by itself."
+    "\v"
+    "A comment switches warnings off for its line, or for the next line if it stands alone: {nolint NAME NAME}; for the whole "
+    "text: {nolint-file NAME}. docs/CHECK.md describes each warning.\n"
+    "\n"
+    "Examples:\n"
+    "  rkm04 check drill.rks\n"
+    "  rkm04 check 1=x.rks 2=y.rks\n"
+    "  rkm04 check --werror --no-warn speed-not-reached *.rks\n"
+    "  rkm04 check --format sarif *.rks >check.sarif\n"
+    "\n"
+    "Exit status: 0 no error; 1 an error, with --werror also a warning, or a file could not be read; 2 wrong usage.";
+
+static void take_names(struct argp_state *state, struct options *options, const char *text)
+{
+    while (*text != '\0') {
+        const size_t length = strcspn(text, ",");
+        const enum check_warning warning = check_warning_named(text, length);
+        if (warning < CHECK_WARNINGS)
+            options->check.off |= UINT64_C(1) << warning;
+        else if (length == 3 && strncmp(text, "all", 3) == 0)
+            options->check.off = UINT64_MAX;
+        else {
+            char name[64];
+            snprintf(name, sizeof name, "%.*s", (int)length, text);
+            argp_error(state, "--no-warn: no warning is called `%s' (--list shows them)%s", name,
+                       nearest_hint(name, check_warning_names()));
+        }
+        text += length + (text[length] == ',');
+    }
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case KEY_NO_WARN:
+        take_names(state, options, text);
+        return 0;
+    case KEY_WERROR:
+        options->werror = true;
+        return 0;
+    case KEY_FORMAT:
+        options->format = check_format_named(text);
+        if (options->format == CHECK_FORMATS)
+            argp_error(state, "--format: expected " CHECK_FORMAT_NAMES ", found '%s'%s", text,
+                       nearest_hint(text, CHECK_FORMAT_NAMES));
+        return 0;
+    case 'j':
+        options->format = CHECK_JSON;
+        return 0;
+    case KEY_LIST:
+        options->list = true;
+        return 0;
+    case KEY_READINGS:
+        readings_option_read(&options->check.readings, &options->named, text, state);
+        return 0;
+    case ARGP_KEY_ARG:
+        tool_files_add(&options->files, text, state);
+        return 0;
+    case ARGP_KEY_END:
+        if (options->files.count == 0 && !options->list)
+            argp_error(state, "no program given");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static int print_list(void)
+{
+    for (unsigned i = 0; i < CHECK_WARNINGS; i++)
+        printf("%-20s %s\n", check_warning_name((enum check_warning)i), check_warning_says((enum check_warning)i));
+    return arguments_printed();
+}
+
+/* Check sources that belong together. */
+static bool check_some(struct check_printer *printer, const struct options *options, const struct program_source *sources,
+                       size_t count)
+{
+    struct diagnostics found;
+    bool well = check_programs(sources, count, &options->check, &found);
+    check_print(printer, sources, &found);
+    diagnostics_free(&found);
+    if (!well)
+        fputs("rkm04 check: out of memory\n", stderr);
+    return well;
+}
+
+/* Check each file without a motor by itself, then those with one together. Returns false if something could not be done. */
+static bool check_files(struct check_printer *printer, struct options *options)
+{
+    struct tool_files *files = &options->files;
+    struct program_source *together = calloc(files->count + 1, sizeof *together);
+    size_t count = 0;
+    bool well = together != NULL;
+    for (size_t i = 0; together != NULL && i < files->count; i++) {
+        struct tool_file *file = &files->list[i];
+        if (!tool_file_read(file, "rkm04 check")) {
+            well = false;
+        } else if (file->has_motor) {
+            together[count++] = file->source;
+            continue;
+        } else {
+            well = check_some(printer, options, &file->source, 1) && well;
+        }
+        tool_file_free(file);
+    }
+    if (count > 0)
+        well = check_some(printer, options, together, count) && well;
+    free(together);
+    return well;
+}
+
+int check_main(int argc, char **argv)
+{
+    static const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, NULL, NULL, NULL};
+    struct options options = {.format = CHECK_TEXT};
+    struct check_printer printer;
+    tool_files_begin(&options.files, argc);
+    arguments_parse(&argp, argc, argv, &options);
+    if (options.list) {
+        tool_files_end(&options.files);
+        return print_list();
+    }
+    check_print_begin(&printer, options.format, stdout);
+    bool well = check_files(&printer, &options);
+    well = check_print_end(&printer) && well;
+    tool_files_end(&options.files);
+    if (arguments_printed() != 0)
+        return STATUS_FAILURE;
+    return !well || printer.errors > 0 || (options.werror && printer.warnings > 0) ? STATUS_FAILURE : STATUS_SUCCESS;
+}
