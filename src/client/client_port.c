@@ -4,7 +4,6 @@
 #include <err.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -18,6 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "options/options.h"
 #include "text/text.h"
 
 #define TCP "tcp:"
@@ -143,15 +143,14 @@ static const char *find_service(const char *port)
 
 static int open_tcp(const char *port, unsigned timeout_ms)
 {
-    struct addrinfo hints = {.ai_socktype = SOCK_STREAM};
     struct addrinfo *list = NULL;
     const char *name = port + strlen(TCP), *colon = find_service(port);
     bool bracketed = name[0] == '[' && colon[-1] == ']';
     char *host = strndup(name + bracketed, (size_t)(colon - name) - 2u * bracketed);
-    int unknown = host != NULL ? getaddrinfo(host, colon + 1, &hints, &list) : EAI_MEMORY;
+    const char *wrong = host != NULL ? host_address_find(host, colon + 1, AF_UNSPEC, timeout_ms, &list) : strerror(ENOMEM);
     free(host);
-    if (unknown != 0) {
-        warnx("cannot find %s: %s", port, unknown == EAI_SYSTEM ? strerror(errno) : gai_strerror(unknown));
+    if (wrong != NULL) {
+        warnx("cannot find %s: %s", port, wrong);
         return -1;
     }
     int fd = -1;

@@ -4,6 +4,7 @@
  *     line (here)                  the serial end: a pty of its own (line_pty.c) or a device (line_serial.c)
  *     line_settings                what a client has set, and how bytes of another speed are heard
  *     net_port, rfc2217            TCP, raw or with the settings of a port
+ *     net_address                  where it listens
  *     link_path, lock_file         the link to the pty, and who owns it
  *     flash_file                   the flash of a unit in a file
  *     log, delivery                the log of the program, and the thread that writes it to a slow reader

@@ -12,7 +12,6 @@
 #include "net_port.h"
 
 #include <errno.h>
-#include <netdb.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
@@ -22,8 +21,6 @@
 #include "log.h"
 #include "text/text.h"
 
-#define DEFAULT_HOST "127.0.0.1"
-#define HOST_SIZE 256
 #define BACKLOG 128     /* connections that the system keeps until the next turn of the loop */
 #define LAST_READS 8    /* of NET_IN bytes each: what is still read of a client that gives way */
 #define KEEPALIVE_S 30  /* a client that has vanished gives the line free */
@@ -44,57 +41,6 @@ static void accept_connection(struct net_port *port);
 static size_t min_size(size_t a, size_t b)
 {
     return a < b ? a : b;
-}
-
-/* ---- Addresses ------------------------------------------------------------------------------------------------------ */
-
-struct address {
-    char host[HOST_SIZE];
-    const char *port; /* digits */
-    bool ipv6;
-};
-
-static bool read_port(const char *text)
-{
-    uint64_t number;
-    return number_read(text, 0, UINT16_MAX, &number);
-}
-
-static bool read_address(struct address *address, const char *text)
-{
-    const char *colon = strrchr(text, ':'), *host = text;
-    size_t length = colon ? (size_t)(colon - text) : 0;
-    address->port = colon ? colon + 1 : text;
-    address->ipv6 = length > 2 && host[0] == '[' && host[length - 1] == ']';
-    if (address->ipv6) {
-        host++;
-        length -= 2;
-    }
-    bool strange = !address->ipv6 && (memchr(host, ':', length) || memchr(host, '[', length));
-    if (length >= HOST_SIZE || strange || !read_port(address->port))
-        return false;
-    snprintf(address->host, sizeof address->host, "%.*s", length > 0 ? (int)length : HOST_SIZE, length > 0 ? host : DEFAULT_HOST);
-    return true;
-}
-
-bool net_address_valid(const char *address)
-{
-    struct address parts;
-    return read_address(&parts, address);
-}
-
-static void write_name(char name[NET_NAME_SIZE], const struct sockaddr_storage *from)
-{
-    char host[NET_NAME_SIZE - 10] = "?";
-    const struct sockaddr_in *four = (const void *)from;
-    const struct sockaddr_in6 *six = (const void *)from;
-    if (from->ss_family == AF_INET6) {
-        uv_ip6_name(six, host, sizeof host);
-        snprintf(name, NET_NAME_SIZE, "[%s]:%u", host, (unsigned)ntohs(six->sin6_port));
-    } else {
-        uv_ip4_name(four, host, sizeof host);
-        snprintf(name, NET_NAME_SIZE, "%s:%u", host, (unsigned)ntohs(four->sin_port));
-    }
 }
 
 /* ---- Peers ---------------------------------------------------------------------------------------------------------- */
@@ -470,7 +416,7 @@ static bool name_connection(struct net_connection *connection)
     int size = sizeof from;
     if (uv_tcp_getpeername(&connection->tcp, (struct sockaddr *)&from, &size) != 0)
         return false;
-    write_name(connection->name, &from);
+    net_address_write(connection->name, &from);
     return true;
 }
 
@@ -521,30 +467,24 @@ static bool report_cannot_listen(const char *address, const char *why)
     return false;
 }
 
-/* Find the address, and listen there. The listener has been initialised. */
-static bool listen_at(struct net_port *port, const char *text)
+/* The listener has been initialised. */
+static bool listen_at(struct net_port *port, const char *address)
 {
-    struct address address;
-    struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE}, *found = NULL;
     struct sockaddr_storage real = {0};
     int size = sizeof real;
-    if (!read_address(&address, text))
-        return report_cannot_listen(text, "expected " NET_ADDRESS_EXPECTED);
-    hints.ai_family = address.ipv6 ? AF_INET6 : AF_INET;
-    int error = getaddrinfo(address.host, address.port, &hints, &found);
-    if (error != 0)
-        return report_cannot_listen(text, gai_strerror(error));
-    error = uv_tcp_bind(&port->listener, found->ai_addr, 0);
-    freeaddrinfo(found);
+    const char *wrong = net_address_read(address, &real);
+    if (wrong)
+        return report_cannot_listen(address, wrong);
+    int error = uv_tcp_bind(&port->listener, (const struct sockaddr *)&real, 0);
     if (error == 0)
         error = uv_listen((uv_stream_t *)&port->listener, BACKLOG, on_connection);
     if (error == 0)
         error = uv_tcp_getsockname(&port->listener, (struct sockaddr *)&real, &size);
     if (error == UV_EADDRINUSE)
-        return report_cannot_listen(text, "another program listens there; port 0 takes a free one");
+        return report_cannot_listen(address, "another program listens there; port 0 takes a free one");
     if (error != 0)
-        return report_cannot_listen(text, uv_strerror(error));
-    write_name(port->address, &real);
+        return report_cannot_listen(address, uv_strerror(error));
+    net_address_write(port->address, &real);
     return true;
 }
 

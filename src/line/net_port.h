@@ -9,9 +9,8 @@
 #include <stdint.h>
 #include <uv.h>
 
+#include "net_address.h"
 #include "rfc2217.h"
-
-#define NET_ADDRESS_EXPECTED "HOST:PORT, [IPV6]:PORT or PORT with PORT from 0 to 65535 (0: a free one)"
 
 #define NET_IN 1024u         /* bytes read from a client at once */
 #define NET_TO_LINE 4096u    /* bytes of a client that wait for room() */
@@ -20,7 +19,6 @@
 #define NET_WIRE 2048u       /* bytes that have been given to the system */
 #define NET_CONNECTIONS 8u   /* connections at a time: the client and those being refused; for one more, the one refused first
                                 is closed at once, so that no client waits */
-#define NET_NAME_SIZE 80u
 
 enum net_kind {
     NET_RAW,
@@ -104,11 +102,9 @@ struct net_port {
     uint8_t replies[NET_REPLIES];
 };
 
-/* Has the text the form HOST:PORT, :PORT, PORT or [IPV6]:PORT? */
-bool net_address_valid(const char *address);
-
-/* Listen at `address`, which has to be valid; without a host at 127.0.0.1. calls and context must stay; *port must be zero, and
- * must stay until it is closed and the loop has run out. Failures are reported. Returns false if it did not work. */
+/* Listen at `address`, which has its host in digits (net_address_find()); without a host at 127.0.0.1. calls and context must
+ * stay; *port must be zero, and must stay until it is closed and the loop has run out. Failures are reported. Returns false if it
+ * did not work. */
 bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, enum net_kind kind,
                    const struct net_port_calls *calls, void *context);
 

@@ -2,6 +2,7 @@
 /* options.h: what the command lines of all programs share; the face of the room.
  *
  *     arguments        reading a command line, with --help and --version
+ *     host_address     the address of a host by its name, found within a time
  *     program_argument [M=]FILE, a program and its motor
  *     process          what a program must not inherit from whoever starts it
  *     readings_option  --readings
@@ -12,6 +13,7 @@
 #define RKM04_OPTIONS_H
 
 #include "arguments.h"
+#include "host_address.h"
 #include "process.h"
 #include "program_argument.h"
 #include "readings_option.h"

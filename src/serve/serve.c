@@ -28,6 +28,7 @@
 #define FILES_A_LINE 8u  /* descriptors, beside those of flash images */
 #define FILES_SPARE 8u   /* descriptors that are still free when all is open: for clients, traces, an adapter plugged in again */
 #define LOG_WAIT_MS 200u /* how long it is waited for whoever reads the log, at the start and at the end */
+#define NAME_WAIT_MS 30000u /* how long a name server may take: as long as the resolver tries by default */
 #define FILES_BESIDE 64u /* descriptors that have nothing to do with lines */
 
 static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
@@ -35,6 +36,7 @@ static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 struct serve {
     struct bus_options options;
+    char tcp[NET_NAME_SIZE], rfc2217[NET_NAME_SIZE]; /* of the options, in digits */
     struct bus *bus[BUS_LINES_MAX];
     struct line_watch watch;
     struct coverage coverage;
@@ -276,6 +278,17 @@ static bool read_plant(struct bus_options *options)
     return !options->plant || options->plant_text;
 }
 
+/* Replace the address of an option by the same in digits. Before signals are handled, too: a name server may take its time. */
+static bool find_address(const char **address, char found[NET_NAME_SIZE])
+{
+    const char *wrong = *address ? net_address_find(*address, NAME_WAIT_MS, found) : NULL;
+    if (wrong)
+        log_error("cannot listen at %s: %s", *address, wrong);
+    else if (*address)
+        *address = found;
+    return !wrong;
+}
+
 static bool start(struct serve *serve)
 {
     const struct bus_options *options = &serve->options;
@@ -341,7 +354,8 @@ static void end(struct serve *serve)
 static enum exit_status run(struct serve *serve)
 {
     serve->status = STATUS_FAILURE;
-    if (!read_plant(&serve->options) || !check("make an event loop", uv_loop_init(&serve->loop)))
+    if (!read_plant(&serve->options) || !find_address(&serve->options.tcp, serve->tcp) ||
+        !find_address(&serve->options.rfc2217, serve->rfc2217) || !check("make an event loop", uv_loop_init(&serve->loop)))
         return STATUS_FAILURE;
     if (start(serve)) {
         serve->status = STATUS_SUCCESS;

@@ -47,7 +47,7 @@ END_TEST
 START_TEST(an_address_in_use_is_reported)
 {
     struct net_port second = {0};
-    open_line(NET_RAW, "localhost:0");
+    open_line(NET_RAW, "127.0.0.1:0");
     ck_assert(!net_port_open(&second, &line.loop, line.port.address, NET_RAW, &net_rig_calls, &line));
     close_line();
 }

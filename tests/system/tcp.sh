@@ -56,6 +56,43 @@ test_pty_and_TCP_reach_the_same_unit() {
     same "motor 2: 500" "$said" "over TCP"
 }
 
+# under_silent_resolver COMMAND...: on a system whose name server never answers; $folder/asked is there once it has been asked.
+under_silent_resolver() {
+    [[ -e $folder/shim.so ]] || ${CC:-cc} -std=c11 -D_GNU_SOURCE -Wall -Wextra -Werror -shared -fPIC -o "$folder/shim.so" \
+        "$(dirname "$0")/resolver_shim.c" -ldl || fail "the shim cannot be compiled"
+    exec env --default-signal RESOLVER_SHIM="$folder/asked" LD_PRELOAD="$folder/shim.so" \
+        ASAN_OPTIONS=verify_asan_link_order=0 "$@"
+}
+
+test_a_signal_ends_the_emulator_while_the_name_server_is_silent() {
+    local option signal
+    for option in tcp rfc2217; do
+        for signal in TERM INT HUP; do
+            start bus under_silent_resolver "$RKM04" serve --link "$folder/link" --$option unit.example:0
+            soon "the name server is asked" test -e "$folder/asked"
+            kill -$signal "$started"
+            status_of "$started"
+            same $((128 + $(kill -l "$signal"))) "$status" "--$option: exit status after SIG$signal"
+            same "" "$(find "$folder" -name 'link*')" "what --$option leaves behind"
+            rm "$folder/asked"
+        done
+    done
+}
+
+test_the_client_waits_for_a_name_server_as_long_as_for_an_answer() {
+    exits 1 under_silent_resolver timeout "$limit" "$RKMCTL" --timeout 200 -p tcp:unit.example:4000 version
+    holds "$complained" "cannot find tcp:unit.example:4000: the name server does not answer" "the message"
+    [[ -e $folder/asked ]] || fail "the name server was not asked"
+}
+
+test_digits_need_no_name_server() {
+    start bus under_silent_resolver "$RKM04" serve --tcp 127.0.0.1:0 --rfc2217 0
+    soon "the unit is ready" ready bus
+    address=$(sed -n 's/^READY .*"tcp":"\([^"]*\)".*/\1/p' "$folder/bus.out")
+    exits 0 "$RKMCTL" -p "tcp:$address" version
+    [[ ! -e $folder/asked ]] || fail "the name server was asked"
+}
+
 test_an_address_that_is_none_is_wrong_usage() {
     local wrong
     for wrong in '' 4000x 65536 ::1 localhost '[::1]' 1:2:3; do
