@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_interp.c: random programs with random inputs, messages and times, on a unit whose pulses are looked at as they come
  * (oracle.h). The same story is lived again with time cut into other pieces and through a snapshot (K3), with pulses skipped
- * over, or by one motor alone: no motor influences another but by VAR, DO and T41. Get Command answers a text that is the same
- * program (P8).
+ * over, or by one motor alone: no motor influences another but by VAR, DO and T41, and by what readings add (oracle.h). Get
+ * Command answers a text that is the same program (P8).
  *
  * First byte: 1 readings in two more bytes, and speed changes take 40 ms, 2 and 4 how time is cut, 8 pulses are skipped, 16 a
  * motor alone, 32 and 64 which.
@@ -276,12 +276,12 @@ static void send_message(struct oracle *oracle, const struct action *action, uin
 {
     uint8_t message[TEXTS_MAX], motor = action->length >= 2 ? action->message[1] : 0;
     bool own = action->length >= 2 && motor >= '1' && motor <= '4';
-    if (alone && !is_about(action, alone))
-        return;
-    if (action->length > RKM04_MESSAGE_MAX)
+    bool about = !alone || is_about(action, alone);
+    bool holds_up = story.config.readings.store_time > 0 && oracle_is_store(action->message, action->length); /* every motor */
+    if ((!about && !holds_up) || action->length > RKM04_MESSAGE_MAX)
         return;
     memcpy(message, action->message, action->length);
-    if (alone)
+    if (alone && about)
         message[1] = alone;
     oracle_exchange(oracle, message, action->length, own ? &oracle->motor[motor - '1'].rest : &oracle->common);
 }
@@ -408,8 +408,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         live(&second, 0, false, false, 0);
         compare(false, "pulses skipped over");
     }
-    bool company = first.writers & ~(1u << alone) || story.config.readings.store_time > 0; /* a store holds up all motors */
-    if (mode & 16 && !company) {
+    if (mode & 16 && !(first.writers & ~(1u << alone))) {
         live(&second, 0, true, false, (uint8_t)('1' + alone));
         compare_motor(alone + 1u, true, "the motor alone");
     }

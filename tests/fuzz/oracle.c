@@ -250,6 +250,8 @@ static void see_command(struct oracle *oracle, unsigned number, uint64_t tick)
 {
     struct oracle_motor *seen = seen_of(oracle, number);
     struct rkm04_command command = oracle->unit.motor[number - 1].command;
+    FUZZ_CHECK(tick >= oracle->held_up, "P6: motor %u executes a command at %llu, held up until %llu", number,
+               (unsigned long long)tick, (unsigned long long)oracle->held_up);
     if (command.op == '=' || (command.op == 'C' && command.argument == 100)) {
         seen->position = command.op == '=' ? (int32_t)command.argument : 0;
         seen->known = true;
@@ -309,6 +311,7 @@ void oracle_power_up(struct oracle *oracle, const struct rkm04_config *config, b
         *motor = (struct oracle_motor){.steps = oracle_mix(motor->steps, 1), .rest = oracle_mix(motor->rest, 1), .known = seen};
     }
     oracle->switched = RKM04_NEVER;
+    oracle->held_up = 0;
     rkm04_init(&oracle->unit, config, seen ? &seeing : &skipping, oracle);
 }
 
@@ -334,13 +337,31 @@ void oracle_advance(struct oracle *oracle, uint64_t ticks)
     }
 }
 
+bool oracle_is_store(const uint8_t *message, size_t length)
+{
+    return length > 1 && message[0] == 3 && message[1] >= '0' && message[1] <= '4';
+}
+
+/* Store Flash holds up all motors (reading `store-time`). */
+static void see_store(struct oracle *oracle)
+{
+    uint64_t now = rkm04_now(&oracle->unit), slot = now == 0 ? 1 : (now + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS;
+    if (oracle->unit.config.readings.store_time > 0)
+        oracle->held_up = (slot + oracle->unit.config.readings.store_time) * RKM04_SLOT_TICKS;
+}
+
 size_t oracle_exchange(struct oracle *oracle, const uint8_t *message, size_t length, uint64_t *into)
 {
     static uint8_t answer[9300];
     size_t n;
+    bool simulation = oracle->unit.simulation;
+    if (oracle_is_store(message, length))
+        see_store(oracle);
     oracle->in_message = true;
     n = rkm04_exchange(&oracle->unit, message, length, answer, sizeof answer);
     oracle->in_message = false;
+    if (simulation && !oracle->unit.simulation && message[1] != '0') /* by `\` (reading `reset-t41`) */
+        oracle->writers |= (uint8_t)(1u << (message[1] - '1'));
     for (size_t i = 0; i < n; i++)
         *into = oracle_mix(*into, answer[i]);
     return n;

@@ -32,8 +32,9 @@ struct oracle {
     uint64_t common;            /* digest of outputs, variables, answers */
     uint64_t calls;             /* of the port */
     uint64_t switched;          /* tick at which T41 or C41 was executed last */
+    uint64_t held_up;           /* tick of the slot before which no motor executes a command (reading `store-time`) */
     bool in_message;            /* a message is being obeyed */
-    uint8_t writers;            /* motors that wrote VAR or T41: motor 1 in bit 0 */
+    uint8_t writers;            /* motors that wrote VAR or T41, also by `\` (reading `reset-t41`): motor 1 in bit 0 */
     uint8_t flash[RKM04_FLASH_BLOCKS][RKM04_FLASH_BLOCK_SIZE];
 };
 
@@ -48,6 +49,9 @@ void oracle_advance(struct oracle *oracle, uint64_t ticks);
 
 /* Obey a message; the answer goes into the digest `into`. Returns its length. */
 size_t oracle_exchange(struct oracle *oracle, const uint8_t *message, size_t length, uint64_t *into);
+
+/* Is it Store Flash, of one motor or of all, and not refused? */
+bool oracle_is_store(const uint8_t *message, size_t length);
 
 /* Go on with a digest. */
 uint64_t oracle_mix(uint64_t digest, uint64_t value);
