@@ -154,8 +154,7 @@ static void on_event(void *context, enum line_event event)
         ports->known = line_settings_unit;
         break;
     case LINE_SHARED:
-        bus_log(ports->log, "another client has opened the bus (%u now): each gets only a part of the answers",
-                ports->line.clients);
+        bus_log(ports->log, "another client has opened the bus: each gets only a part of the answers");
         break;
     case LINE_FAILED:
         if (!ports->lost)

@@ -33,7 +33,8 @@ typedef void line_notify(void *context, enum line_event event);
 struct line_watch {
     int fd;             /* readable: line_watch_update() is due; -1: not open */
     int notices;        /* inotify; -1: there is none for us */
-    int timer;          /* goes off regularly if there is a line that inotify does not watch; -1: there is none */
+    int timer;          /* goes off regularly while `looking`; -1: there is none */
+    bool looking;       /* there is a line that inotify does not watch, or on which it is not certain who is there */
     struct line *lines; /* those being watched */
 };
 
@@ -50,7 +51,9 @@ struct line {
     struct line *next; /* being watched */
     int mark;         /* inotify's, for this pty; -1: none, it is looked at now and then */
     bool left;        /* by a client: its settings have not been looked at yet */
-    bool doubtful;    /* notices were lost: `clients` may be wrong */
+    bool doubtful;    /* notices were lost, or came too fast: `clients` may be wrong */
+    bool certain;     /* one of `clients` is there for certain: whoever comes now is another one */
+    unsigned looks;   /* at this line that are still needed to be certain */
     unsigned closings; /* notices of clients that have closed it, not counted yet */
     unsigned clients; /* have the line open; a device counts as one */
     uint64_t dropped; /* bytes that nobody was there for, or that a client did not read in time */

@@ -4,8 +4,13 @@
  *
  * inotify merges equal notices that follow each other, so counting them may err when two clients come or go together. Hence
  * whether a client is left is looked up whenever one closes it: with our own slave closed for a moment, the master tells by a
- * hang-up whether anybody else has the slave open. A client that takes the pty for itself (TIOCEXCL) in that moment keeps our
- * slave out until it has gone: then the line is without one, and the master's hang-up is taken for nothing to read.
+ * hang-up whether anybody else has the slave open. Our own close and open give notices, too: our slave can only be read, and
+ * notices of another kind stand around that of its opening, so that they are not merged with those of clients. A look with more
+ * than our two notices is repeated, in the next turn of the loop if need be; and the system gives notice of a client that closes
+ * the pty before it has closed it, so that the look may still find it. Hence a client that comes is called another one only if
+ * it is certain that somebody is there: by the notice of its opening, or by looks for a second. A client that takes the pty for
+ * itself (TIOCEXCL) while our slave is closed keeps us out until it has gone: then the line is without one, and the master's
+ * hang-up is taken for nothing to read.
  *
  * Settings are as on a serial port: they outlive the client. The next client may open the pty and make its own settings at any
  * moment, and one tcsetattr() cannot be told from another, so nothing that a client may have meant is ever reset. Only a line
@@ -29,7 +34,11 @@
 #define COUNT_TRIES 5
 #define NOTICE_READS 16 /* at once, of 4 KiB each; the rest is read in the next turn */
 #define UNREAD_READS 64 /* KiB; a pty holds less */
-#define LOOK_MS 100 /* between two looks at a line that inotify does not watch */
+#define LOOK_MS 100 /* between two looks at a line that inotify does not watch, or that a client is closing */
+#define LOOKS 10    /* until a client counts as one that stays: the system may take its time over closing */
+
+/* Only to be read: then the notice of its end is another one than a client's, which is never merged with it. */
+#define SLAVE_FLAGS (O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)
 
 static bool set_flags(int fd)
 {
@@ -47,45 +56,63 @@ static void set_initial_settings(struct termios *settings)
 
 /* ---- The watch ------------------------------------------------------------------------------------------------------ */
 
+static void close_descriptor(int *fd)
+{
+    if (*fd >= 0)
+        close(*fd);
+    *fd = -1;
+}
+
 static bool add_to_watch(struct line_watch *watch, int fd)
 {
     struct epoll_event event = {.events = EPOLLIN};
     return fd >= 0 && epoll_ctl(watch->fd, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-/* There is no inotify for a line: look at it now and then. Returns false if that does not work either (errno). */
-static bool begin_polling(struct line_watch *watch)
+/* Look at the lines now and then, or no more. Returns false if it does not work (errno). */
+static bool look_regularly(struct line_watch *watch, bool on)
 {
-    struct itimerspec spec = {.it_interval.tv_nsec = LOOK_MS * 1000000l, .it_value.tv_nsec = LOOK_MS * 1000000l};
-    if (watch->timer >= 0)
+    struct itimerspec spec = {0};
+    if (watch->looking == on)
         return true;
-    watch->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    return add_to_watch(watch, watch->timer) && timerfd_settime(watch->timer, 0, &spec, NULL) == 0;
+    if (on)
+        spec.it_interval.tv_nsec = spec.it_value.tv_nsec = LOOK_MS * 1000000l;
+    if (watch->timer < 0) {
+        watch->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+        if (!add_to_watch(watch, watch->timer)) {
+            close_descriptor(&watch->timer);
+            return false;
+        }
+    }
+    watch->looking = timerfd_settime(watch->timer, 0, &spec, NULL) == 0 ? on : watch->looking;
+    return watch->looking == on;
+}
+
+/* Notices before this and after it are not merged, and the loop has something to read: a watch that ends is a notice, too. */
+static void divide_notices(const struct line_watch *watch)
+{
+    int mark = watch->notices >= 0 ? inotify_add_watch(watch->notices, "/", IN_DELETE_SELF) : -1;
+    if (mark >= 0)
+        inotify_rm_watch(watch->notices, mark);
 }
 
 bool line_watch_open(struct line_watch *watch)
 {
     watch->lines = NULL;
     watch->timer = -1;
+    watch->looking = false;
     watch->fd = epoll_create1(EPOLL_CLOEXEC);
     watch->notices = watch->fd < 0 ? -1 : inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     if (watch->notices >= 0 && add_to_watch(watch, watch->notices))
         return true;
     int why = errno;
-    if (watch->fd >= 0 && begin_polling(watch)) {
+    if (watch->fd >= 0 && look_regularly(watch, true)) {
         log_error("cannot use inotify: %s (fs.inotify.max_user_instances?); checking every %d ms for clients", strerror(why),
                   LOOK_MS);
         return true;
     }
     log_error("cannot watch for clients of the bus: %s", strerror(errno));
     return false;
-}
-
-static void close_descriptor(int *fd)
-{
-    if (*fd >= 0)
-        close(*fd);
-    *fd = -1;
 }
 
 void line_watch_close(struct line_watch *watch)
@@ -102,10 +129,10 @@ static bool watch_line(struct line_watch *watch, struct line *line)
 {
     if (watch->notices >= 0)
         line->mark = inotify_add_watch(watch->notices, line->path, IN_OPEN | IN_CLOSE);
-    if (line->mark < 0 && watch->notices >= 0 && watch->timer < 0)
+    if (line->mark < 0 && watch->notices >= 0 && !watch->looking)
         log_error("inotify cannot watch %s: %s; checking every %d ms for clients", line->path,
                   errno == ENOSPC ? "too many watches in use (fs.inotify.max_user_watches)" : strerror(errno), LOOK_MS);
-    return line->mark >= 0 || begin_polling(watch);
+    return line->mark >= 0 || look_regularly(watch, true);
 }
 
 bool line_pty_open(struct line *line, struct line_watch *watch, line_notify *notify, void *context)
@@ -115,7 +142,8 @@ bool line_pty_open(struct line *line, struct line_watch *watch, line_notify *not
     line->context = context;
     struct termios settings = {0};
     set_initial_settings(&settings);
-    if (openpty(&line->fd, &line->slave, NULL, &settings, NULL) != 0) {
+    int writable;
+    if (openpty(&line->fd, &writable, NULL, &settings, NULL) != 0) {
         log_error("cannot make a pty: %s%s", strerror(errno),
                   errno == ENOSPC                      ? "; too many ptys in use (kernel.pty.max)?"
                   : errno == EMFILE || errno == ENFILE ? "; `ulimit -n' allows more"
@@ -123,7 +151,11 @@ bool line_pty_open(struct line *line, struct line_watch *watch, line_notify *not
         return false;
     }
     int failed = ptsname_r(line->fd, line->path, sizeof line->path);
-    if (failed != 0 || !set_flags(line->fd) || !set_flags(line->slave) || !watch_line(watch, line)) {
+    line->slave = failed ? -1 : ioctl(line->fd, TIOCGPTPEER, SLAVE_FLAGS);
+    int why = errno;
+    close(writable);
+    errno = why;
+    if (line->slave < 0 || !set_flags(line->fd) || !watch_line(watch, line)) {
         log_error("cannot use the pty %s: %s", line->path, strerror(failed ? failed : errno));
         line_close(line);
         return false;
@@ -150,17 +182,23 @@ static void drop_unread(struct line *line)
     tcflush(line->slave, TCIFLUSH);
 }
 
+/* One that is known but not for certain may have gone: then the one that comes is not another one. */
 static void count_opened(struct line *line)
 {
-    line->clients++;
+    bool first = line->clients == 0, another = !first && line->certain;
+    line->clients += first || another;
+    line->certain = !line->doubtful;
+    line->looks = 0;
     line->left = false;
-    line->notify(line->context, line->clients == 1 ? LINE_ATTACHED : LINE_SHARED);
+    if (first || another)
+        line->notify(line->context, first ? LINE_ATTACHED : LINE_SHARED);
 }
 
 /* The last client has gone. */
 static void report_detached(struct line *line)
 {
-    line->clients = 0;
+    line->clients = line->looks = 0;
+    line->certain = false;
     line->left = true;
     drop_unread(line);
     line->notify(line->context, LINE_DETACHED);
@@ -176,9 +214,12 @@ static void handle_notice(struct line *line, uint32_t mask)
     }
     if (mask & IN_OPEN)
         count_opened(line);
-    if ((mask & IN_CLOSE) && line->clients > 0)
+    if (!(mask & IN_CLOSE))
+        return;
+    line->certain = false;
+    if (line->clients > 0)
         line->closings++;
-    else if (mask & IN_CLOSE)
+    else
         line->doubtful = line->left = true; /* by one who was not known: may have left anything */
 }
 
@@ -195,18 +236,21 @@ struct notices {
     unsigned all, opens;
 };
 
-/* Read the notices that are waiting, and follow them, but not those of line `ignored`, which are counted. */
-static void read_notices(struct line_watch *watch, const struct line *ignored, struct notices *counted)
+/* Read the notices that are waiting, and follow them, but not those of line `ignored`, which are counted. Returns whether that
+ * were all. */
+static bool read_notices(struct line_watch *watch, const struct line *ignored, struct notices *counted)
 {
     _Alignas(struct inotify_event) char buffer[4096];
-    ssize_t length;
+    ssize_t length = 0;
     for (unsigned i = 0; i < NOTICE_READS && (length = read(watch->notices, buffer, sizeof buffer)) > 0; i++) {
         for (ssize_t at = 0; at < length;) {
             const struct inotify_event *event = (const void *)(buffer + at);
             struct line *line = event->wd >= 0 ? find_by_mark(watch, event->wd) : NULL;
             if (event->mask & IN_Q_OVERFLOW) {
-                for (line = watch->lines; line; line = line->next)
+                for (line = watch->lines; line; line = line->next) {
                     line->doubtful = true;
+                    line->certain = false;
+                }
             } else if (line && line == ignored) {
                 counted->all++;
                 counted->opens += (event->mask & IN_OPEN) != 0;
@@ -216,6 +260,7 @@ static void read_notices(struct line_watch *watch, const struct line *ignored, s
             at += (ssize_t)(sizeof *event + event->len);
         }
     }
+    return length < 0;
 }
 
 static bool is_hung_up(const struct line *line)
@@ -231,13 +276,24 @@ static int check_other_clients(struct line *line)
         close(line->slave);
     for (unsigned tries = 0; tries < COUNT_TRIES; tries++) {
         bool others = !is_hung_up(line);
-        line->slave = open(line->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+        divide_notices(line->watch);
+        line->slave = open(line->path, SLAVE_FLAGS);
+        divide_notices(line->watch);
         if (line->slave >= 0)
             return others;
         if (!is_hung_up(line))
             return 1; /* and keeps us out */
     }
     return -1;
+}
+
+/* Was the look at the line undisturbed? Our own close and open give a notice each; if there are more, somebody came or went
+ * meanwhile. A client that keeps us out came, at most. `closed`: times that we have closed our slave. */
+static bool is_undisturbed(const struct line *line, const struct notices *notices, unsigned closed)
+{
+    if (line->mark < 0)
+        return true; /* there are none */
+    return line->slave >= 0 ? notices->all == closed + 1 : notices->all - notices->opens == closed;
 }
 
 /* A client has the pty for itself, or has left it so. Then nobody but root could open it since, and of a client that was alone
@@ -251,7 +307,7 @@ static bool count_exclusive(struct line *line)
     bool known = line->mark >= 0 && !line->doubtful && line->closings > 0 && line->clients == 1;
     read_notices(line->watch, NULL, NULL); /* whose it is may have come after the others had gone */
     if (known && !line->doubtful && line->closings == 0)
-        return true;              /* they had, see handle_notice() */
+        return true; /* they had, see handle_notice() */
     ioctl(line->slave, TIOCNXCL); /* would keep out the next client, and us */
     if (!known || line->doubtful)
         return false;
@@ -260,27 +316,42 @@ static bool count_exclusive(struct line *line)
     return true;
 }
 
+/* Somebody is there, as far as the look tells: the system gives notice of a client that closes the line before it has closed it.
+ * `closing`: there were such notices. Certain is only who is still there after more looks. */
+static void start_looks(struct line *line, bool closing)
+{
+    if (line->mark < 0 || (line->certain && !closing && !line->doubtful))
+        return;
+    line->certain = false;
+    if (closing || line->doubtful || line->looks == 0)
+        line->looks = LOOKS;
+    look_regularly(line->watch, true);
+}
+
 void line_pty_recount(struct line *line)
 {
     int others = 0;
-    unsigned reopened = 0;
+    unsigned reopened = 0, closed = 0;
     struct notices counted = {0};
+    bool undisturbed = false;
     read_notices(line->watch, NULL, NULL);
     if (count_exclusive(line))
         return;
-    /* Our own close and open give two notices; if there are more, somebody came or went meanwhile. */
-    for (unsigned tries = 0; tries < COUNT_TRIES; tries++) {
+    for (unsigned tries = 0; tries < COUNT_TRIES && !undisturbed; tries++) {
         struct notices one = {0};
+        bool had_slave = line->slave >= 0;
         others = check_other_clients(line);
         reopened += line->slave >= 0;
-        read_notices(line->watch, line, &one);
+        closed += had_slave;
+        undisturbed = read_notices(line->watch, line, &one) && is_undisturbed(line, &one, had_slave);
         counted.opens += one.opens;
-        if (one.all == 2 || line->mark < 0 || line->slave < 0)
-            break;
+        counted.all += one.all;
     }
     unsigned closings = line->closings;
     bool somebody_came = counted.opens > reopened;
-    line->doubtful = false;
+    line->doubtful = !undisturbed;
+    if (!undisturbed)
+        divide_notices(line->watch); /* look again in the next turn */
     line->closings = 0;
     line->left = line->left || (!others && somebody_came);
     if (others < 0) {
@@ -289,10 +360,14 @@ void line_pty_recount(struct line *line)
     }
     if (line->clients > 0 && (!others || (closings >= line->clients && somebody_came)))
         report_detached(line);
-    if (others && line->clients == 0)
+    if (others && line->clients == 0) {
         count_opened(line);
-    else if (others)
+        line->certain = false;
+    } else if (others) {
         line->clients = line->clients > closings ? line->clients - closings : 1;
+    }
+    if (others)
+        start_looks(line, closings > 0 || counted.all - counted.opens > closed);
 }
 
 /* A client that has gone may have left the line cooked. Made raw as long as nobody has come, who might have meant it. */
@@ -314,15 +389,19 @@ static void make_raw_again(struct line *line)
 void line_watch_update(struct line_watch *watch)
 {
     uint64_t expired;
-    bool look = watch->timer >= 0 && read(watch->timer, &expired, sizeof expired) > 0;
+    bool look = watch->timer >= 0 && read(watch->timer, &expired, sizeof expired) > 0, later = watch->notices < 0;
     read_notices(watch, NULL, NULL);
     for (struct line *line = watch->lines, *next; line; line = next) {
         next = line->next;
-        if (line->doubtful || line->closings > 0 || line->slave < 0 || (look && line->mark < 0))
+        if (line->doubtful || line->closings > 0 || line->slave < 0 || (look && (line->mark < 0 || line->looks > 0)))
             line_pty_recount(line);
+        if (look && line->looks > 0)
+            line->certain = --line->looks == 0;
         if (line->mark < 0)
             line->left = look && line->clients == 0; /* maybe by one who came and went between two looks */
         if (line->left)
             make_raw_again(line);
+        later = later || line->mark < 0 || line->looks > 0;
     }
+    look_regularly(watch, later);
 }

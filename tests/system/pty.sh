@@ -72,6 +72,7 @@ test_two_clients_share_the_line() {
     exec 4<>"$folder/bus" # the first one stays there, silent
     exits 0 ctl bus version
     holds "$said" "$version" "the second client"
+    soon "the user is warned" grep -q 'another client has opened the bus' "$folder/bus.err"
     exec 3<>"$folder/bus"
     dialogue 4 "7e 01 00 08 58 10 7e" "7e 00 01 ff 08 00 00 db ff 7e" "the first client afterwards"
     exec 3>&- 4>&-
@@ -88,6 +89,7 @@ many() {
     serve bus --baud 0
     exits 0 timeout 100 "$PTY_CLIENT" "$1" "$folder/bus" "$2"
     same "$2 of $2" "$said" "sessions"
+    ! grep -q 'another client' "$folder/bus.err" || fail "one client is called another one, too"
     exits 0 ctl bus version
     holds "$said" "$version" "afterwards"
 }
