@@ -19,7 +19,6 @@ static void end_motion(struct rkm04_unit *unit, struct rkm04_motor *motor, uint6
 {
     struct rkm04_motion *motion = &motor->motion;
     motion->moving = false;
-    motion->stopping = false;
     motion->ramp.next = RKM04_NEVER;
     motor->change_speed = 0;
     if (motor->led == RKM04_LED_ON)
@@ -122,7 +121,6 @@ static bool prepare(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm
     motion->done = 0;
     motion->total = 0;
     motion->mark = 0;
-    motion->marks = 0;
     motion->changed = false;
     motion->start_speed = motor->start_speed;
     motion->segments = 1;

@@ -482,12 +482,12 @@ static void set_goal(struct rkm04_motion *motion, const struct profile_goal *goa
     motion->kind = goal->kind == PROFILE_TO_PLACE ? RKM04_MOTION_STEPS : RKM04_MOTION_ENDLESS;
     motion->start_speed = goal->start_speed;
     motion->segments = 1;
-    motion->segment[0] = (struct rkm04_segment){.speed = (uint16_t)(goal->speed < 0 ? -goal->speed : goal->speed),
+    motion->segment[0] = (struct rkm04_segment){.speed = (uint16_t)size_of(goal->speed),
                                                 .acceleration = goal->acceleration,
                                                 .deceleration = goal->deceleration};
     motion->total = 0;
     if (goal->kind == PROFILE_TO_PLACE)
-        motion->total = (uint32_t)(goal->way < 0 ? -goal->way : goal->way);
+        motion->total = (uint32_t)size_of(goal->way);
     motion->segment[0].steps = motion->total;
     motion->profile.count = motion->profile.leg = 0;
 }

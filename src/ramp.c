@@ -117,25 +117,16 @@ static void reckon_from_start(struct rkm04_ramp *ramp, struct rkm04_instant star
     ramp->w = w;
 }
 
-/* The same for a falling leg that ends at ramp->end at `place` with speed w. The products may pass 2^64; their difference
- * does not. */
+/* The same for a falling leg that ends at ramp->end, or up to a tick before ramp->at, at `place` with speed w. */
 static void reckon_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, struct rkm04_fixed w)
 {
-    uint64_t fall = (uint32_t)-ramp->slope;
-    uint64_t ticks = ramp->end.tick - ramp->at;
-    struct wide places = {ramp->end.high, ramp->end.low};
-    if (ramp->end.tick < ramp->at) { /* shorter than a tick */
-        ticks = 0;
-        places = (struct wide){0, 0};
-    }
-    struct rkm04_fixed w_whole = {(int64_t)((uint64_t)w.whole + 2 * fall * ticks), w.part};
-    struct wide part = wide_product(w.part, ticks);
-    struct rkm04_fixed way = {(int64_t)((uint64_t)w.whole * ticks + fall * ticks * ticks + part.high), part.low};
-    way = fixed_sum(way, times(fixed_sum(w_whole, scaled(fall, places)), places));
+    const uint64_t fall = (uint32_t)-ramp->slope;
+    const struct wide places = {ramp->end.high, ramp->end.low};
     struct rkm04_fixed y = y_of_part(ramp, place);
     y.whole = (int64_t)((uint64_t)y.whole + (uint64_t)ramp->step * (ramp->left - UINT64_C(1)));
-    ramp->y = fixed_difference(y, way);
-    ramp->w = fixed_sum(fixed_sum(w_whole, scaled(2 * fall, places)), LAST_PLACE);
+    const struct motion_state then = motion_moved(y, w, ramp->slope, (int64_t)(ramp->at - ramp->end.tick));
+    ramp->y = fixed_difference(then.y, times(fixed_sum(then.w, scaled(fall, places)), places));
+    ramp->w = fixed_sum(fixed_sum(then.w, scaled(2 * fall, places)), LAST_PLACE);
 }
 
 static void begin_pulses(struct rkm04_ramp *ramp, const struct rkm04_profile *profile)
@@ -153,13 +144,13 @@ static void set_slope(struct rkm04_ramp *ramp, int32_t slope, struct rkm04_fixed
     const int64_t unit = ramp_speed_unit(ramp);
     ramp->slope = slope;
     ramp->level = slope == 0 && w.part == 0 && w.whole % unit == 0 ? (uint32_t)(w.whole / unit) : 0;
-    ramp->fast = ramp_fast_from(slope < 0 ? 0 - (uint32_t)slope : (uint32_t)slope, ramp->rate);
+    ramp->fast = ramp_fast_from((uint32_t)size_of(slope), ramp->rate);
 }
 
-/* w at the end of the leg, where it has one. */
-static struct rkm04_fixed w_at_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile)
+/* w at the end of a leg that begins with w. */
+static struct rkm04_fixed w_at_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_fixed w)
 {
-    return leg_is_open(profile) ? (struct rkm04_fixed){0, 0} : w_of(ramp, profile->point[profile->leg + 1].speed2);
+    return leg_is_open(profile) ? w : w_of(ramp, profile->point[profile->leg + 1].speed2);
 }
 
 /* How long the leg takes from `start`, with speed w there and w_end at its end. */
@@ -187,7 +178,7 @@ static void begin_leg(struct rkm04_ramp *ramp, const struct rkm04_profile *profi
     struct rkm04_fixed w = w_of(ramp, from->speed2);
     set_slope(ramp, from->slope, w);
     ramp->at = tick_from(start);
-    struct rkm04_fixed w_end = w_at_end(ramp, profile);
+    struct rkm04_fixed w_end = w_at_end(ramp, profile, w);
     set_end(ramp, profile, start, w, w_end);
     if (from->slope < 0)
         reckon_from_end(ramp, from[1].at, w_end);
@@ -225,7 +216,7 @@ void ramp_go_on(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t
     ramp->w = w;
     ramp->at = tick;
     set_slope(ramp, profile->point[profile->leg].slope, w);
-    set_end(ramp, profile, (struct rkm04_instant){tick, 0, 0}, w, w_at_end(ramp, profile));
+    set_end(ramp, profile, (struct rkm04_instant){tick, 0, 0}, w, w_at_end(ramp, profile, w));
     begin_pulses(ramp, profile);
     while (ramp->left == 0 && ramp->next <= tick) { /* a speed that changes at once counts in this slot already */
         struct rkm04_instant end = ramp->end;
@@ -242,15 +233,13 @@ uint64_t ramp_quiet_until(const struct rkm04_ramp *ramp)
 
 uint64_t ramp_quiet_pulses(const struct rkm04_ramp *ramp, uint32_t most)
 {
-    if (ramp->next == RKM04_NEVER || ramp->left == 0)
-        return ramp->next;
     int64_t w = ramp->w.whole + 1;
     if (ramp->slope > 0)
         w += 2 * ramp->slope * (int64_t)(ramp->end.tick - ramp->at);
     uint64_t quiet = ramp_quiet_until(ramp), fastest = ramp->next + (uint64_t)(ramp->step / w) * most;
-    if (most != UINT32_MAX && fastest < quiet)
+    if (fastest < quiet)
         quiet = fastest;
-    return quiet > ramp->next ? quiet : ramp->next;
+    return quiet > ramp->next ? quiet : ramp->next; /* as soon as no pulse is left in the leg, or in the motion */
 }
 
 /* ---- Pulses ------------------------------------------------------------------------------------------------------- */
@@ -302,8 +291,7 @@ static struct leap leap_of(const struct rkm04_ramp *ramp, uint64_t ticks)
 uint32_t ramp_skip(struct rkm04_ramp *ramp, uint64_t limit, uint32_t most)
 {
     const uint64_t worth = 64, interval = (uint64_t)ramp->interval;
-    if (ramp->block > 0)
-        ramp_leave_block(ramp);
+    ramp_leave_block(ramp);
     uint64_t ticks = (ramp->end.tick < limit ? ramp->end.tick : limit) - ramp->at;
     if (ramp->left < worth || most < worth || ticks < worth * interval)
         return 0;

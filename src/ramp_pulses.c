@@ -71,17 +71,15 @@ void ramp_find_first(struct rkm04_ramp *ramp)
 
 #define BLOCK 64u
 
-/* The first 32 binary places of rest / v, rounded up; rest < v. */
+/* The first 32 binary places of rest / v, and 2^-32 more at the most; rest < v < 2^16. */
 static uint32_t places_of(uint32_t rest, uint32_t v)
 {
-    if (v >> 16)
-        return (uint32_t)((((uint64_t)rest << 32) + v - 1) / v);
     uint32_t high = (rest << 16) / v; /* two digits of 16 bits */
-    return high << 16 | ((((rest << 16) - high * v) << 16) + v - 1) / v;
+    return (high << 16) + (((rest << 16) - high * v) << 16) / v + 1;
 }
 
 /* Speed v in whole steps/s. With y = 2 * rate * phase, and a rest that stays, pulse i of a block is due
- * ceil((rate * i - phase) / v) ticks on. That is a multiple of 1/v: 32 binary places, rounded up by less than 1/v in all, give it
+ * ceil((rate * i - phase) / v) ticks on. That is a multiple of 1/v: 32 binary places, less than 1/v too much in all, give it
  * exactly. All divisions are of 32 bits. */
 static size_t level_block(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room)
 {
@@ -94,14 +92,8 @@ static size_t level_block(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tic
     n = n < ramp->left ? n : ramp->left;
     for (size_t i = 0; i < n; i++, due += pace)
         tick[i] = at + (due >> 32);
-    uint32_t passed = n;
     ramp->left -= n;
-    if (ramp->left == 0) { /* behind the leg's last pulse none is due */
-        passed--;
-        due -= pace;
-        ramp->y.whole -= ramp->step;
-    }
-    const uint32_t on = (uint32_t)(due >> 32), change = on * v - passed * rate;
+    const uint32_t on = (uint32_t)(due >> 32), change = on * v - n * rate;
     ramp->at = at + on;
     ramp->phase += change;
     ramp->y.whole += (int64_t)(int32_t)change * 2 * rate;
@@ -202,7 +194,7 @@ static inline int64_t scaled_down(int64_t a, unsigned places)
 /* a * b / 2^40, b signed. */
 static inline int64_t share(uint64_t a, int64_t b)
 {
-    uint64_t size = b < 0 ? 0 - (uint64_t)b : (uint64_t)b, high = wide_high(a, size << 24);
+    uint64_t high = wide_high(a, size_of(b) << 24);
     return b < 0 ? -(int64_t)high : (int64_t)high;
 }
 
@@ -225,12 +217,12 @@ static inline int64_t bend(uint32_t steep, uint64_t a, uint64_t inverse)
 static void set_cubic(struct rkm04_ramp *ramp, int64_t middle)
 {
     const bool down = ramp->slope < 0;
-    const uint32_t steep = down ? 0 - (uint32_t)ramp->slope : (uint32_t)ramp->slope;
+    const uint32_t steep = (uint32_t)size_of(ramp->slope);
     const struct motion_state there = ramp_moved(ramp, middle);
     const uint64_t speed = (uint64_t)there.w.whole, inverse = ((UINT64_C(1) << 63) + speed / 2) / speed;
     const uint64_t c = quotient((uint64_t)ramp->step, inverse); /* ticks from pulse to pulse there */
     const int64_t z = (int64_t)(c - quotient((uint64_t)there.y.whole, inverse));
-    const uint64_t size = z < 0 ? 0 - (uint64_t)z : (uint64_t)z;
+    const uint64_t size = size_of(z);
     const int64_t bend_z = bend(steep, size, inverse), bend_c = bend(steep, c, inverse);
     const int64_t x = (z < 0) == down ? bend_z : -bend_z, u = down ? -bend_c : bend_c;
     const int64_t x30 = scaled_down(x, 10), u30 = scaled_down(u, 10), x2 = x30 * x30, xu = x30 * u30, u2 = u30 * u30;
@@ -257,7 +249,6 @@ void ramp_leave_block(struct rkm04_ramp *ramp)
     ramp->y.whole -= ramp->step * ramp->sent;
     ramp->w = then.w;
     ramp->at = ramp->next;
-    ramp->change = 0;
     ramp->sent = ramp->block = 0;
 }
 

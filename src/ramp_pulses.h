@@ -12,8 +12,8 @@
 void ramp_find_first(struct rkm04_ramp *ramp);
 
 /* Put the ticks of pulses of the present leg due up to and including `limit` into `tick`: at least one, which is due, at most
- * `room`. Behind the leg's last pulse ramp->left is 0 and y counts from the pulse before. Returns their number; there may be
- * more up to `limit`. */
+ * `room`. Behind the leg's last pulse ramp->left is 0, and y counts from the one that would come next. Returns their number;
+ * there may be more up to `limit`. */
 size_t ramp_leg_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room);
 
 /* Pulse j behind the one at which y and w stand is due at `tick` or a tick earlier. Returns which. */
@@ -32,7 +32,7 @@ bool ramp_begin_block(struct rkm04_ramp *ramp);
 /* y and w of the ramp d ticks on, or back if d < 0. */
 struct motion_state ramp_moved(const struct rkm04_ramp *ramp, int64_t d);
 
-/* Let y and w stand at the next pulse, where no block is under way any more. */
+/* Let y and w stand at the next pulse, and no block be under way. */
 void ramp_leave_block(struct rkm04_ramp *ramp);
 
 #endif

@@ -22,6 +22,12 @@ static inline uint64_t wide_high(uint64_t a, uint64_t b)
 uint64_t wide_high(uint64_t a, uint64_t b);
 #endif
 
+/* |a|, whatever a is. */
+static inline uint64_t size_of(int64_t a)
+{
+    return a < 0 ? 0 - (uint64_t)a : (uint64_t)a;
+}
+
 static inline struct wide wide_product(uint64_t a, uint64_t b)
 {
     return (struct wide){wide_high(a, b), a * b};

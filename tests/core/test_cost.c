@@ -55,13 +55,13 @@ static const struct {
     uint64_t from, to;
     uint64_t pulses, most;
 } averages[] = {
-    {"\\ S100 V16000 A20000 G+", 2 * SECOND, 12 * SECOND, 160000, 497}, /* constant, a whole speed */
-    {"\\ S2000 V3000 A9000 G+", 2 * SECOND, 12 * SECOND, 30000, 497}, /* the same behind a ramp that ends within a tick */
-    {"\\ S100 V16000 A20000 F12500 R", 5000, 2 * SECOND, 12500, 950}, /* a triangle */
-    {"\\ S1 V16000 A60000 F4000 R", 5000, 2 * SECOND, 4000, 1376}, /* as steep as can be */
-    {"\\ S1 V16000 A100 F10000 R", 5000, 60 * SECOND, 10000, 1282}, /* gentle */
-    {"\\ S1 V300 A1 F20000 R", 5000, 900 * SECOND, 20000, 1217}, /* hardly at all */
-    {"\\ S333 A1234 V15000 F700 Y V900 F3000 Y V800 F900 Y R", 12000, 9 * SECOND, 4600, 1140}, /* no whole speed */
+    {"\\ S100 V16000 A20000 G+", 2 * SECOND, 12 * SECOND, 160000, 491}, /* constant, a whole speed */
+    {"\\ S2000 V3000 A9000 G+", 2 * SECOND, 12 * SECOND, 30000, 492}, /* the same behind a ramp that ends within a tick */
+    {"\\ S100 V16000 A20000 F12500 R", 5000, 2 * SECOND, 12500, 951}, /* a triangle */
+    {"\\ S1 V16000 A60000 F4000 R", 5000, 2 * SECOND, 4000, 1362}, /* as steep as can be */
+    {"\\ S1 V16000 A100 F10000 R", 5000, 60 * SECOND, 10000, 1301}, /* gentle */
+    {"\\ S1 V300 A1 F20000 R", 5000, 900 * SECOND, 20000, 1237}, /* hardly at all */
+    {"\\ S333 A1234 V15000 F700 Y V900 F3000 Y V800 F900 Y R", 12000, 9 * SECOND, 4600, 1127}, /* no whole speed */
 };
 
 START_TEST(R1_a_pulse_costs_little_on_the_average)
@@ -76,6 +76,30 @@ START_TEST(R1_a_pulse_costs_little_on_the_average)
 }
 END_TEST
 
+/* ---- A host that goes from slot to slot ---- */
+
+static const struct {
+    const char *text;
+    uint64_t slots, most;
+} slotwise[] = {
+    {"\\ S100 V16000 A20000 F12500 R", 2000, 3282}, /* a triangle */
+    {"\\ S1 V16000 A60000 F4000 R", 2000, 7200}, /* as steep as can be */
+    {"\\ S2000 V9000 A1500 F40000 R", 8000, 3857}, /* gentle, and 9 pulses a slot */
+};
+
+/* What has been worked out for a slot serves the next one, too. */
+START_TEST(K3_slot_by_slot_a_pulse_costs_little_more)
+{
+    begin(&watched, slotwise[_i].text);
+    uint64_t spent = 0;
+    for (uint64_t i = 0; i < slotwise[_i].slots; i++)
+        spent += blocks_of_advance(RKM04_SLOT_TICKS);
+    ck_assert_msg(pulses > 0 && spent <= slotwise[_i].most * pulses / 100,
+                  "%s: %" PRIu64 " pulses, each %" PRIu64 "/100 blocks, expected at most %" PRIu64 "/100", slotwise[_i].text,
+                  pulses, pulses > 0 ? 100 * spent / pulses : 0, slotwise[_i].most);
+}
+END_TEST
+
 /* ---- The worst of single pulses ---- */
 
 /* Motions from event to event: the most that a pulse between slots costs, and a slot. */
@@ -83,11 +107,11 @@ static const struct {
     const char *text;
     uint64_t pulse, slot;
 } worst[] = {
-    {"\\ S1 V16000 A60000 F3000 R B3000 R", 1042, 1587},
-    {"\\ S1 V16000 A1 F3000 R", 1082, 1771},
-    {"\\ S1 V2 A60000 F10 R", 678, 1268},
-    {"\\ S333 A1234 V15000 F700 Y V900 F3000 Y V1 F2 Y V800 F900 Y R", 952, 2695},
-    {"\\ S1 V16000 A60000 F1 Y F2 Y F3 Y F4 Y F5 Y F6 Y F7 Y F8 Y F9 Y F10 Y R", 942, 4499},
+    {"\\ S1 V16000 A60000 F3000 R B3000 R", 1045, 1587},
+    {"\\ S1 V16000 A1 F3000 R", 1085, 1771},
+    {"\\ S1 V2 A60000 F10 R", 681, 1268},
+    {"\\ S333 A1234 V15000 F700 Y V900 F3000 Y V1 F2 Y V800 F900 Y R", 955, 2695},
+    {"\\ S1 V16000 A60000 F1 Y F2 Y F3 Y F4 Y F5 Y F6 Y F7 Y F8 Y F9 Y F10 Y R", 945, 4499},
 };
 
 START_TEST(K3_no_pulse_and_no_slot_costs_much_more_than_others)
@@ -114,11 +138,11 @@ static const struct {
     uint32_t position;
     uint64_t most;
 } leaps[] = {
-    {"\\ S100 V16000 A20000 G+", 1, 1382393615, 3967},
-    {"\\ S1 V16000 A1 G+", 100, 673062463, 705534}, /* past 2^32 steps */
-    {"\\ S1 V16000 A1 F16000000 R", 1, 16000000, 19468}, /* ramps of hours */
-    {"\\ T55 S100 V16000 A20000 F16000000 YYYYYYYYYY R", 1, 160000000, 31127}, /* an output at its last border */
-    {"\\ S1 V1 =-2000000000 G2000000000", 50000, 2000000000, 2979},
+    {"\\ S100 V16000 A20000 G+", 1, 1382393615, 4049},
+    {"\\ S1 V16000 A1 G+", 100, 673062463, 708214}, /* past 2^32 steps */
+    {"\\ S1 V16000 A1 F16000000 R", 1, 16000000, 19317}, /* ramps of hours */
+    {"\\ T55 S100 V16000 A20000 F16000000 YYYYYYYYYY R", 1, 160000000, 31129}, /* an output at its last border */
+    {"\\ S1 V1 =-2000000000 G2000000000", 50000, 2000000000, 2989},
 };
 
 START_TEST(K3_pulses_that_nobody_sees_cost_nothing_each)
@@ -138,7 +162,7 @@ END_TEST
 static const struct {
     const char *text;
     uint64_t most; /* in an hour */
-} waits[] = {{"\\", 102}, {"\\ X01 M02 O03", 102}, {"\\ W3000000", 406}};
+} waits[] = {{"\\", 102}, {"\\ X01 M02 O03", 102}, {"\\ W3000000", 405}};
 
 START_TEST(K3_an_hour_of_waiting_costs_no_more_than_a_slot)
 {
@@ -158,6 +182,7 @@ int main(void)
     TCase *one = tcase_create("cost");
     tcase_set_timeout(one, 60);
     tcase_add_loop_test(one, R1_a_pulse_costs_little_on_the_average, 0, COUNT(averages));
+    tcase_add_loop_test(one, K3_slot_by_slot_a_pulse_costs_little_more, 0, COUNT(slotwise));
     tcase_add_loop_test(one, K3_no_pulse_and_no_slot_costs_much_more_than_others, 0, COUNT(worst));
     tcase_add_loop_test(one, K3_pulses_that_nobody_sees_cost_nothing_each, 0, COUNT(leaps));
     tcase_add_loop_test(one, K3_an_hour_of_waiting_costs_no_more_than_a_slot, 0, COUNT(waits));
