@@ -416,6 +416,18 @@ START_TEST(E1_a_segment_without_steps_cannot_be_computed)
 }
 END_TEST
 
+/* More than ten times the most that F takes: only a way that G has left behind can be so long. */
+START_TEST(E1_a_table_of_more_than_160_million_steps_cannot_be_computed)
+{
+    expect_impossible("N01 G160000000 Y F1 Y R T01", 6 * MS);
+    expect_impossible("F1 Y N01 G160000000 Y R T01", 6 * MS);
+    rig_power_up(&rig, NULL);
+    rig_accept(&rig, '1', "N01 G159999999 Y F1 Y R");
+    rig_to(&rig, 1 * SECOND);
+    rig_expect_state(&rig, 1, RKM04_MOVING);
+}
+END_TEST
+
 START_TEST(E1_Y_itself_never_fails)
 {
     rig_accept(&rig, '1', "Y F10 Y B10 Y Y Y Y Y Y Y Y Y Y Y T01");
@@ -553,6 +565,7 @@ static Suite *interp_functions_suite(void)
     tcase_add_test(impossible, E1_a_table_with_eleven_segments_cannot_be_computed);
     tcase_add_test(impossible, E1_ten_segments_can_be_computed);
     tcase_add_test(impossible, E1_a_segment_without_steps_cannot_be_computed);
+    tcase_add_test(impossible, E1_a_table_of_more_than_160_million_steps_cannot_be_computed);
     tcase_add_test(impossible, E1_Y_itself_never_fails);
     tcase_add_test(impossible, E1_the_program_cannot_be_resumed);
     tcase_add_test(impossible, E1_the_LED_blinks_until_a_reset);

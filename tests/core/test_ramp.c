@@ -79,6 +79,20 @@ START_TEST(R1_the_steepest_ramps_from_the_lowest_speeds_are_exact_at_any_rate)
 }
 END_TEST
 
+/* A pulse on the falling leg is due so short behind a tick that the slope of one tick decides. */
+START_TEST(R1_pulses_just_behind_a_tick_are_not_a_tick_early)
+{
+    static const struct {
+        unsigned start_speed;
+        struct ref_segment of;
+    } close[] = {{1, {300, 2000, 32962}}, {18, {208, 2000, 38126}}, {1578, {800, 16000, 31278}}, {197, {421, 10940, 2961}}};
+    ref_use_rate(1000000);
+    motion_randomize(8);
+    for (unsigned i = 0; i < sizeof close / sizeof *close; i++)
+        try_motion(1000000, close[i].start_speed, &close[i].of);
+}
+END_TEST
+
 /* A slope that no RKM04 has: y / w and its square pass 64 bits. */
 START_TEST(R1_a_slope_of_a_million_steps_per_second_squared_is_exact_at_any_rate)
 {
@@ -171,7 +185,60 @@ START_TEST(R1_blocks_begin_at_the_speed_from_which_they_are_right)
             motion_check(from >= 1 && from < 1.18, "rate %u, slope %u: %g of the bound", rate, slopes[i], from);
         }
         ck_assert_uint_eq(ramp_fast_from(0, rate), ramp_fast_from(1, rate)); /* a speed that is no whole number */
-        ck_assert_uint_eq(ramp_fast_from(9000, rate * 2 - 1), ramp_fast_from(9000, rate * 2)); /* of the next power of two */
+        ck_assert_uint_eq(ramp_fast_from(9000, rate + 1), ramp_fast_from(9000, rate * 2)); /* of the next power of two */
+        ck_assert_uint_eq(ramp_fast_from(9000, rate * 2 - 1), ramp_fast_from(9000, rate * 2));
+    }
+}
+END_TEST
+
+/* Pulses of a block that begins at this speed. */
+static unsigned block_at(uint64_t w, uint32_t left)
+{
+    struct rkm04_ramp ramp = {.rate = 1000000, .step = INT64_C(2000000000000), .slope = 9000, .left = left};
+    ramp.fast = ramp_fast_from(9000, 1000000);
+    ramp.w.whole = (int64_t)w;
+    ramp.interval = (int32_t)(ramp.step / ramp.w.whole);
+    return ramp_begin_block(&ramp) ? ramp.block : 0;
+}
+
+/* The same bound for blocks of other sizes: they begin at the sixteenth of that speed that is the next to it. */
+START_TEST(R1_blocks_are_as_large_as_the_speed_allows)
+{
+    static const unsigned sizes[] = {0, 8, 12, 16, 24, 32, 48, 64, 0};
+    const uint64_t fast = ramp_fast_from(9000, 1000000);
+    unsigned found = 0;
+    for (uint64_t w = fast / 2; w < 3 * fast; w += fast / 256) {
+        const unsigned pulses = block_at(w, 1000);
+        ck_assert(pulses == sizes[found] || pulses == sizes[found + 1]);
+        if (pulses == sizes[found])
+            continue;
+        const double sixteenths = 16 * (double)w / (double)fast, bound = 16 * pow(pulses / 16.0, 4.0 / 7);
+        ck_assert_msg(fabs(sixteenths - bound) < 0.62, "%u pulses from %g/16 on, not %g/16", pulses, sixteenths, bound);
+        ck_assert_uint_eq(block_at(w, pulses + 1), pulses); /* none is the last of its leg */
+        ck_assert_uint_eq(block_at(w, pulses), sizes[found]);
+        found++;
+    }
+    ck_assert_uint_eq(found, 7);
+}
+END_TEST
+
+/* At constant speed one call gives all that are due, up to 64, and none that is not. */
+START_TEST(R1_blocks_at_constant_speed_are_full)
+{
+    motion_randomize(9 + (unsigned)_i);
+    for (unsigned i = 0; i < motion_count(3000); i++) {
+        const uint64_t rate = rates[_i], speed = motion_pick(1, 16000);
+        struct rkm04_profile profile = {.count = 1, .endless = true, .point[0].speed2 = 2 * speed * speed << RAMP_SPEED2_BITS};
+        struct rkm04_ramp ramp = {.rate = 0};
+        ramp_begin(&ramp, &profile, 0, rates[_i]);
+        for (uint64_t tick[64], sent = 0, calls = 0; calls < 4; calls++) {
+            const uint64_t more = 1 + motion_random(63), next = ((sent + more + 1) * rate + speed - 1) / speed;
+            ck_assert_uint_eq(ramp_pulses(&ramp, &profile, next - 1, tick, 64), more);
+            ck_assert_uint_eq(tick[0], ((sent + 1) * rate + speed - 1) / speed);
+            ck_assert_uint_eq(ramp_pulses(&ramp, &profile, RKM04_NEVER - 1, tick, 64), 64);
+            ck_assert_uint_eq(tick[0], next);
+            sent += more + 64;
+        }
     }
 }
 END_TEST
@@ -184,10 +251,13 @@ int main(void)
     tcase_set_timeout(rate, 200);
     tcase_add_loop_test(rate, R1_every_pulse_is_exact_at_any_rate, 0, RATES);
     tcase_add_loop_test(rate, R1_the_steepest_ramps_from_the_lowest_speeds_are_exact_at_any_rate, 0, RATES);
+    tcase_add_test(rate, R1_pulses_just_behind_a_tick_are_not_a_tick_early);
     tcase_add_loop_test(rate, R1_a_slope_of_a_million_steps_per_second_squared_is_exact_at_any_rate, 0, RATES);
     suite_add_tcase(suite, rate);
     TCase *block = tcase_create("blocks");
     tcase_set_timeout(block, 200);
+    tcase_add_loop_test(block, R1_blocks_at_constant_speed_are_full, 0, RATES);
+    tcase_add_test(block, R1_blocks_are_as_large_as_the_speed_allows);
     tcase_add_test(block, R1_blocks_begin_at_the_speed_from_which_they_are_right);
     tcase_add_loop_test(block, R1_blocks_of_pulses_are_right_to_less_than_what_is_looked_at_anew, 0, RATES);
     suite_add_tcase(suite, block);

@@ -247,9 +247,9 @@ END_TEST
 START_TEST(K3_a_long_motion_that_nobody_sees_is_done_in_few_reports)
 {
     const uint64_t second = 1000000;
-    ck_assert_uint_lt(from_report_to_report("\\ S1 V16000 A1 G+", 100000 * second), 20);
-    ck_assert_uint_lt(from_report_to_report("\\ S100 V16000 A20000 F16000000 YYYYYYYYYY R", 11000 * second), 60);
-    ck_assert_uint_lt(from_report_to_report("\\ T55 S100 V16000 A20000 F16000000 YYYY V100 Y R", 170000 * second), 200);
+    ck_assert_uint_lt(from_report_to_report("\\ S1 V16000 A1 G+", 100000 * second), 10);
+    ck_assert_uint_lt(from_report_to_report("\\ S100 V16000 A20000 F16000000 YYYYYYYYYY R", 11000 * second), 27);
+    ck_assert_uint_lt(from_report_to_report("\\ T55 S100 V16000 A20000 F16000000 YYYY V100 Y R", 170000 * second), 35);
 }
 END_TEST
 
