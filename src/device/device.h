@@ -31,6 +31,7 @@
 #define DEVICE_AXES_MAX 16u       /* of a unit; axis 1..DEVICE_AXES_MAX, 0 is the unit */
 #define DEVICE_BITS_MAX 32u       /* inputs, outputs, variables: bit 0 is the first */
 #define DEVICE_SETTINGS_SIZE 64u  /* bytes that a kind has for its own settings */
+#define DEVICE_COMMAND_SIZE 64u   /* bytes of a command as text */
 #define DEVICE_ERROR_SIZE 256u    /* bytes of a message */
 
 /* A unit of any kind: kind->size bytes of plain memory. Copying them is a snapshot; what is copied back, or elsewhere, needs
@@ -103,6 +104,15 @@ struct device_axis {
     enum device_slot slot;
 };
 
+/* A corner of the planned speed over time. Between two of them the acceleration is constant; two at one time are a jump. */
+struct device_plan_point {
+    double us;       /* since power-up */
+    double speed;    /* steps/s, negative: back */
+    double position; /* of the counter, with a part of a step */
+};
+
+#define DEVICE_PLAN_POINTS 96u /* of one motion, at most */
+
 /* Counters since power-up, mod 2^32. */
 struct device_counters {
     uint32_t requests; /* for this unit */
@@ -158,6 +168,14 @@ struct device_kind {
     uint32_t (*variables_of)(const struct device_unit *unit);
     unsigned (*node)(const struct device_unit *unit);             /* the address, as read at power-up */
     void (*axis)(const struct device_unit *unit, unsigned axis, struct device_axis *state); /* 1..axes */
+
+    /* What is planned of the present motion: the corners from the present us on, at most `room`; the last one has speed 0, unless
+     * the motion is endless. Returns their number; 0: the axis does not move. NULL: there is no such plan. */
+    size_t (*plan)(const struct device_unit *unit, unsigned axis, struct device_plan_point *point, size_t room);
+
+    /* The command being executed, as text without an end. Returns its length; 0: none. NULL: an axis has
+     * no program. */
+    size_t (*command_text)(const struct device_unit *unit, unsigned axis, char text[DEVICE_COMMAND_SIZE]);
 
     /* A text from `set` or from the key `program:`, for an axis (0: all), at the present us. Returns 0; or a flag from 1, and a
      * message. NULL: it takes no texts. */

@@ -10,6 +10,7 @@
 #define DESCRIPTION "unit for four stepper motors on RS485 (SofCon RKM04)"
 #define ANSWER_MAX 9216u /* bytes of the longest message of a unit, however small requests are */
 
+_Static_assert(RKM04_COMMAND_TEXT_MAX <= DEVICE_COMMAND_SIZE, "a command fits");
 _Static_assert((int)DEVICE_SLOT_LOADED == (int)RKM04_SLOT_LOADED && (int)DEVICE_SLOT_UNTRUSTED == (int)RKM04_SLOT_UNTRUSTED &&
                    (int)DEVICE_SLOT_STORED == (int)RKM04_SLOT_STORED,
                "slots have the same numbers here and there");
@@ -253,6 +254,18 @@ static void axis(const struct device_unit *unit, unsigned motor, struct device_a
     };
 }
 
+static size_t plan(const struct device_unit *unit, unsigned motor, struct device_plan_point *point, size_t room)
+{
+    return rkm04_plan(core_of(unit), motor, point, room);
+}
+
+static size_t command_text(const struct device_unit *unit, unsigned motor, char text[DEVICE_COMMAND_SIZE])
+{
+    struct rkm04_motor_state state;
+    rkm04_motor_state(core_of(unit), motor, &state);
+    return state.index == 0 ? 0 : rkm04_format(core_of(unit)->motor[motor - 1].command, text);
+}
+
 static int set_text(struct device_unit *unit, unsigned motor, const char *text, size_t length, char error[DEVICE_ERROR_SIZE])
 {
     static const char *const flags[] = {"", "a bad value", "an unknown command", "the memory is full"};
@@ -383,6 +396,8 @@ const struct device_kind rkm04_device = {
     .variables_of = variables_of,
     .node = node,
     .axis = axis,
+    .plan = plan,
+    .command_text = command_text,
     .set_text = set_text,
     .check_text = check_text,
     .is_stuck = is_stuck,

@@ -32,6 +32,10 @@ json_t *rkm04_waits_json(const struct rkm04_unit *unit, unsigned motor);
 /* The label 1..80 that a jump or call of a motor waits for (C7); 0: it does not. */
 unsigned rkm04_awaited_label(const struct rkm04_motor *motor);
 
+/* ---- rkm04_plan.c: as struct device_kind's `plan` ---------------------------------------------------------------------- */
+
+size_t rkm04_plan(const struct rkm04_unit *unit, unsigned motor, struct device_plan_point *point, size_t room);
+
 /* ---- rkm04_settings.c: as struct device_kind's ------------------------------------------------------------------------- */
 
 extern const char *const rkm04_setting_names[];

@@ -12,7 +12,7 @@
 #include "run/run.h"
 #include "serve/serve.h"
 
-#define NAMES "serve, exec, check, test, replay or devices"
+#define NAMES "serve, exec, check, test, replay, plot or devices"
 
 const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
@@ -22,6 +22,7 @@ static const char help[] =
     "  or:  rkm04 check [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 test [OPTION...] SCENARIO...\n"
     "  or:  rkm04 replay [OPTION...] RECORDING\n"
+    "  or:  rkm04 plot [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 devices [--json]\n"
     "A virtual RKM04, the unit for four stepper motors on RS485.\n"
     "\n"
@@ -30,6 +31,7 @@ static const char help[] =
     "  check      report what is wrong with programs\n"
     "  test       run scenarios in virtual time and report which pass\n"
     "  replay     repeat a recording of `serve' or `test' and compare\n"
+    "  plot       draw speed and position over time\n"
     "  devices    list the devices that serve and scenarios know\n"
     "\n"
     "      --help      give this help; `rkm04 serve --help' tells more about serve\n"
@@ -42,6 +44,7 @@ static const char help[] =
     "  rkm04 check --werror program.rks\n"
     "  rkm04 test --junit report.xml homing.yaml\n"
     "  rkm04 replay --trace pulses.vcd session.record\n"
+    "  rkm04 plot -o drill.svg drill.rks\n"
     "\n"
     "Exit status: 0 success, 1 failure at run time, 2 usage, 3 a scenario has failed, 4 less than --min-coverage "
     "of serve, 124 --until of exec reached with a motor still running.\n";
@@ -55,6 +58,7 @@ static const struct {
     {"check", "rkm04 check", check_main},
     {"test", "rkm04 test", test_main},
     {"replay", "rkm04 replay", replay_main},
+    {"plot", "rkm04 plot", plot_main},
     {"devices", "rkm04 devices", devices_main},
 };
 

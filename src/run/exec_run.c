@@ -154,6 +154,8 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
             return EXEC_DONE;
         sim_advance(&run->sim, end);
         run->reached = end - 1;
+        if (run->advanced != NULL)
+            run->advanced(run->context);
         if (run->trace != NULL && trace_file_failed(run->trace) != 0)
             return EXEC_NO_TRACE;
         if (run->open && !left && repeats(run))

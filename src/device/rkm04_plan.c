@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/* The rest of a motor's present motion as the planner has it: speed over time from corner to corner (specification section 6). */
+#include <math.h>
+
+#include "rkm04_device.h"
+
+#define SPEED2_UNIT 0x1p-35    /* of rkm04_break.speed2, in steps^2/s^2 */
+#define ENDLESS_US 1e15        /* a leg without end is drawn so far */
+#define ALIKE 0.5              /* steps/s: rounding in a break point's speed, no jump */
+
+/* On the way from corner to corner. */
+struct walk {
+    struct device_plan_point *point;
+    size_t room, count;
+    double us, speed, place; /* of the motion: speed and place are not negative */
+};
+
+static double place_of(const struct rkm04_break *at)
+{
+    return (double)at->at.high * 0x1p-32 + (double)at->at.low * 0x1p-96;
+}
+
+static double speed_of(const struct rkm04_break *at)
+{
+    return sqrt((double)at->speed2 * SPEED2_UNIT);
+}
+
+static void add_corner(struct walk *walk)
+{
+    if (walk->count < walk->room)
+        walk->point[walk->count++] = (struct device_plan_point){walk->us, walk->speed, walk->place};
+}
+
+/* The present place and speed (ramp.h: y and w, d ticks after ramp->at). */
+static void begin_walk(struct walk *walk, const struct rkm04_unit *unit, const struct rkm04_motion *motion)
+{
+    const struct rkm04_ramp *ramp = &motion->ramp;
+    double d = (double)(int64_t)(unit->now - ramp->at), slope = ramp->slope;
+    double y = (double)ramp->y.whole, w = (double)ramp->w.whole;
+    walk->us = (double)unit->now;
+    walk->speed = fmax(0, (w + 2 * slope * d) / (2.0 * ramp->rate));
+    walk->place = (double)motion->done + 1 - ramp->sent + (y + d * (w + slope * d)) / (double)ramp->step;
+    add_corner(walk);
+}
+
+/* Go on with acceleration `slope` to the corner `to`. */
+static void walk_leg(struct walk *walk, const struct rkm04_break *to, int32_t slope)
+{
+    double way = fmax(0, place_of(to) - walk->place);
+    double speed = sqrt(fmax(0, walk->speed * walk->speed + 2.0 * slope * way));
+    if (walk->speed + speed > 0)
+        walk->us += 2e6 * way / (walk->speed + speed);
+    walk->speed = speed;
+    walk->place += way;
+    add_corner(walk);
+}
+
+static void end_walk(struct walk *walk, bool endless)
+{
+    if (endless) {
+        walk->us += ENDLESS_US;
+        walk->place += walk->speed * ENDLESS_US * 1e-6;
+    } else {
+        walk->speed = 0;
+    }
+    add_corner(walk);
+}
+
+size_t rkm04_plan(const struct rkm04_unit *unit, unsigned number, struct device_plan_point *point, size_t room)
+{
+    const struct rkm04_motor *motor = &unit->motor[number - 1];
+    const struct rkm04_motion *motion = &motor->motion;
+    const struct rkm04_profile *profile = &motion->profile;
+    struct walk walk = {.point = point, .room = room};
+    if (!motion->moving)
+        return 0;
+    begin_walk(&walk, unit, motion);
+    for (unsigned i = profile->leg + 1u; i < profile->count; i++) {
+        walk_leg(&walk, &profile->point[i], profile->point[i - 1].slope);
+        double next = speed_of(&profile->point[i]);
+        if (i + 1u < profile->count && fabs(next - walk.speed) > ALIKE) {
+            walk.speed = next;
+            add_corner(&walk);
+        }
+    }
+    end_walk(&walk, profile->endless);
+    for (size_t i = 0; i < walk.count; i++) {
+        double ahead = point[i].position - (double)motion->done;
+        point[i].position = motor->position + (motion->forward ? ahead : -ahead);
+        point[i].speed = motion->forward ? point[i].speed : 0 - point[i].speed;
+    }
+    return walk.count;
+}
