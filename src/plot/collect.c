@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#define SPEED_ALIKE 1e-4 /* steps/s */
 #define TRUTHS 4000u /* true positions kept of a motor: beyond, every other one is dropped */
 
 static const struct device_kind *kind_of(const struct collector *collector)
@@ -68,7 +69,7 @@ static void look_at_plan(struct collector *collector, unsigned axis, double now)
         struct leg leg = leg_of(point, count, since);
         if (*begin >= 0)
             add_begin(collector, motor, *begin, &leg);
-        else if (fabs(leg.speed - plot_point_at(motor, leg.us).speed) > 0.01)
+        else if (fabs(leg.speed - plot_point_at(motor, leg.us).speed) > SPEED_ALIKE)
             add_turn(collector, motor, &leg);
     }
     *begin = -1;
@@ -207,17 +208,18 @@ void collector_begin(struct collector *collector, struct plot_curves *curves, st
     collector_look(collector);
 }
 
-void collector_end(struct collector *collector, uint64_t us)
+void collector_end(struct collector *collector)
 {
     struct plot_curves *curves = collector->curves;
+    double us = (double)sim_now(collector->sim);
     sim_unwatch(collector->sim, &collector->watcher);
     collector_look(collector);
-    curves->end = (double)us;
+    curves->end = us;
     for (unsigned i = 0; i < curves->motors; i++) {
         struct plot_motor *motor = &curves->motor[i];
-        plot_cut(curves, motor, (double)us);
-        plot_mark_motion(curves, motor, (double)us, false);
-        plot_mark_state(curves, motor, (double)us, NULL, "");
+        plot_cut(curves, motor, us);
+        plot_mark_motion(curves, motor, us, false);
+        plot_mark_state(curves, motor, us, NULL, "");
         motor->is_used = motor->motions > 0 || motor->bands > 0;
     }
 }

@@ -23,7 +23,7 @@ void collector_begin(struct collector *collector, struct plot_curves *curves, st
 /* Look at the present plans. To be called after each advance that ended with something happening. */
 void collector_look(struct collector *collector);
 
-/* The run has ended at `us`. */
-void collector_end(struct collector *collector, uint64_t us);
+/* The run has ended. */
+void collector_end(struct collector *collector);
 
 #endif

@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "draw.h"
 
+#include <math.h>
+
+/* Without a minus in front of 0.000. */
+static double rounded(double value)
+{
+    return fabs(value) < 0.0005 ? 0 : value;
+}
+
 void plot_draw_csv(FILE *out, const struct plot_curves *curves, const struct plot_view *view)
 {
     fputs("t_us,motor,speed,position\n", out);
@@ -10,7 +18,7 @@ void plot_draw_csv(FILE *out, const struct plot_curves *curves, const struct plo
             const struct plot_point *point = &motor->point[k];
             if (point->us > view->to)
                 break;
-            fprintf(out, "%.3f,%u,%.3f,%.3f\n", point->us, i + 1, point->speed, point->position);
+            fprintf(out, "%.3f,%u,%.3f,%.3f\n", point->us, i + 1, rounded(point->speed), rounded(point->position));
         }
     }
 }

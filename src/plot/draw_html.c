@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+#include <embedded/page_js.h>
+
 #include "draw.h"
-#include "page_js.h"
 #include "picture.h"
 
 static void draw_corners(FILE *out, const struct plot_curves *curves)

@@ -22,6 +22,7 @@ struct reader {
 };
 
 struct row {
+    const char *line;
     double us;
     const char *source, *event, *value;
 };
@@ -88,7 +89,7 @@ static bool take_motor(struct reader *reader, const struct row *row, unsigned nu
     if (strcmp(row->event, "step") != 0 && strcmp(row->event, "position") != 0)
         return true;
     if (!number_read_signed(row->value, INT32_MIN, INT32_MAX, &value))
-        return is_wrong(reader, (size_t)(row->value - row->source) + 1, "a position");
+        return is_wrong(reader, (size_t)(row->value - row->line) + 1, "a position");
     if (strcmp(row->event, "step") == 0) {
         take_step(reader, i, row->us, (double)value);
     } else {
@@ -133,7 +134,7 @@ static bool take_row(struct reader *reader, char *line)
     }
     if (!number_read(part[0], 0, TIME_VALUE_MAX, &us))
         return is_wrong(reader, 1, "a time in us");
-    struct row row = {(double)us, part[1], part[2], part[3]};
+    struct row row = {line, (double)us, part[1], part[2], part[3]};
     if (strchr(row.source, '.') != NULL && reader->unit == NULL)
         return is_wrong(reader, (size_t)(part[1] - line) + 1, "a trace of one unit: choose one of them with --unit");
     if (row.us > reader->curves->end)

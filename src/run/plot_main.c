@@ -225,7 +225,7 @@ static bool draw_programs(struct options *options, struct plot_curves *curves)
         enum exec_end end = exec_run(&run);
         if (end == EXEC_ENDLESS)
             run_on(&run);
-        collector_end(&collector, run.reached);
+        collector_end(&collector);
         is_right = end != EXEC_INTERRUPTED || is_wrong("", "interrupted");
     }
     exec_run_end(&run);
@@ -249,7 +249,7 @@ static bool draw_replay(const struct options *options, struct plot_curves *curve
     replay_until(replay, options->until);
     collector_begin(&collector, curves, sim, unit, true);
     enum replay_end end = replay_run(replay, NULL, NULL);
-    collector_end(&collector, sim_now(sim));
+    collector_end(&collector);
     if (end != REPLAY_SAME)
         fprintf(stderr, end == REPLAY_WRONG ? "%s\n" : COMMAND ": %s\n", replay_text(replay));
     return end == REPLAY_SAME || end == REPLAY_DIFFERENT;

@@ -38,7 +38,7 @@ manual() {
 
 test_the_manual_pages_have_every_option() {
     local page option
-    for page in 'rkm04 serve' 'rkm04 exec' 'rkm04 test' 'rkm04 replay' 'rkmctl'; do
+    for page in 'rkm04 serve' 'rkm04 exec' 'rkm04 test' 'rkm04 replay' 'rkm04 plot' 'rkmctl'; do
         # shellcheck disable=SC2086
         set -- $page
         [[ $1 == rkm04 ]] && shift && set -- "$RKM04" "$@" || set -- "$RKMCTL"
