@@ -63,7 +63,8 @@ static void look_at_plan(struct collector *collector, unsigned axis, double now)
     struct device_plan_point point[DEVICE_PLAN_POINTS];
     const struct device_kind *kind = kind_of(collector);
     double since = (double)segment_since(&collector->sim->segment, collector->unit);
-    size_t count = kind->plan == NULL ? 0 : kind->plan(sim_core(collector->sim, collector->unit), axis, point, DEVICE_PLAN_POINTS);
+    const struct device_unit *unit = sim_core(collector->sim, collector->unit);
+    size_t count = kind->plan == NULL ? 0 : kind->plan(unit, axis, point, DEVICE_PLAN_POINTS);
     double *begin = &collector->begin[axis - 1];
     if (count > 0) {
         struct leg leg = leg_of(point, count, since);

@@ -61,7 +61,8 @@ struct plot_curves {
     bool short_of_memory;
 };
 
-/* Make room for one more in a list of `count` members of `size` bytes. Returns false if that cannot be: then the curves say why. */
+/* Make room for one more in a list of `count` members of `size` bytes. Returns false if there is none: the
+ * curves say why. */
 bool plot_has_room(struct plot_curves *curves, void *list, size_t count, size_t *room, size_t size);
 
 /* Append a corner. One that lies on the straight line between its neighbours is left out. */

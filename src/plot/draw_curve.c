@@ -83,7 +83,8 @@ static void draw_parabola(FILE *out, const struct plot_point *a, const struct pl
             y_of(position, a->position + a->speed * half * 1e-6), plot_scale_place(time, b->us), y_of(position, b->position));
 }
 
-void plot_path_position(FILE *out, const struct plot_motor *motor, const struct plot_scale *time, const struct plot_scale *position)
+void plot_path_position(FILE *out, const struct plot_motor *motor, const struct plot_scale *time,
+                        const struct plot_scale *position)
 {
     size_t first, last;
     if (motor->points == 0)

@@ -12,7 +12,8 @@
 void plot_path_speed(FILE *out, const struct plot_motor *motor, const struct plot_scale *time, const struct plot_scale *speed);
 
 /* Of the position: parabolas, drawn exactly. */
-void plot_path_position(FILE *out, const struct plot_motor *motor, const struct plot_scale *time, const struct plot_scale *position);
+void plot_path_position(FILE *out, const struct plot_motor *motor, const struct plot_scale *time,
+                        const struct plot_scale *position);
 
 /* Of where the plant is. */
 void plot_path_truth(FILE *out, const struct plot_motor *motor, const struct plot_scale *time, const struct plot_scale *position);

@@ -395,14 +395,15 @@ void plot_draw_svg(FILE *out, const struct plot_curves *curves, const struct plo
     struct drawing drawing = {.out = out, .curves = curves, .view = view, .y = TOP};
     drawing.time = plot_scale_exact(view->from, view->to, panel, (unsigned)(panel / MARK_EVERY));
     fprintf(out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" width=\"%g\" height=\"%g\" viewBox=\"0 0 %g %g\" role=\"img\" "
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" width=\"%g\" height=\"%g\" viewBox=\"0 0 %g %g\" "
+            "role=\"img\" "
             "aria-labelledby=\"title desc\" data-from=\"%.0f\" data-to=\"%.0f\" data-left=\"%g\">\n<title id=\"title\">",
             width, height, width, height, view->from, view->to, LEFT);
     plot_text(out, view->title);
     fputs("</title>\n<desc id=\"desc\">", out);
     describe(&drawing);
-    fprintf(out, "</desc>\n%s<rect class=\"paper\" width=\"%g\" height=\"%g\"/>\n<text class=\"ink title\" x=\"14\" y=\"20\">", style,
-            width, height);
+    fprintf(out, "</desc>\n%s<rect class=\"paper\" width=\"%g\" height=\"%g\"/>\n", style, width, height);
+    fputs("<text class=\"ink title\" x=\"14\" y=\"20\">", out);
     plot_text(out, view->title);
     fputs("</text>\n", out);
     for (unsigned i = 0; i < curves->motors; i++)

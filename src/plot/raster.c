@@ -11,7 +11,8 @@ extern char **environ;
 
 static const char *reason_of(int wrong)
 {
-    return wrong == ENOENT ? "rsvg-convert is not installed: it is in the package librsvg2-bin; or ask for .svg" : strerror(wrong);
+    return wrong != ENOENT ? strerror(wrong) :
+                             "rsvg-convert is not installed: it is in the package librsvg2-bin; or ask for .svg";
 }
 
 const char *plot_rasterize(FILE *svg, FILE *png, unsigned scale)

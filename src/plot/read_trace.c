@@ -16,7 +16,7 @@ struct reader {
     FILE *errors;
     size_t line;
     struct {
-        double since, last;      /* us of the pulse that the present mean begins with, of the last one; < 0: none in this motion */
+        double since, last;      /* us of the pulse that the present mean begins with, < 0: none yet; of the last one */
         double from, position;   /* counter there, now */
     } motor[PLOT_MOTORS];
 };

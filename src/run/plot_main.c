@@ -68,11 +68,12 @@ static const struct argp_option option_table[] = {
 };
 
 static const char doc[] =
-    "Draw what programs do: planned speed and position of each motor over time, as in the manual's figures, what it waits for, and "
-    "the inputs, outputs and variables that change."
+    "Draw what programs do: planned speed and position of each motor over time, as in the manual's figures, what it waits for, "
+    "and the inputs, outputs and variables that change."
     "\v"
     "FILE is a program text, M= its motor, as for `rkm04 exec'; or one trace as CSV, whose speeds are means over a few "
-    "milliseconds; or one recording, which is replayed; or one scenario (.yaml). A program that never ends is drawn until its state repeats.\n"
+    "milliseconds; or one recording, which is replayed; or one scenario (.yaml). A program that never ends is drawn until "
+    "its state repeats.\n"
     "A PNG is made by rsvg-convert (package librsvg2-bin).\n"
     "\n"
     "Examples:\n"
@@ -88,7 +89,7 @@ static const char doc[] =
 
 static uint64_t read_time(struct argp_state *state, const char *option, const char *text)
 {
-    uint64_t us;
+    uint64_t us = 0;
     size_t wrong;
     const char *form = time_value_read(text, strlen(text), &us, &wrong);
     if (form != NULL)
@@ -98,7 +99,7 @@ static uint64_t read_time(struct argp_state *state, const char *option, const ch
 
 static unsigned read_number(struct argp_state *state, const char *option, const char *text, unsigned low, unsigned high)
 {
-    uint64_t number;
+    uint64_t number = low;
     if (!number_read(text, low, high, &number))
         argp_error(state, "--%s: expected a number %u to %u, found '%s'", option, low, high, text);
     return (unsigned)number;
