@@ -12,7 +12,7 @@
 #include "run/run.h"
 #include "serve/serve.h"
 
-#define NAMES "serve, exec, check, test, replay, plot or devices"
+#define NAMES "serve, exec, check, fmt, test, replay, plot or devices"
 
 const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
@@ -20,6 +20,7 @@ static const char help[] =
     "Usage: rkm04 serve [OPTION...]\n"
     "  or:  rkm04 exec [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 check [OPTION...] [M=]FILE...\n"
+    "  or:  rkm04 fmt [OPTION...] FILE...\n"
     "  or:  rkm04 test [OPTION...] SCENARIO...\n"
     "  or:  rkm04 replay [OPTION...] RECORDING\n"
     "  or:  rkm04 plot [OPTION...] [M=]FILE...\n"
@@ -29,6 +30,7 @@ static const char help[] =
     "  serve      units on a bus (pseudo terminal, serial device or TCP), in real time\n"
     "  exec       run programs in virtual time, as fast as the machine can\n"
     "  check      report what is wrong with programs\n"
+    "  fmt        lay out programs\n"
     "  test       run scenarios in virtual time and report which pass\n"
     "  replay     repeat a recording of `serve' or `test' and compare\n"
     "  plot       draw speed and position over time\n"
@@ -56,6 +58,7 @@ static const struct {
     {"serve", "rkm04 serve", serve_main},
     {"exec", "rkm04 exec", exec_main},
     {"check", "rkm04 check", check_main},
+    {"fmt", "rkm04 fmt", fmt_main},
     {"test", "rkm04 test", test_main},
     {"replay", "rkm04 replay", replay_main},
     {"plot", "rkm04 plot", plot_main},

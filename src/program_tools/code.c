@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/text.h"
+#include "token.h"
 
 void code_begin(struct code *code, const struct program_source *sources, size_t count)
 {
@@ -30,42 +30,31 @@ static void *grow(void *array, size_t count, size_t *room, size_t size)
     return grown;
 }
 
-static bool add_command(struct code *code, size_t source, const struct rkm04_reader *reader, struct rkm04_command command)
+static bool add_command(struct code *code, size_t source, const struct token *token)
 {
     struct code_command *grown = grow(code->commands, code->count, &code->command_room, sizeof *grown);
     if (grown == NULL)
         return false;
     code->commands = grown;
-    grown[code->count++] = (struct code_command){.command = command,
+    grown[code->count++] = (struct code_command){.command = token->command,
                                                  .source = (uint32_t)source,
-                                                 .offset = (uint32_t)reader->start,
-                                                 .length = (uint32_t)(reader->at - reader->start)};
-    if (command.op == '\\') {
+                                                 .offset = (uint32_t)token->offset,
+                                                 .length = (uint32_t)token->length};
+    if (token->command.op == '\\') {
         code->first = code->count;
         code->has_reset = true;
     }
     return true;
 }
 
-/* The comments between two commands, where the reader has found nothing else but blanks. `after`: a command precedes. */
-static bool add_comments(struct code *code, size_t source, const char *text, size_t from, size_t to, bool after)
+static bool add_comment(struct code *code, size_t source, const struct token *token, bool after)
 {
-    for (size_t at = from; at < to; at++) {
-        if (text[at] == '\n')
-            after = false;
-        if (text[at] != '{')
-            continue;
-        const char *end = memchr(text + at, '}', to - at);
-        struct code_comment *grown = grow(code->comments, code->comment_count, &code->comment_room, sizeof *grown);
-        if (grown == NULL)
-            return false;
-        code->comments = grown;
-        size_t length = end == NULL ? to - at : (size_t)(end - (text + at)) + 1;
-        grown[code->comment_count++] = (struct code_comment){(uint32_t)source, (uint32_t)at, (uint32_t)length, after};
-        if (memchr(text + at, '\n', length) != NULL)
-            after = false;
-        at += length - 1;
-    }
+    struct code_comment *grown = grow(code->comments, code->comment_count, &code->comment_room, sizeof *grown);
+    if (grown == NULL)
+        return false;
+    code->comments = grown;
+    grown[code->comment_count++] =
+        (struct code_comment){(uint32_t)source, (uint32_t)token->offset, (uint32_t)token->length, after};
     return true;
 }
 
@@ -76,21 +65,27 @@ static bool is_request(struct rkm04_command command)
 
 bool code_read(struct code *code, size_t source, const char *text, code_notice *notice, void *context)
 {
-    struct rkm04_reader reader;
-    rkm04_read_begin(&reader, text, code->sources[source].length);
+    struct token_reader tokens;
+    bool after = false; /* a command precedes in the line */
+    token_begin(&tokens, text, code->sources[source].length);
     for (;;) {
-        struct rkm04_command command = {0};
-        const size_t before = reader.at;
-        const enum rkm04_read found = diagnose_read(&reader, &command);
-        if (!add_comments(code, source, text, before, reader.start, before > 0))
-            return false;
-        if (found == RKM04_READ_END)
+        const struct token token = token_next(&tokens);
+        const char *at = text + token.offset;
+        after = after && token.lines == 0;
+        if (token.kind == TOKEN_END)
             return true;
-        if (found == RKM04_READ_COMMAND && !is_request(command)) {
-            if (!add_command(code, source, &reader, command))
+        if (token.kind == TOKEN_COMMENT) {
+            if (!add_comment(code, source, &token, after))
+                return false;
+            after = after && memchr(at, '\n', token.length) == NULL;
+            continue;
+        }
+        after = true;
+        if (token.kind == TOKEN_COMMAND && !is_request(token.command)) {
+            if (!add_command(code, source, &token))
                 return false;
         } else if (notice != NULL) {
-            notice(context, source, &reader, found, command);
+            notice(context, source, &tokens.reader, token.found, token.command);
         }
     }
 }
