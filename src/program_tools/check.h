@@ -37,7 +37,6 @@
     ROW(CHECK_UNUSED_GUARD, "unused-guard", "M or N that no motion uses") \
     ROW(CHECK_USED_GUARD, "used-guard", "M or N that guards only one of the passes of a loop") \
     ROW(CHECK_OUTPUT_STAYS, "output-stays", "an output that is set and never cleared") \
-    ROW(CHECK_INPUT_NEVER_COMES, "input-never-comes", "a wait for an input that the plant never brings") \
     ROW(CHECK_VARIABLE_NEVER_SET, "variable-never-set", "a wait for a variable that no motor sets") \
     ROW(CHECK_DEADLOCK, "deadlock", "motors that wait for each other") \
     ROW(CHECK_APOSTROPHE, "apostrophe", "a typographic apostrophe as a call") \

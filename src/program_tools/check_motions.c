@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* check_motions.c: motions without steps, twice, without ramps, too short for their speed; Y tables. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "check_inside.h"
@@ -81,10 +82,25 @@ static void look_at_single(const struct look *look)
 
 /* ---- Compound motions ----------------------------------------------------------------------------------------------- */
 
-/* The highest speed between two places of a motion, both in whole steps from its begin. */
+/* The speed at a place, in whole steps from the begin. Between two points the square of the speed is linear (R1). */
+static uint32_t speed_at(const struct planner_point *points, size_t count, uint64_t place)
+{
+    size_t next = 1;
+    while (next < count - 1 && points[next].step < place + 1)
+        next++;
+    const struct planner_point *left = &points[next - 1], *right = &points[next];
+    if (left->speed == right->speed || place + 1 <= left->step || right->step == left->step)
+        return left->speed;
+    const double from = (double)left->speed * left->speed, to = (double)right->speed * right->speed;
+    const double part = (double)(place + 1 - left->step) / (double)(right->step - left->step);
+    return (uint32_t)sqrt(from + (to - from) * (part < 1 ? part : 1));
+}
+
+/* The highest speed between two places of a motion. */
 static uint32_t peak_between(const struct planner_point *points, size_t count, uint64_t from, uint64_t to)
 {
-    uint32_t peak = 0;
+    const uint32_t begin = speed_at(points, count, from), end = speed_at(points, count, to);
+    uint32_t peak = begin > end ? begin : end;
     for (size_t i = 0; i < count; i++)
         if (points[i].step >= from + 1 && points[i].step <= to + 1 && points[i].speed > peak)
             peak = points[i].speed;
@@ -108,7 +124,7 @@ static void look_at_table(const struct look *look)
     }
     const size_t answered = planner_ask(&look->check->planner, (uint16_t)in->start_speed, segments, count, points);
     uint64_t from = 0;
-    for (unsigned i = 0; answered > 0 && i < count; from += segments[i++].steps) {
+    for (unsigned i = 0; answered > 1 && i < count; from += segments[i++].steps) {
         uint32_t peak = peak_between(points, answered, from, from + segments[i].steps);
         if (peak < segments[i].speed && is_news(look, CHECK_SPEED_NOT_REACHED, in->segment[i].from))
             report_peak(look, CHECK_SPEED_NOT_REACHED, in->segment[i].from, segments[i].speed, peak);

@@ -24,7 +24,8 @@ static bool write_all(int file, const char *text, size_t length)
 }
 
 /* Write the text to `file`, a new one called `temporary`, and let it take the place of `path`. Returns 0 or an error number. */
-static int put_in_place(int file, const char *temporary, const char *path, const struct stat *old, const char *text, size_t length)
+static int put_in_place(int file, const char *temporary, const char *path, const struct stat *old, const char *text,
+                        size_t length)
 {
     bool well = write_all(file, text, length) && fchmod(file, old->st_mode & 07777) == 0 && fsync(file) == 0;
     int wrong = well ? 0 : errno;

@@ -5,8 +5,8 @@
 
 #include <stddef.h>
 
-/* Give the file `path` this content: a new file with its mode takes its place, or it stays as it was. A link stays a link. Returns
- * NULL, or why that was not possible. */
+/* Give the file `path` this content: a new file with its mode takes its place, or it stays as it was. A link stays a link.
+ * Returns NULL, or why that was not possible. */
 const char *text_replace(const char *path, const char *text, size_t length);
 
 #endif

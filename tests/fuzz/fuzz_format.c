@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* fuzz_format.c: any bytes as a program text to be laid out. It is laid out unless the unit would refuse it; the commands stay the
- * same, and laying it out again changes nothing. */
+/* fuzz_format.c: any bytes as a program text to be laid out. It is laid out unless the unit would refuse it; the commands stay
+ * the same, and laying it out again changes nothing. */
 #include <string.h>
 
 #include "fuzz.h"

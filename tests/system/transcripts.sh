@@ -37,14 +37,17 @@ manual() {
 }
 
 test_the_manual_pages_have_every_option() {
-    local page option
-    for page in 'rkm04 serve' 'rkm04 exec' 'rkm04 test' 'rkm04 replay' 'rkm04 plot' 'rkmctl'; do
+    local page option file
+    for page in 'rkm04 serve' 'rkm04 exec' 'rkm04 test' 'rkm04 replay' 'rkm04 plot' \
+        'rkm04 check' 'rkm04 fmt' 'rkmctl'; do
+        file=${page// /-} # rkm04-check(1), or all in rkm04(1)
+        [[ -e $source/docs/man/$file.1 ]] || file=${page%% *}
         # shellcheck disable=SC2086
         set -- $page
         [[ $1 == rkm04 ]] && shift && set -- "$RKM04" "$@" || set -- "$RKMCTL"
         while IFS= read -r option; do
             [[ $option == --help || $option == --usage || $option == --version ]] && continue
-            grep -qF -e "$option" <(manual "${page%% *}") || fail "$page $option is not in the manual page"
+            grep -qF -e "$option" <(manual "$file") || fail "$page $option is not in the manual page"
         done < <("$@" --help | grep -oE '^ +(-[a-z], )?--[a-z0-9-]+' | grep -oE -e '--[a-z0-9-]+')
     done
 }
