@@ -10,6 +10,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "client_cause.h"
 #include "client_port.h"
 
 #define NUMBER_UNKNOWN 255  /* message number of "unknown message" */
@@ -229,8 +230,9 @@ static bool tell_causes(const struct dialogue *d)
         fprintf(stderr, "  - %" PRIu32 " frames came with a wrong check value: do two units have the address %u, or does another "
                 "program send at the same time (a collision)? Or is the bus disturbed?\n", r->bad_check, client->node);
     if (r->malformed > 0 && client->foreign == 0)
-        fprintf(stderr, "  - %" PRIu32 " frames came that are cut or malformed: does another program read from %s, too?\n",
-                r->malformed, client->port);
+        fprintf(stderr, "  - %" PRIu32 " frames came that are cut or malformed: do two units have the address %u and answer at "
+                "different times (a collision)? Does another program read from %s, too?\n", r->malformed, client->node,
+                client->port);
     bool told = client->foreign > 0 || client->strange > 0 || r->bad_check > 0 || r->malformed > 0;
     if (!told && client->heard > 0)
         fprintf(stderr, "  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right?\n",
@@ -243,7 +245,8 @@ static void advise(const struct dialogue *d)
     const struct client *client = d->client;
     warnx("no answer from unit %u within %u ms", client->node, client->timeout_ms);
     fputs("Please check:\n", stderr);
-    if (tell_causes(d))
+    bool known = client_print_emulator_causes(client->port, client->framing, client->node);
+    if (tell_causes(d) || known)
         return;
     fprintf(stderr,
             "  - nothing was received.\n"

@@ -122,9 +122,9 @@ bool client_rpc_open(struct client_rpc *rpc, const char *path)
     if (connected && ((chosen != NULL && chosen[0] != '\0') || !is_foreign(rpc)))
         return true;
     if (connected)
-        warnx("%s: it belongs to another user's emulator; to use it, name it: --control PATH", rpc->path);
+        report(rpc, "%s: it belongs to another user's emulator; to use it, name it: --control PATH", rpc->path);
     else
-        warnx("cannot connect to %s: %s%s", rpc->path, strerror(error), advice(rpc->path, error));
+        report(rpc, "cannot connect to %s: %s%s", rpc->path, strerror(error), advice(rpc->path, error));
     if (rpc->fd >= 0)
         close(rpc->fd);
     return false;

@@ -51,11 +51,12 @@ static json_t *units_result(struct control_context *context, struct refusal *ref
     json_t *settings = json_object(), *list = json_array();
     sim_device(sim)->put_settings(&sim->config.unit, settings);
     json_t *readings = json_incref(json_object_get(settings, "readings")); /* NULL: none, and left out */
+    json_t *framing = json_incref(json_object_get(settings, "framing"));
     json_decref(settings);
     for (unsigned number = 1; number <= sim_units(sim); number++)
         json_array_append_new(list, json_string(sim->unit[number - 1].name));
-    return json_pack("{s:I, s:i, s:o, s:o*}", "t_us", (json_int_t)sim_now(sim), "lines", (int)context->client->control->lines,
-                     "units", list, "readings", readings);
+    return json_pack("{s:I, s:i, s:o, s:o*, s:o*}", "t_us", (json_int_t)sim_now(sim), "lines",
+                     (int)context->client->control->lines, "units", list, "framing", framing, "readings", readings);
 }
 
 /* Of one line, or of all: then of none if one of them is being advanced. */

@@ -5,7 +5,7 @@
 . "$(dirname "$0")/lib.sh"
 
 test_no_answer_in_time_is_exit_3_with_advice() {
-    serve bus --node 2
+    serve bus --node 2 --no-control # as at a real bus: nobody can be asked
     exits 3 ctl bus -n 5 --timeout 200 version
     holds "$complained" 5 "the message names the node"
     holds "${complained,,}" framing "the message says what to check"
@@ -29,8 +29,38 @@ test_no_answer_names_the_cause_where_it_can_be_known() {
     holds "$complained" "came in the framing plain: try --framing plain" "the other framing"
     kill "$started"
     status_of "$started"
+    rm "$folder/bus.control"
     exits 3 ctl bus --timeout 200 -n 7 version
     holds "$complained" "nothing was received" "silence"
+}
+
+# silent PART ARGUMENTS...: a request that gets no answer; the message has the part.
+silent() {
+    exits 3 ctl bus --timeout 200 "${@:2}" version
+    holds "$complained" "$1" "the message"
+}
+
+test_no_answer_names_what_the_emulator_knows() {
+    serve bus --node 5,7 --framing plain
+    silent "use the framing plain: try --framing plain" -n 5
+    [[ $complained != *"have power"* ]] || fail "a general list though the cause is known: $complained"
+    silent "no unit of this emulator has the address 6; there are 5, 7" --framing plain -n 6
+    exits 0 "$RKMCTL" -c "$folder/bus.control" --unit 7 power off
+    silent "unit 7 of this emulator is without power" --framing plain -n 7
+    kill "$started"
+    status_of "$started"
+    serve bus --clock stepped
+    exits 0 "$RKMCTL" -c "$folder/bus.control" fault inject delay delay=1s
+    silent "time of this emulator is stopped"
+}
+
+# Their answers overlap in part: no frame is whole.
+test_two_units_of_one_address_with_different_delays_are_named() {
+    serve bus --node 5,5
+    exits 0 "$RKMCTL" -c "$folder/bus.control" --unit 5-2 fault inject delay delay=700us
+    silent "2 units of this emulator have the address 5: their answers collide" -n 5
+    rm "$folder/bus.control" # as at a real bus: nobody can be asked
+    silent "do two units have the address 5" -n 5
 }
 
 test_a_request_that_comes_back_is_called_an_echo() {

@@ -414,7 +414,8 @@ def test_messages_and_bytes_are_events(emulator):
 
 def test_units_have_names_and_lines_have_numbers(emulator):
     client = emulator.client()
-    assert client.call("units", line=1) == {"t_us": 0, "lines": 2, "units": ["3", "5", "3-2"], "readings": {}}
+    assert client.call("units", line=1) == {"t_us": 0, "lines": 2, "units": ["3", "5", "3-2"], "framing": "hdlc",
+                                            "readings": {}}
     assert client.refused("units", line=2).message == "line: expected a whole number from 0 to 1"
     assert client.refused("state").message == "unit: missing: expected one of 3, 5, 3-2"
     client.call("subscribe", line=1, unit=["5", "3-2"], kinds=["inputs", "power"])
