@@ -69,7 +69,7 @@ static void print_bits(FILE *out, const char *name, unsigned mask, unsigned firs
     }
 }
 
-static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
+static void print_table(FILE *out, struct exec_run *run, enum exec_end end, bool waits)
 {
     static const char *const ends[] = {
         [EXEC_DONE] = "finished",
@@ -81,7 +81,7 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end)
     const struct device_kind *kind = run->device;
     const struct device_unit *unit = exec_run_unit(run);
     fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / US_PER_SECOND,
-            run->reached % US_PER_SECOND, ends[end]);
+            run->reached % US_PER_SECOND, waits ? "not finished, but nothing more comes" : ends[end]);
     fprintf(out, "motor     position  state   command  led    fault\n");
     for (unsigned motor = 1; motor <= kind->axes; motor++) {
         struct device_axis state;
@@ -109,13 +109,51 @@ bool report_faults(struct exec_run *run)
     return any;
 }
 
+/* ---- What is waited for --------------------------------------------------------------------------------------------- */
+
+/* A list of {motor, command, for}: what keeps a motor that has not come to its end from going on, when nothing will bring it.
+ * Returns a new reference; NULL: out of memory. */
+static json_t *waits_json(struct exec_run *run, enum exec_end end)
+{
+    json_t *list = json_array(), *motor, *state = NULL;
+    size_t i;
+    if (end == EXEC_DONE)
+        state = run->device->describe(exec_run_unit(run), run->reached);
+    json_array_foreach(json_object_get(state, "motors"), i, motor) {
+        json_t *what = json_object_get(motor, "waits_for");
+        struct device_axis axis;
+        run->device->axis(exec_run_unit(run), (unsigned)i + 1, &axis);
+        if (json_is_string(what) && !axis.idle)
+            json_array_append_new(list, json_pack("{s:i, s:O, s:O}", "motor", (int)i + 1, "command",
+                                                  json_object_get(motor, "command"), "for", what));
+    }
+    json_decref(state);
+    return list;
+}
+
+/* Say on stderr for which of them no stimulus is left. Faults and labels: report_faults(). */
+static void report_waits(struct exec_run *run, const json_t *waits)
+{
+    char text[DEVICE_ERROR_SIZE];
+    json_t *wait;
+    size_t i;
+    json_array_foreach(waits, i, wait) {
+        unsigned motor = (unsigned)json_integer_value(json_object_get(wait, "motor"));
+        const char *command = json_string_value(json_object_get(wait, "command"));
+        if (!run->device->is_stuck(exec_run_unit(run), motor, text))
+            fprintf(stderr, "rkm04 exec: motor %u waits%s%s for %s, which nothing brings\n", motor,
+                    command != NULL ? " in " : "", command != NULL ? command : "",
+                    json_string_value(json_object_get(wait, "for")));
+    }
+}
+
 /* ---- The end ------------------------------------------------------------------------------------------------------ */
 
-static bool print_json(FILE *out, json_t *answers, struct exec_run *run, enum exec_end end)
+static bool print_json(FILE *out, json_t *answers, struct exec_run *run, enum exec_end end, json_t *waits)
 {
     json_t *state = run->device->state(exec_run_unit(run), run->reached);
     bool well = state != NULL && json_object_set_new(state, "end", json_string(end_name(end))) == 0 &&
-                json_object_set(state, "answers", answers) == 0 && json_dumpf(state, out, JSON_COMPACT) == 0;
+                json_object_set(state, "answers", answers) == 0 && json_object_set(state, "waits", waits) == 0 && json_dumpf(state, out, JSON_COMPACT) == 0;
     json_decref(state);
     fputc('\n', out);
     return well;
@@ -124,11 +162,14 @@ static bool print_json(FILE *out, json_t *answers, struct exec_run *run, enum ex
 bool report_end(struct report *report, struct exec_run *run, enum exec_end end, FILE *out)
 {
     bool well = true;
+    json_t *waits = waits_json(run, end);
     errno = 0;
+    report_waits(run, waits);
     if (report->answers != NULL)
-        well = print_json(out, report->answers, run, end);
+        well = print_json(out, report->answers, run, end, waits);
     else
-        print_table(out, run, end);
+        print_table(out, run, end, json_array_size(waits) > 0);
+    json_decref(waits);
     json_decref(report->answers);
     if (fflush(out) != 0 || ferror(out))
         well = false;

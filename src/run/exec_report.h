@@ -20,7 +20,8 @@ void report_begin(struct report *report, bool json);
 void report_answer(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);
 
 /* Print the final state on `out`: the object of device_kind.state with `end` ("done", "until", "interrupted", "no_trace") and
- * `answers`, a list of {t_us, message, answer}; or a table. Frees the report.
+ * `answers`, a list of {t_us, message, answer}, and `waits`, a list of {motor, command, for}: what a motor waits for that nothing
+ * brings; or a table, and what is waited for on stderr. Frees the report.
  * Returns false if it could not be written; that has been reported. */
 bool report_end(struct report *report, struct exec_run *run, enum exec_end end, FILE *out);
 

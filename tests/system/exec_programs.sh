@@ -269,4 +269,18 @@ test_K1_two_runs_are_the_same_to_the_byte() {
     sort -s -t, -k1n,1 1.csv | cmp -s - 1.csv || fail "the trace is not in the order of time"
 }
 
+test_a_run_that_nothing_brings_on_names_what_it_waits_for() {
+    echo 'S100 V1000 A1000 F10 R O03 F10 R' >"$folder/input.rks"
+    echo 'W5 [ F1 R' >"$folder/block.rks"
+    echo 'F10 R' >"$folder/end.rks"
+    exits 0 "$RKM04" exec "$folder/input.rks"
+    holds "$complained" "motor 1 waits in O03 for DI 03 to be 1, which nothing brings" "an input that no stimulus sets"
+    holds "$said" "not finished, but nothing more comes" "the first line"
+    exits 0 "$RKM04" exec --json "$folder/block.rks"
+    holds "$said" '"waits":[{"motor":1,"command":"[","for":"the ] of its block"}]' "the same as JSON"
+    exits 0 "$RKM04" exec "$folder/end.rks"
+    same "" "$complained" "a run that is finished"
+    holds "$said" ": finished" "its first line"
+}
+
 run_cases "$@"
