@@ -237,7 +237,7 @@ uint64_t ramp_quiet_pulses(const struct rkm04_ramp *ramp, uint32_t most)
     if (ramp->slope > 0)
         w += 2 * ramp->slope * (int64_t)(ramp->end.tick - ramp->at);
     uint64_t quiet = ramp_quiet_until(ramp), fastest = ramp->next + (uint64_t)(ramp->step / w) * most;
-    if (fastest < quiet)
+    if (most != UINT32_MAX && fastest < quiet) /* an endless motion is quiet for ever */
         quiet = fastest;
     return quiet > ramp->next ? quiet : ramp->next; /* as soon as no pulse is left in the leg, or in the motion */
 }

@@ -48,7 +48,8 @@ uint32_t ramp_skip(struct rkm04_ramp *ramp, uint64_t limit, uint32_t most);
 /* y and w at `tick`; the tick must lie within the present leg. */
 void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w);
 
-/* A tick, not before ramp->next, before which the present leg does not end and at most `most` of its pulses are due. */
+/* A tick, not before ramp->next, before which the present leg does not end and at most `most` of its pulses are due; UINT32_MAX:
+ * any number of them. */
 uint64_t ramp_quiet_pulses(const struct rkm04_ramp *ramp, uint32_t most);
 
 /* A tick before which the motion does not end; RKM04_NEVER if it has no end of its own. */

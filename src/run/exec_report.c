@@ -80,8 +80,8 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end, bool
     };
     const struct device_kind *kind = run->device;
     const struct device_unit *unit = exec_run_unit(run);
-    fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / US_PER_SECOND,
-            run->reached % US_PER_SECOND, waits ? "not finished, but nothing more comes" : ends[end]);
+    fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / US_PER_SECOND, run->reached % US_PER_SECOND,
+            waits ? "not finished, but nothing more comes" : ends[end]);
     fprintf(out, "motor     position  state   command  led    fault\n");
     for (unsigned motor = 1; motor <= kind->axes; motor++) {
         struct device_axis state;
@@ -153,7 +153,9 @@ static bool print_json(FILE *out, json_t *answers, struct exec_run *run, enum ex
 {
     json_t *state = run->device->state(exec_run_unit(run), run->reached);
     bool well = state != NULL && json_object_set_new(state, "end", json_string(end_name(end))) == 0 &&
-                json_object_set(state, "answers", answers) == 0 && json_object_set(state, "waits", waits) == 0 && json_dumpf(state, out, JSON_COMPACT) == 0;
+                json_object_set(state, "answers", answers) == 0 &&
+                (json_array_size(waits) == 0 || json_object_set(state, "waits", waits) == 0) &&
+                json_dumpf(state, out, JSON_COMPACT) == 0;
     json_decref(state);
     fputc('\n', out);
     return well;

@@ -19,9 +19,9 @@ void report_begin(struct report *report, bool json);
 /* Take note of the answer to a message of the stimulus; `context` is a struct report. */
 void report_answer(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);
 
-/* Print the final state on `out`: the object of device_kind.state with `end` ("done", "until", "interrupted", "no_trace") and
- * `answers`, a list of {t_us, message, answer}, and `waits`, a list of {motor, command, for}: what a motor waits for that nothing
- * brings; or a table, and what is waited for on stderr. Frees the report.
+/* Print the final state on `out`: the object of device_kind.state with `end` ("done", "until", "interrupted", "no_trace"),
+ * `answers`, a list of {t_us, message, answer}, and, if a motor waits for what nothing brings, `waits`, a list of
+ * {motor, command, for}; or a table, and on stderr what is waited for. Frees the report.
  * Returns false if it could not be written; that has been reported. */
 bool report_end(struct report *report, struct exec_run *run, enum exec_end end, FILE *out);
 
