@@ -87,7 +87,7 @@ static int flash_program(void *context, unsigned number, unsigned block, unsigne
 static bool open_flash(struct bus *bus)
 {
     const struct bus_options *options = bus->options;
-    const struct device_kind *device = options->device ? options->device : &rkm04_device;
+    const struct device_kind *device = options->device.kind;
     for (unsigned at = 0; options->flash && at < options->nodes.count; at++) {
         struct bus_unit *unit = &bus->unit[at];
         char path[PATH_MAX], name[NODE_NAME_SIZE];
@@ -302,7 +302,8 @@ static bool begin_sim(struct bus *bus)
 {
     const struct bus_options *options = bus->options;
     struct sim_config config = {
-        .device = options->device,
+        .device = options->device.kind,
+        .unit = options->device.config,
         .nodes = options->nodes,
         .timed = bus->time.timed && !bus_is_stepped(bus),
         .turnaround = options->turnaround,
@@ -311,8 +312,6 @@ static bool begin_sim(struct bus *bus)
         .adapter = plug_adapter,
         .context = bus,
     };
-    if (!options->device || options->device == &rkm04_device)
-        rkm04_settings_put(&config.unit, &options->config);
     if (options->flash)
         config.flash = (struct sim_flash){.read = flash_read, .erase = flash_erase, .program = flash_program, .context = bus};
     if (sim_begin(&bus->sim, &config) && snapshots_attach(&bus->sim))

@@ -16,10 +16,7 @@
 #define BUS_FILES_MAX 8u /* traces, and logs of the wires */
 
 struct bus_options {
-    struct rkm04_config config; /* --framing, --version-text, --readings; node: of the first unit */
-    bool is_rkm04;              /* one of these was given */
-    readings_set readings_named; /* by --readings and --speed-change-latency */
-    const struct device_kind *device; /* --device; NULL: rkm04 */
+    struct device_arguments device; /* --device and its options */
     const char *nodes_text;     /* --node as given; NULL: the default */
     struct node_list nodes;     /* the same */
     unsigned lines;             /* --lines */

@@ -24,19 +24,21 @@
 
 #include "coverage.h"
 #include "serve_names.h"
+#include "text/text.h"
 
 #define DEVICE_FLASH_BLOCKS_MAX 64u  /* blocks of flash */
 #define DEVICE_FLASH_BLOCK_MAX 4096u /* bytes of a block */
 #define DEVICE_NEVER UINT64_MAX   /* no time */
 #define DEVICE_AXES_MAX 16u       /* of a unit; axis 1..DEVICE_AXES_MAX, 0 is the unit */
 #define DEVICE_BITS_MAX 32u       /* inputs, outputs, variables: bit 0 is the first */
-#define DEVICE_SETTINGS_SIZE 64u  /* bytes that a kind has for its own settings */
+#define DEVICE_SETTINGS_SIZE 128u /* bytes that a kind has for its own settings */
 #define DEVICE_COMMAND_SIZE 64u   /* bytes of a command as text */
 #define DEVICE_ERROR_SIZE 256u    /* bytes of a message */
 
 /* A unit of any kind: kind->size bytes of plain memory. Copying them is a snapshot; what is copied back, or elsewhere, needs
  * kind->attach() before anything else. */
 struct device_unit;
+
 
 /* Settings of a unit. All zero but `node` is the default of every kind. */
 struct device_config {
@@ -121,6 +123,63 @@ struct device_counters {
     uint32_t dropped;  /* frames that were none. With each frame that ends one of these three counts up */
 };
 
+/* ---- What a kind may offer beside its units ---------------------------------------------------------------------------- */
+
+enum device_option_flag {
+    DEVICE_OPTION_SWITCH = 1, /* also --NAME VALUE on the command line */
+    DEVICE_OPTION_BUS = 2     /* is about bytes on the bus: not for `rkm04 exec` */
+};
+
+/* A setting of a unit that people choose: --device-option NAME=VALUE, and a key of scenarios, in which `-` is written `_`.
+ * Either `read` or `read_file` is set. Texts must stay as long as the config and units with it are used. */
+struct device_option {
+    const char *name;     /* "version-text" */
+    const char *argument; /* what it takes, for --help: "TEXT" */
+    const char *help;     /* for --help: what it is, values, default */
+    unsigned flags;       /* enum device_option_flag */
+    /* Read a value into the config. Returns false and a message that says what was expected. */
+    bool (*read)(struct device_config *config, const char *value, char error[DEVICE_ERROR_SIZE]);
+    /* The value is a file: read what stands in it, `text` with a zero behind it. Errors go to `errors`, a line each,
+     * NAME:LINE:COLUMN: error: expected …; then false. */
+    bool (*read_file)(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors);
+    /* The value of a scenario's key. Errors are reported at their nodes (config_error()). NULL: a text for `read`. */
+    bool (*read_node)(struct device_config *config, const char *key, const struct config_node *node);
+    /* Print the values there are: of NAME=list. NULL: `list` is a value like any other. */
+    void (*list)(FILE *out);
+};
+
+#define DEVICE_READINGS_MAX 64u /* of a kind */
+#define DEVICE_TRIED_MAX 8u     /* values of one reading */
+#define DEVICE_TEXT_SIZE 320u   /* bytes of a text that names readings */
+
+/* How a kind reads what its manual leaves open: `at` is 0..count-1. `rkm04 test --readings all` runs scenarios under
+ * each value. */
+struct device_readings {
+    unsigned count;
+    const char *(*name)(unsigned at);
+    unsigned (*tried)(unsigned at, unsigned values[DEVICE_TRIED_MAX]); /* values other than the default. Returns how many */
+    void (*put)(struct device_config *config, unsigned at, unsigned value);
+    bool (*is_chosen)(const struct device_config *config, unsigned at); /* by an option or a scenario */
+    void (*take_others)(struct device_config *config, const struct device_config *from); /* those that are not chosen */
+    const char *(*text)(const struct device_config *config, char text[DEVICE_TEXT_SIZE]); /* "hold-exit=latch"; "": defaults */
+    json_t *(*json)(const struct device_config *config); /* those that are not at their default; NULL: out of memory */
+};
+
+/* Why a method was refused. */
+struct device_refusal {
+    bool is_state; /* it cannot be done now; false: the parameters are wrong */
+    char text[DEVICE_ERROR_SIZE];
+};
+
+/* A method of a kind for the control socket, scenarios (`call`) and recordings: "pmc.program". */
+struct device_method {
+    const char *name; /* NULL: the end of the table */
+    /* Do it to a unit at the present us. `params`: an object, whose `unit` has been read, or NULL. Returns the result, a new
+     * reference; NULL: refused, nothing has changed. */
+    json_t *(*call)(struct device_unit *unit, const json_t *params, struct device_refusal *refusal);
+    bool changes; /* anything: then recordings have it */
+};
+
 /* A kind of device. Every function is set unless it says otherwise. */
 struct device_kind {
     const char *name;        /* "rkm04": of options, scenarios, recordings */
@@ -132,8 +191,9 @@ struct device_kind {
     unsigned addresses;      /* 1..addresses are addresses; at most 247 */
     unsigned ticks_per_us;
     unsigned slot;           /* us of the period in which it looks at inputs and executes commands */
-    unsigned pulse;          /* us of a step pulse */
+    unsigned pulse;          /* us of a step pulse; see pulse_ticks */
     unsigned program;        /* commands that an axis can have in memory; 0: it has no program */
+    bool is_program_whole;   /* a text is for all axes (axis 0), not for one */
     unsigned flash_blocks, flash_block_size; /* 0: no flash */
     unsigned request_max, answer_max; /* bytes of the longest message, without framing */
 
@@ -147,6 +207,10 @@ struct device_kind {
     void (*advance)(struct device_unit *unit, uint64_t us);       /* do the us now .. now + us - 1 */
     uint64_t (*next_event)(const struct device_unit *unit);       /* >= now: when something is due of itself; DEVICE_NEVER */
     uint64_t (*next_report)(const struct device_unit *unit);      /* the same, without steps while the port has no `steps` */
+
+    /* Ticks of the pulses that an axis makes now, if they are not all `pulse` long; called from within port->steps. NULL: they
+     * are. */
+    unsigned (*pulse_ticks)(const struct device_unit *unit, unsigned axis);
 
     /* The bus. `receive` NULL: the device has none, and none of these is called. */
     size_t (*receive)(struct device_unit *unit, const uint8_t *bytes, size_t length); /* returns how many it took */
@@ -198,9 +262,12 @@ struct device_kind {
     json_t *(*state)(const struct device_unit *unit, uint64_t t_us);
     json_t *(*describe)(const struct device_unit *unit, uint64_t t_us);
 
-    /* Settings by name: "framing", "readings", "version_text" of an RKM04; the list ends with NULL. put: into a recording's head.
-     * read: one of the names; value NULL: it is not there. The value must stay. Returns false and a message. unlike: what differs
-     * but for the node, in words; NULL: nothing. */
+    /* What people may choose; the list ends with a row without name. Recordings have all settings: put writes them into a
+     * recording's head, read reads the one called `settings[…]`, a list that ends with NULL; value NULL: it is not there. The
+     * value must stay. Returns false and a message. unlike: what differs but for the node, in words; NULL: nothing. */
+    const struct device_option *options; /* NULL: none */
+    const struct device_readings *readings; /* NULL: none */
+    const struct device_method *methods; /* NULL: none */
     const char *const *settings;
     void (*put_settings)(const struct device_config *config, json_t *object);
     bool (*read_setting)(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
@@ -223,6 +290,43 @@ struct device_kind {
 /* The kind of this name, or the one at `at` from 0 on: NULL if there is none. */
 const struct device_kind *device_kind_named(const char *name);
 const struct device_kind *device_kind_at(unsigned at);
+
+/* Writes the names of all kinds, "rkm04, fake", for messages. Returns `text`. */
+const char *device_kind_names(char text[DEVICE_ERROR_SIZE]);
+
+/* The option of this name, or the one of this key of scenarios (`-` is `_`). NULL: the kind has none. */
+const struct device_option *device_option_named(const struct device_kind *kind, const char *name);
+const struct device_option *device_option_keyed(const struct device_kind *kind, const char *key);
+
+/* ---- Command lines: device_arguments.c --------------------------------------------------------------------------------- */
+
+struct argp; /* argp.h */
+struct argp_state;
+
+#define DEVICE_ARGUMENTS_MAX 64u /* values of options on a command line */
+
+/* What a command line says about the device: --device, --device-option, and the options of kinds that are switches. */
+struct device_arguments {
+    unsigned without;     /* flags of options that are not offered */
+    const char *own;      /* name of an option that the caller reads itself and hands on; NULL: none */
+    /* Out, when the command line is read: */
+    const struct device_kind *kind;
+    struct device_config config; /* node is the caller's */
+    /* Inside. */
+    unsigned count;
+    const char *name[DEVICE_ARGUMENTS_MAX], *value[DEVICE_ARGUMENTS_MAX];
+    char *text[DEVICE_ARGUMENTS_MAX]; /* of files */
+};
+
+/* The parser, for argp_option.children; its input (state->child_inputs) is a struct device_arguments, of which the first part is
+ * set. The values are read when all are there; what is wrong is a usage error. */
+const struct argp *device_arguments_argp(struct device_arguments *arguments);
+
+/* As if the command line had --NAME VALUE; before the end of the parse. */
+void device_arguments_add(struct device_arguments *arguments, const char *name, const char *value, struct argp_state *state);
+
+/* Free the texts. Units and configs must not be used any more. */
+void device_arguments_free(struct device_arguments *arguments);
 
 /* The kind that is meant where none is named: the RKM04. Its settings as they lie in a config; `node` is that of the config. */
 extern const struct device_kind rkm04_device;

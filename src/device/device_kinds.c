@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The table of kinds of devices. */
+#include <stdio.h>
 #include <string.h>
 
 #include "device.h"
@@ -22,11 +23,46 @@ const struct device_kind *device_kind_at(unsigned at)
     return NULL;
 }
 
+const char *device_kind_names(char text[DEVICE_ERROR_SIZE])
+{
+    const struct device_kind *kind;
+    size_t length = 0;
+    text[0] = '\0';
+    for (unsigned at = 0; (kind = device_kind_at(at)) && length < DEVICE_ERROR_SIZE; at++)
+        length += (size_t)snprintf(text + length, DEVICE_ERROR_SIZE - length, at > 0 ? ", %s" : "%s", kind->name);
+    return text;
+}
+
 const struct device_kind *device_kind_named(const char *name)
 {
     const struct device_kind *kind;
     for (unsigned at = 0; (kind = device_kind_at(at)); at++)
         if (strcmp(kind->name, name) == 0)
             return kind;
+    return NULL;
+}
+
+static bool is_key(const char *key, const char *name)
+{
+    while (*key != '\0' && (*key == *name || (*key == '_' && *name == '-'))) {
+        key++;
+        name++;
+    }
+    return *key == '\0' && *name == '\0';
+}
+
+const struct device_option *device_option_named(const struct device_kind *kind, const char *name)
+{
+    for (const struct device_option *option = kind->options; option && option->name; option++)
+        if (strcmp(option->name, name) == 0)
+            return option;
+    return NULL;
+}
+
+const struct device_option *device_option_keyed(const struct device_kind *kind, const char *key)
+{
+    for (const struct device_option *option = kind->options; option && option->name; option++)
+        if (is_key(key, option->name))
+            return option;
     return NULL;
 }

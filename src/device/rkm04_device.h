@@ -32,6 +32,19 @@ json_t *rkm04_waits_json(const struct rkm04_unit *unit, unsigned motor);
 /* The label 1..80 that a jump or call of a motor waits for (C7); 0: it does not. */
 unsigned rkm04_awaited_label(const struct rkm04_motor *motor);
 
+/* What a config has of an RKM04. */
+struct rkm04_own {
+    struct rkm04_config config;
+    readings_set chosen; /* by options or a scenario */
+};
+
+#define RKM04_VERSION_TEXT_MAX 255u /* bytes */
+
+/* ---- rkm04_options.c ---------------------------------------------------------------------------------------------------- */
+
+extern const struct device_option rkm04_options[];
+extern const struct device_readings rkm04_device_readings;
+
 /* ---- rkm04_plan.c: as struct device_kind's `plan` ---------------------------------------------------------------------- */
 
 size_t rkm04_plan(const struct rkm04_unit *unit, unsigned motor, struct device_plan_point *point, size_t room);

@@ -6,10 +6,9 @@
 #include "rkm04_device.h"
 #include "text/text.h"
 
-#define VERSION_TEXT_MAX 255u /* bytes */
 #define LATENCY_MAX 2000u     /* ms (C4) */
 
-_Static_assert(sizeof(struct rkm04_config) <= DEVICE_SETTINGS_SIZE, "the settings of an RKM04 have to fit");
+_Static_assert(sizeof(struct rkm04_own) <= DEVICE_SETTINGS_SIZE, "the settings of an RKM04 have to fit");
 
 const char *const rkm04_setting_names[] = {"framing", "version_text", "speed_change_latency", "readings", NULL};
 
@@ -63,8 +62,8 @@ static bool read_framing(struct rkm04_config *settings, const json_t *value, cha
 static bool read_version_text(struct rkm04_config *settings, const json_t *value, char error[DEVICE_ERROR_SIZE])
 {
     settings->version_text = json_string_value(value);
-    if (value && (!settings->version_text || json_string_length(value) > VERSION_TEXT_MAX)) {
-        snprintf(error, DEVICE_ERROR_SIZE, "expected \"version_text\", at most %u bytes", VERSION_TEXT_MAX);
+    if (value && (!settings->version_text || json_string_length(value) > RKM04_VERSION_TEXT_MAX)) {
+        snprintf(error, DEVICE_ERROR_SIZE, "expected \"version_text\", at most %u bytes", RKM04_VERSION_TEXT_MAX);
         return false;
     }
     return true;

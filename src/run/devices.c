@@ -23,15 +23,24 @@ static error_t read_option(int key, char *text, struct argp_state *state)
     return 0;
 }
 
+static json_t *options_json(const struct device_kind *kind)
+{
+    json_t *list = json_array();
+    for (const struct device_option *option = kind->options; option && option->name; option++)
+        json_array_append_new(list, json_pack("{s:s, s:s, s:s}", "name", option->name, "argument", option->argument, "help",
+                                              option->help));
+    return list;
+}
+
 static int print_json(void)
 {
     json_t *list = json_array();
     const struct device_kind *kind;
     for (unsigned at = 0; (kind = device_kind_at(at)); at++)
-        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:i, s:i, s:i, s:i}", "name", kind->name, "description",
+        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:o}", "name", kind->name, "description",
                                               kind->description, "axes", (int)kind->axes, "inputs", (int)kind->inputs, "outputs",
                                               (int)kind->outputs, "variables", (int)kind->variables, "addresses",
-                                              (int)kind->addresses));
+                                              (int)kind->addresses, "options", options_json(kind)));
     char *text = json_dumps(list, JSON_INDENT(2));
     json_decref(list);
     if (!text) {

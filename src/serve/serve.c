@@ -295,7 +295,10 @@ static bool start(struct serve *serve)
     allow_files(options);
     if (!start_signals(serve)) /* before anything is made that would have to be removed */
         return false;
-    coverage_begin(&serve->coverage, &options->config.readings);
+    if (wants_coverage(serve)) {
+        const struct rkm04_config settings = rkm04_settings(&options->device.config);
+        coverage_begin(&serve->coverage, &settings.readings);
+    }
     serve->idle.data = serve;
     if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
         !start_control(serve) || !has_spare_files())
@@ -368,6 +371,7 @@ static enum exit_status run(struct serve *serve)
     }
     end(serve);
     free(serve->options.plant_text);
+    device_arguments_free(&serve->options.device);
     return serve->status;
 }
 

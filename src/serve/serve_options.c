@@ -7,8 +7,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include <rkm04/link.h>
-
 #include "options/options.h"
 #include "line/line.h"
 #include "notify.h"
@@ -17,7 +15,6 @@
 #include "wire/wire.h"
 #include "trace/trace.h"
 
-#define VERSION_TEXT_MAX 255
 #define IDLE_DEFAULT 10u /* s */
 #define IDLE_MAX 86400   /* s */
 #define NO_TURNAROUND UINT32_MAX /* not given */
@@ -27,14 +24,9 @@ enum key {
     KEY_LINK = 'l',
     KEY_PORT = 'p',
     KEY_VERBOSE = 'v',
-    KEY_FRAMING = 256,
-    KEY_DEVICE,
-    KEY_FLASH,
+    KEY_FLASH = 256,
     KEY_BAUD,
     KEY_CLOCK,
-    KEY_VERSION_TEXT,
-    KEY_READINGS,
-    KEY_LATENCY,
     KEY_LINES,
     KEY_TCP,
     KEY_RFC2217,
@@ -63,14 +55,9 @@ static const struct argp_option table[] = {
     {"node", KEY_NODE, "LIST", 0,
      "Addresses (DNode) of the units on the bus, 1 to 16, as in 3 or 1,2,5-8; default 1. The same address may be given twice",
      0},
-    {"device", KEY_DEVICE, "NAME", 0, "What the units are: one of those that `rkm04 devices' lists; default rkm04", 0},
     {"flash", KEY_FLASH, "FILE", 0,
      "Flash image of a unit; created if it does not exist. %n in it stands for the unit's address, %l for the number of the bus. "
      "Without it stored programs are lost when the emulator ends", 0},
-    {"version-text", KEY_VERSION_TEXT, "TEXT", 0,
-     "What the units answer to Version, up to 255 characters; default " RKM04_VERSION_TEXT, 0},
-    {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
-    {"speed-change-latency", KEY_LATENCY, "MS", 0, "The same as --readings speed-change=MS", 0},
     {NULL, 0, NULL, 0, "The bus:", 2},
     {"link", KEY_LINK, "PATH", 0,
      "Name of the symbolic link to the pty; default $XDG_RUNTIME_DIR/rkm04/bus0, else rkm04-UID/bus0 in the temporary "
@@ -83,7 +70,6 @@ static const struct argp_option table[] = {
      "Offer the bus over TCP as plain bytes; default host 127.0.0.1, port 0: a free one. No pty without --link",
      0},
     {"rfc2217", KEY_RFC2217, "HOST:PORT", 0, "The same with RFC 2217: settings, purge, break and modem lines", 0},
-    {"framing", KEY_FRAMING, "NAME", 0, "hdlc (default) or plain", 0},
     {"baud", KEY_BAUD, "RATE", 0, "19200 (default): each byte takes 520.8 us in both directions; 0: bytes take no time", 0},
     {"turnaround", KEY_TURNAROUND, "US", 0,
      "Time from the end of a request to the start of the answer, 0 to 1000000 us; default 521, one character", 0},
@@ -156,20 +142,6 @@ static long read_number(const char *text, long high)
 {
     uint64_t value;
     return number_read(text, 0, (uint64_t)high, &value) ? (long)value : -1;
-}
-
-static void set_framing(struct bus_options *options, const char *text, struct argp_state *state)
-{
-    options->config.framing = rkm04_framing_named(text);
-    if (options->config.framing)
-        return;
-    char names[128] = "";
-    for (size_t i = 0; rkm04_framings[i]; i++) {
-        if (i > 0)
-            strncat(names, rkm04_framings[i + 1] ? ", " : " or ", sizeof names - strlen(names) - 1);
-        strncat(names, rkm04_framings[i]->name, sizeof names - strlen(names) - 1);
-    }
-    argp_error(state, "--framing: `%s' is unknown: expected %s", text, names);
 }
 
 /* A number from 0 to `high`, or a usage error that says what was expected. */
@@ -324,7 +296,6 @@ static void check_together(struct bus_options *options, struct argp_state *state
         argp_error(state, "expected either --control or --no-control");
     check_patterns(options, state);
     options->pty = !options->port && (!net || options->link);
-    options->config.node = options->nodes.node[0];
 }
 
 /* Options of the units and of time. */
@@ -335,23 +306,6 @@ static error_t read_unit_option(int key, char *text, struct argp_state *state)
     case KEY_NODE:
         options->nodes_text = text;
         return 0;
-    case KEY_DEVICE:
-        options->device = device_kind_named(text);
-        if (!options->device)
-            argp_error(state, "--device: `%s' is unknown: expected one that `rkm04 devices' lists", text);
-        return 0;
-    case KEY_READINGS:
-        options->is_rkm04 = true;
-        readings_option_read(&options->config.readings, &options->readings_named, text, state);
-        return 0;
-    case KEY_LATENCY:
-        options->is_rkm04 = true;
-        readings_option_latency(&options->config.readings, &options->readings_named, text, state);
-        return 0;
-    case KEY_FRAMING:
-        set_framing(options, text, state);
-        options->is_rkm04 = true;
-        return 0;
     case KEY_FLASH:
         options->flash = read_pattern("flash", text, state);
         return 0;
@@ -359,12 +313,6 @@ static error_t read_unit_option(int key, char *text, struct argp_state *state)
         options->clock_text = text;
         if (!virtual_clock_read(&options->clock, text))
             argp_error(state, "--clock: `%s' is wrong: expected " VIRTUAL_CLOCK_EXPECTED, text);
-        return 0;
-    case KEY_VERSION_TEXT:
-        options->config.version_text = text;
-        options->is_rkm04 = true;
-        if (strlen(text) > VERSION_TEXT_MAX)
-            argp_error(state, "--version-text: %zu characters: expected at most %d", strlen(text), VERSION_TEXT_MAX);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -451,20 +399,16 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
     }
 }
 
-/* The addresses, and what is an option of the RKM04 alone. */
+/* The addresses, and what not every device has. */
 static void check_device(struct bus_options *options, const struct argp_state *state)
 {
-    const struct device_kind *device = options->device;
+    const struct device_kind *device = options->device.kind;
     if (options->nodes_text && !node_list_read_up_to(&options->nodes, options->nodes_text, device->addresses)) {
         if (device == &rkm04_device)
             argp_error(state, "--node: `%s' is wrong: expected " NODE_LIST_EXPECTED, options->nodes_text);
         argp_error(state, "--node: `%s' is wrong: " NODE_LIST_FORMAT, options->nodes_text, device->addresses);
     }
-    if (device == &rkm04_device)
-        return;
-    if (options->is_rkm04)
-        argp_error(state, "--framing, --version-text and --readings are options of an rkm04: expected none with --device %s",
-                   device->name);
+    options->device.config.node = options->nodes.node[0];
     if ((options->coverage || options->min_coverage >= 0) && !device->has_coverage)
         argp_error(state, "--coverage: not known for the device %s", device->name);
 }
@@ -473,6 +417,9 @@ static error_t read_option(int key, char *text, struct argp_state *state)
 {
     struct bus_options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->device;
+        return 0;
     case KEY_READY_FD:
         options->ready_fd = notify_fd_read(text);
         if (options->ready_fd < 0)
@@ -505,10 +452,7 @@ static error_t read_option(int key, char *text, struct argp_state *state)
 
 void serve_options_read(struct bus_options *options, int argc, char **argv)
 {
-    static const struct argp argp = {.options = table, .parser = read_option, .doc = doc};
     *options = (struct bus_options){
-        .config = {.framing = &rkm04_hdlc, .version_text = RKM04_VERSION_TEXT},
-        .device = &rkm04_device,
         .nodes = {.count = 1, .node = {1}},
         .lines = 1,
         .clock_text = "real",
@@ -519,5 +463,7 @@ void serve_options_read(struct bus_options *options, int argc, char **argv)
         .ready_fd = -1,
     };
     virtual_clock_read(&options->clock, "real");
+    const struct argp_child children[] = {{.argp = device_arguments_argp(&options->device)}, {0}};
+    const struct argp argp = {.options = table, .parser = read_option, .doc = doc, .children = children};
     arguments_parse(&argp, argc, argv, options);
 }

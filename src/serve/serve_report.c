@@ -60,18 +60,17 @@ static void tell_flash(struct bus *bus)
 
 static const char *framing_name(const struct bus_options *options)
 {
-    if (options->device == &rkm04_device)
-        return options->config.framing->name;
-    return options->device->framing(&(struct device_config){.node = options->nodes.node[0]})->name;
+    return options->device.kind->framing(&options->device.config)->name;
 }
 
 void serve_report_start(const struct bus_options *options, struct bus *const *buses)
 {
-    char readings[READINGS_TEXT_SIZE];
+    const struct device_readings *readings = options->device.kind->readings;
+    char text[DEVICE_TEXT_SIZE];
     for (unsigned i = 0; i < options->lines; i++)
         tell_ports(buses[i]);
-    if (readings_text(&options->config.readings, readings)[0] != '\0')
-        log_at(0, "readings %s", readings);
+    if (readings && readings->text(&options->device.config, text)[0] != '\0')
+        log_at(0, "readings %s", text);
     if (options->baud == 0 || options->clock.stands)
         log_at(0, "framing %s, bytes take no time, clock %s", framing_name(options), options->clock_text);
     else
@@ -110,16 +109,15 @@ static json_t *ports_json(const struct bus *bus)
 /* With several lines the ports at the top are those of line 0, and `lines` has all. */
 static json_t *ready_json(const struct bus_options *options, struct bus *const *buses, const char *control)
 {
+    const struct device_kind *kind = options->device.kind;
     json_t *ready = ports_json(buses[0]), *lines = NULL;
-    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:o, s:s?, s:s?}", "node", (int)options->config.node, "nodes",
-                             nodes_json(&options->nodes), "framing", framing_name(options), "baud", (int)options->baud,
-                             "turnaround", (int)options->turnaround, "clock", options->clock_text, "readings",
-                             readings_json(&options->config.readings), "flash", options->flash, "control", control);
+    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:o*, s:s?, s:s?, s:s}", "node", (int)options->nodes.node[0],
+                             "nodes", nodes_json(&options->nodes), "framing", framing_name(options), "baud",
+                             (int)options->baud, "turnaround", (int)options->turnaround, "clock", options->clock_text,
+                             "readings", kind->readings ? kind->readings->json(&options->device.config) : NULL, "flash",
+                             options->flash, "control", control, "device", kind->name);
     bool well = ready && rest && json_object_update(ready, rest) == 0;
     json_decref(rest);
-    if (well && options->device != &rkm04_device) /* without it: rkm04 */
-        well = json_object_set_new(ready, "device", json_string(options->device->name)) == 0 &&
-               json_object_del(ready, "readings") == 0;
     if (well && options->lines > 1) {
         lines = json_array();
         for (unsigned i = 0; well && i < options->lines; i++)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "fake.h"
+#include "text/text.h"
 
 #define FLASH (FAKE_FLASH_BLOCKS - 1u) /* the block that is used */
 
@@ -24,6 +25,26 @@ static struct fake_device *device_of(struct device_unit *unit)
 static const struct fake_unit *core_of(const struct device_unit *unit)
 {
     return &((const struct fake_device *)unit)->core;
+}
+
+/* What a config has of it: nothing is the default. */
+struct fake_settings {
+    int32_t rate;      /* steps/s at power-up; 0: 100, or that of the flash */
+    const char *start; /* texts to obey at power-up, a line each; NULL: none */
+};
+
+_Static_assert(sizeof(struct fake_settings) <= DEVICE_SETTINGS_SIZE, "the settings have to fit");
+
+static struct fake_settings settings_of(const struct device_config *config)
+{
+    struct fake_settings settings;
+    memcpy(&settings, config->own.byte, sizeof settings);
+    return settings;
+}
+
+static void put_own(struct device_config *config, const struct fake_settings *settings)
+{
+    memcpy(config->own.byte, settings, sizeof *settings);
 }
 
 /* ---- What the core reports ------------------------------------------------------------------------------------------ */
@@ -92,12 +113,25 @@ static const struct fake_calls calls = {
 
 /* ---- Power, time, bytes --------------------------------------------------------------------------------------------- */
 
+/* Obey what the settings say, before the first us. */
+static void start(struct fake_device *device, struct fake_settings settings)
+{
+    char text[FAKE_TEXT_MAX + 1];
+    if (settings.rate > 0)
+        device->core.rate = (uint16_t)settings.rate;
+    for (const char *at = settings.start; at && *at; at += strcspn(at, "\n"), at += *at == '\n') {
+        snprintf(text, sizeof text, "%.*s", (int)strcspn(at, "\n"), at);
+        fake_obey(&device->core, text);
+    }
+}
+
 static void begin(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context)
 {
     struct fake_device *device = device_of(unit);
     device->port = port;
     device->context = context;
     fake_begin(&device->core, config->node, &calls, device);
+    start(device, settings_of(config));
 }
 
 /* A copy reports to its own surroundings, not to those of the original. */
@@ -362,28 +396,81 @@ static json_t *describe(const struct device_unit *unit, uint64_t t_us)
     return all;
 }
 
-/* It has no settings of its own. */
-static const char *const settings[] = {NULL};
+/* ---- Settings ------------------------------------------------------------------------------------------------------- */
+
+static bool read_rate(struct device_config *config, const char *value, char error[DEVICE_ERROR_SIZE])
+{
+    uint64_t rate;
+    struct fake_settings own = settings_of(config);
+    if (!number_read(value, 1, FAKE_RATE_MAX, &rate)) {
+        snprintf(error, DEVICE_ERROR_SIZE, "`%.40s' is wrong: expected steps/s from 1 to %u", value, FAKE_RATE_MAX);
+        return false;
+    }
+    own.rate = (int32_t)rate;
+    put_own(config, &own);
+    return true;
+}
+
+static bool read_start(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)
+{
+    struct fake_settings own = settings_of(config);
+    size_t line = 1;
+    (void)length;
+    for (const char *at = text; *at; at += strcspn(at, "\n"), at += *at == '\n', line++) {
+        if (strcspn(at, "\n") <= FAKE_TEXT_MAX)
+            continue;
+        fprintf(errors, "%s:%zu:%u: error: expected a request of at most %u bytes\n", name, line, FAKE_TEXT_MAX + 1,
+                FAKE_TEXT_MAX);
+        return false;
+    }
+    own.start = text;
+    put_own(config, &own);
+    return true;
+}
+
+static const struct device_option options[] = {
+    {.name = "rate",
+     .argument = "N",
+     .help = "Steps/s at power-up, 1 to 10000; default 100, or that of the flash",
+     .read = read_rate},
+    {.name = "start-file",
+     .argument = "FILE",
+     .help = "Requests that are obeyed at power-up, a line each",
+     .read_file = read_start},
+    {.name = NULL},
+};
+
+/* As recordings have them. */
+static const char *const settings[] = {"rate", "start", NULL};
 
 static void put_settings(const struct device_config *config, json_t *object)
 {
-    (void)config;
-    (void)object;
+    const struct fake_settings own = settings_of(config);
+    json_object_set_new(object, "rate", json_integer(own.rate));
+    if (own.start)
+        json_object_set_new(object, "start", json_string(own.start));
 }
 
 static bool read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE])
 {
-    (void)config;
-    (void)value;
-    snprintf(error, DEVICE_ERROR_SIZE, "unknown setting \"%.64s\"", name);
-    return false;
+    struct fake_settings own = settings_of(config);
+    bool is_rate = strcmp(name, "rate") == 0;
+    if (is_rate && value)
+        own.rate = (int32_t)json_integer_value(value);
+    if (!is_rate && value)
+        own.start = json_string_value(value);
+    if (own.rate < 0 || own.rate > (int32_t)FAKE_RATE_MAX || (value && is_rate != json_is_integer(value))) {
+        snprintf(error, DEVICE_ERROR_SIZE, "expected \"rate\", a number up to %u, and \"start\", a text", FAKE_RATE_MAX);
+        return false;
+    }
+    put_own(config, &own);
+    return true;
 }
 
 static const char *unlike(const struct device_config *a, const struct device_config *b)
 {
-    (void)a;
-    (void)b;
-    return NULL;
+    const struct fake_settings here = settings_of(a), there = settings_of(b);
+    return here.rate != there.rate ? "the rate" : NULL; /* what it does at power-up is over */
 }
 
 const struct device_kind fake_device = {
@@ -430,6 +517,7 @@ const struct device_kind fake_device = {
     .led_name = led_name,
     .state = state,
     .describe = describe,
+    .options = options,
     .settings = settings,
     .put_settings = put_settings,
     .read_setting = read_setting,

@@ -60,7 +60,7 @@ static void start(uint8_t mode)
     static const char *const clocks[] = {"real", "max", "x10", "x0.5"};
     machine_path(link_pattern, "bus");
     options = (struct bus_options){
-        .config = {.framing = &rkm04_hdlc},
+        .device = {.kind = &rkm04_device},
         .lines = 1,
         .clock_text = clocks[mode >> 4 & 3],
         .baud = mode & 2 ? 19200 : 0,

@@ -82,7 +82,7 @@ static void choose(uint8_t mode)
     machine_path(socket_path, "control");
     machine_path(link_pattern, "bus%l");
     options = (struct bus_options){
-        .config = {.framing = &rkm04_hdlc},
+        .device = {.kind = &rkm04_device},
         .lines = (mode & 3) == 3 ? 2 : 1,
         .clock_text = clocks[mode >> 6],
         .baud = mode & 4 ? 19200 : 0,

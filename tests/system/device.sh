@@ -54,11 +54,48 @@ test_an_unknown_device_and_options_of_another_one_are_refused() {
     exits 2 "$PRODUCT" serve --device fake
     holds "$complained" "--device: \`fake' is unknown: expected one that \`rkm04 devices' lists" "stderr"
     exits 2 "$RKM04" serve --device fake --framing plain
-    holds "$complained" "expected none with --device fake" "stderr"
+    holds "$complained" "--framing: the device fake has no such option: expected rate, start-file" "stderr"
+    exits 2 "$RKM04" serve --device fuke
+    holds "$complained" "did you mean \`fake'?" "stderr"
+    exits 2 "$RKM04" serve --device-option rote=20 --device fake
+    holds "$complained" "did you mean \`rate'?" "stderr"
+    exits 2 "$RKM04" serve --device fake --device-option rate=0
+    holds "$complained" "--device-option rate: \`0' is wrong: expected steps/s from 1 to 10000" "stderr"
+    exits 2 "$RKM04" serve --device fake --device-option rate
+    holds "$complained" "--device-option: \`rate' is wrong: expected NAME=VALUE" "stderr"
+    echo "MOVE 1000000000000" >"$folder/start.txt"
+    exits 2 "$RKM04" serve --device fake --device-option "start-file=$folder/start.txt"
+    holds "$complained" "start.txt:1:17: error: expected a request of at most 16 bytes" "stderr"
+    exits 1 "$RKM04" serve --device fake --device-option "start-file=$folder/none.txt"
+    holds "$complained" "cannot read $folder/none.txt: No such file or directory" "stderr"
     exits 2 "$RKM04" serve --device fake --node 101
     holds "$complained" "expected addresses from 1 to 100" "stderr"
     exits 2 "$RKM04" serve --device rkm04 --node 17
     holds "$complained" "expected addresses from 1 to 16, as set with switch S1" "stderr"
+}
+
+# The settings of a device are in --help with its name, and units begin with them.
+test_options_of_a_device() {
+    exits 0 "$RKM04" serve --help
+    holds "$said" "Options of the device fake (--device-option NAME=VALUE):" "--help"
+    holds "$said" "rate=N" "--help"
+    [[ $said != *--rate* ]] || fail "--help: expected no --rate"
+    printf 'ZERO\nMOVE 7\n' >"$folder/start.txt"
+    emulator --device-option rate=20 --device-option "start-file=$folder/start.txt" --record "$folder/options.record"
+    exits 0 "$RKMCTL" advance 210ms
+    same "4" "$(value 'state["motors"][0]["position"]')" "position after 210 ms at 20 steps/s"
+    same "20" "$(value 'state["rate"]')" "rate"
+    exits 0 "$RKMCTL" shutdown
+    status_of "$started"
+    exits 0 "$RKM04" replay "$folder/options.record"
+    rm "$folder/start.txt"
+    exits 0 "$RKM04" replay "$folder/options.record"
+}
+
+test_ready_names_the_device_also_if_it_is_the_rkm04() {
+    serve bus
+    holds "$(<"$folder/bus.out")" '"device":"rkm04"' READY
+    holds "$(<"$folder/bus.out")" '"readings":{}' READY
 }
 
 test_units_answer_over_a_pty() {
