@@ -147,7 +147,24 @@ static json_t *command_switch(struct sim *sim, const json_t *params, struct refu
                      (int)sim_device(sim)->node(sim_core(sim, number)));
 }
 
+static json_t *command_units(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const none[] = {NULL};
+    if (!params_known(params, none, refusal))
+        return NULL;
+    json_t *settings = json_object(), *list = json_array();
+    sim_device(sim)->put_settings(&sim->config.unit, settings);
+    json_t *readings = json_incref(json_object_get(settings, "readings")); /* NULL: none, and left out */
+    json_t *framing = json_incref(json_object_get(settings, "framing"));
+    json_decref(settings);
+    for (unsigned number = 1; number <= sim_units(sim); number++)
+        json_array_append_new(list, json_string(sim->unit[number - 1].name));
+    return json_pack("{s:I, s:o, s:o*, s:o*}", "t_us", (json_int_t)sim_now(sim), "units", list, "framing", framing, "readings",
+                     readings);
+}
+
 const struct command_method unit_methods[] = {
+    {"units", command_units, false},
     {"state", command_state, false},
     {"di.set", command_di_set, true},
     {"reset", command_reset, true},

@@ -46,6 +46,20 @@ char *condition_text(struct condition *condition);
 char *condition_wanted(struct condition *condition);
 char *condition_found(struct condition *condition);
 
+/* ---- What the methods `advance` and `wait` are given and what they answer (docs/CONTROL.md) ---------------------------- */
+
+struct until {
+    struct condition *condition; /* NULL: until the time is over; to be freed */
+    uint64_t end;                /* tick at which it is over, at most SIM_TIME_MAX */
+};
+
+/* Read the parameters of `advance`, or of `wait`, at the present tick. Returns false: refused. */
+bool until_read_advance(struct until *until, struct sim *sim, const json_t *params, struct refusal *refusal);
+bool until_read_wait(struct until *until, struct sim *sim, const json_t *params, struct refusal *refusal);
+
+/* The answer at the present tick. `condition`: NULL: there is none. Returns a new reference, or NULL if out of memory. */
+json_t *until_answer(const struct sim *sim, struct condition *condition, bool holds);
+
 /* The other parts that rooms above use. */
 #include "condition_term.h"
 

@@ -8,25 +8,14 @@
 #include "control_connection.h"
 #include "control_rpc.h"
 #include "control_socket.h"
+#include "trace/trace.h"
 
 #define CONTROL_CLIENTS 64u
 #define CONTROL_WAITS 64u        /* per client */
 #define CONTROL_SUBSCRIPTIONS 16u /* per client */
-#define CONTROL_TRACES 16u       /* at a time */
 
 struct control_call;
 struct subscription;
-struct trace_file;
-struct wire_file;
-
-/* A file begun with trace.start; one of the two. */
-struct control_trace {
-    unsigned number; /* 0: this place is free */
-    unsigned line;
-    char *path;
-    struct trace_file *trace;
-    struct wire_file *wire;
-};
 
 /* A `restore` of a file that goes on between the turns of the loop. */
 struct control_restore {
@@ -69,8 +58,7 @@ struct control {
     struct control_client *clients;
     unsigned client_count;
     struct control_client *ender; /* who asked for shutdown; NULL: none */
-    struct control_trace traces[CONTROL_TRACES];
-    unsigned last_trace;
+    struct trace_set traces;
 };
 
 /* Execute a client's line, or refuse it. Returns false if that is not possible yet: the line is passed again after

@@ -42,23 +42,6 @@ void control_refuse_line(struct control_client *client, int code, const char *te
 
 /* ---- Methods -------------------------------------------------------------------------------------------------------- */
 
-static json_t *units_result(struct control_context *context, struct refusal *refusal)
-{
-    static const char *const none[] = {NULL};
-    if (!params_known(context->request->params, none, refusal))
-        return NULL;
-    struct sim *sim = bus_sim(context->bus);
-    json_t *settings = json_object(), *list = json_array();
-    sim_device(sim)->put_settings(&sim->config.unit, settings);
-    json_t *readings = json_incref(json_object_get(settings, "readings")); /* NULL: none, and left out */
-    json_t *framing = json_incref(json_object_get(settings, "framing"));
-    json_decref(settings);
-    for (unsigned number = 1; number <= sim_units(sim); number++)
-        json_array_append_new(list, json_string(sim->unit[number - 1].name));
-    return json_pack("{s:I, s:i, s:o, s:o*, s:o*}", "t_us", (json_int_t)sim_now(sim), "lines",
-                     (int)context->client->control->lines, "units", list, "framing", framing, "readings", readings);
-}
-
 /* Of one line, or of all: then of none if one of them is being advanced. */
 static bool set_clocks(const struct control_context *context, const char *text, struct refusal *refusal)
 {
@@ -103,7 +86,6 @@ static const struct {
     const char *name;
     control_method *function;
 } methods[] = {
-    {"units", units_result},
     {"clock", set_clock},
     {"shutdown", shut_down},
     {"wait", control_wait},
@@ -136,6 +118,8 @@ static json_t *command(struct control_context *context, struct refusal *refusal)
         json_object_set_new(result, "t_us", json_integer((json_int_t)tick));
     if (strcmp(request->method, "state") == 0)
         json_object_set_new(result, "clock", json_string(context->bus->time.clock_text));
+    if (strcmp(request->method, "units") == 0)
+        json_object_set_new(result, "lines", json_integer(context->client->control->lines));
     return result;
 }
 

@@ -3,12 +3,10 @@
  *
  * An `advance` of a client that subscribes is done in slices, and goes on only when the client has read what it led to: nothing
  * is lost however fast time runs. */
-#include <inttypes.h>
 #include <stdlib.h>
 
 #include "control_inside.h"
 
-#define HOUR UINT64_C(3600000000) /* ticks */
 #define SLICE 50000u              /* ticks: at 16 000 steps/s and motor some 400 KB of events */
 
 /* A request that is not yet answered. */
@@ -48,25 +46,10 @@ static void free_call(struct control_call *call)
     free(call);
 }
 
-static json_t *call_result(const struct control_call *call, bool holds)
-{
-    json_t *result = json_pack("{s:I}", "t_us", (json_int_t)sim_now(&call->bus->sim));
-    struct condition *condition = call->waiter.condition;
-    if (!condition)
-        return result;
-    json_object_set_new(result, "holds", json_boolean(holds));
-    if (!holds) {
-        char *text = condition_text(condition);
-        json_object_set_new(result, "text", json_string(text ? text : ""));
-        free(text);
-    }
-    return result;
-}
-
 static void finish_call(struct control_call *call, bool holds)
 {
     remove_call(call);
-    control_answer(call->client, call->id, call_result(call, holds));
+    control_answer(call->client, call->id, until_answer(&call->bus->sim, call->waiter.condition, holds));
     free_call(call);
 }
 
@@ -126,79 +109,42 @@ void control_time_continue(struct control_client *client)
 
 /* ---- The methods ---------------------------------------------------------------------------------------------------- */
 
-static struct control_call *new_call(struct control_context *context, struct condition *condition, uint64_t limit, bool moves)
+static struct control_call *new_call(struct control_context *context, struct until until, bool moves)
 {
     struct control_call *call = calloc(1, sizeof *call);
     if (!call)
-        return NULL;
+        return condition_free(until.condition), NULL;
     struct control_client *client = context->client;
-    uint64_t now = sim_now(&context->bus->sim);
     call->client = client;
     call->bus = context->bus;
     call->id = json_incref((json_t *)context->request->id);
-    call->limit = limit > SIM_TIME_MAX - now ? SIM_TIME_MAX : now + limit;
+    call->limit = until.end;
     call->moves = moves;
-    call->waiter = (struct bus_waiter){.condition = condition, .limit = call->limit, .done = on_done, .context = call};
+    call->waiter = (struct bus_waiter){.condition = until.condition, .limit = until.end, .done = on_done, .context = call};
     call->next = client->calls;
     client->calls = call;
     if (moves)
         client->advance = call;
     else
         client->waits++;
-    if (condition)
-        condition_arm(condition);
+    if (until.condition)
+        condition_arm(until.condition);
     return call;
-}
-
-static struct condition *read_until(struct control_context *context, struct refusal *refusal)
-{
-    const json_t *until = json_object_get(context->request->params, "until");
-    if (!until) {
-        refuse(refusal, REFUSED_PARAMS, "until: missing: expected a condition, as in {\"motor\": 1, \"state\": \"idle\"}");
-        return NULL;
-    }
-    return condition_read(bus_sim(context->bus), until, refusal);
 }
 
 json_t *control_wait(struct control_context *context, struct refusal *refusal)
 {
-    static const char *const names[] = {"until", "limit", NULL};
-    const json_t *params = context->request->params;
-    uint64_t limit = DEVICE_NEVER;
-    if (!params_known(params, names, refusal) ||
-        (json_object_get(params, "limit") && !param_time(params, "limit", 0, &limit, refusal)))
-        return NULL;
+    struct until until;
     if (context->client->waits == CONTROL_WAITS)
         return refuse(refusal, REFUSED_STATE, "too many waits: expected at most %u per client", CONTROL_WAITS);
-    struct condition *condition = read_until(context, refusal);
-    struct control_call *call = condition ? new_call(context, condition, limit, false) : NULL;
-    if (!call) {
-        condition_free(condition);
+    if (!until_read_wait(&until, bus_sim(context->bus), context->request->params, refusal))
         return NULL;
-    }
+    struct control_call *call = new_call(context, until, false);
+    if (!call)
+        return NULL;
     context->later = true;
     bus_wait(context->bus, &call->waiter);
     return NULL;
-}
-
-/* What `advance` is to do: either of `ticks`, `until`. */
-static bool read_advance(struct control_context *context, struct condition **condition, uint64_t *ticks, struct refusal *refusal)
-{
-    static const char *const names[] = {"ticks", "until", "limit", NULL};
-    const json_t *params = context->request->params;
-    bool until = json_object_get(params, "until") != NULL, given = json_object_get(params, "ticks") != NULL;
-    if (!params_known(params, names, refusal))
-        return false;
-    if (until == given || (given && json_object_get(params, "limit"))) {
-        refuse(refusal, REFUSED_PARAMS, "expected either ticks, a time, or until, a condition, with limit, a time");
-        return false;
-    }
-    if (given)
-        return param_time(params, "ticks", DEVICE_NEVER, ticks, refusal);
-    if (!param_time(params, "limit", HOUR, ticks, refusal))
-        return false;
-    *condition = read_until(context, refusal);
-    return *condition != NULL;
 }
 
 bool control_time_is_moved(const struct control *control, const struct bus *bus)
@@ -211,25 +157,16 @@ bool control_time_is_moved(const struct control *control, const struct bus *bus)
 
 json_t *control_advance(struct control_context *context, struct refusal *refusal)
 {
-    struct condition *condition = NULL;
-    uint64_t ticks;
+    struct until until;
     if (!bus_is_stepped(context->bus))
         return refuse(refusal, REFUSED_STATE, "the clock runs by itself (%s): set it to stepped with clock, or use wait",
                       context->bus->time.clock_text);
     context->again = control_time_is_moved(context->client->control, context->bus);
-    if (context->again || !read_advance(context, &condition, &ticks, refusal))
+    if (context->again || !until_read_advance(&until, bus_sim(context->bus), context->request->params, refusal))
         return NULL;
-    uint64_t left = SIM_TIME_MAX - sim_now(&context->bus->sim);
-    if (left == 0 || (!condition && ticks > left)) {
-        condition_free(condition);
-        return refuse(refusal, REFUSED_STATE, "virtual time ends at %" PRIu64 " us: expected at most %" PRIu64 " us more",
-                      SIM_TIME_MAX, left);
-    }
-    struct control_call *call = new_call(context, condition, ticks, true);
-    if (!call) {
-        condition_free(condition);
+    struct control_call *call = new_call(context, until, true);
+    if (!call)
         return NULL;
-    }
     context->later = true;
     if (!continue_call(call))
         finish_call(call, false);

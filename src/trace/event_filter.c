@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+#include "event_filter.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define ALL_MOTORS 0x1Eu
+#define ALL_UNITS 0x1FFFEu
+
+static bool read_kinds(const json_t *kinds, uint32_t *chosen, struct refusal *refusal)
+{
+    size_t i;
+    const json_t *kind;
+    if (!kinds)
+        return true;
+    if (!json_is_array(kinds) || json_array_size(kinds) == 0) {
+        refuse(refusal, REFUSED_PARAMS, "kinds: expected a list of names, as in [\"motion\", \"outputs\"]");
+        return false;
+    }
+    *chosen = 0;
+    json_array_foreach(kinds, i, kind) {
+        enum watch_kind found = json_is_string(kind) ? watch_kind_named(json_string_value(kind)) : WATCH_KINDS;
+        if (found == WATCH_KINDS) {
+            char list[200] = "";
+            for (unsigned k = 0; k < WATCH_KINDS; k++)
+                snprintf(list + strlen(list), sizeof list - strlen(list), k > 0 ? ", %s" : "%s",
+                         watch_kind_name((enum watch_kind)k));
+            refuse(refusal, REFUSED_PARAMS, "kinds: unknown event kind `%.40s'; kinds are: %s",
+                   json_is_string(kind) ? json_string_value(kind) : "?", list);
+            return false;
+        }
+        *chosen |= WATCH_BIT(found);
+    }
+    return true;
+}
+
+static bool add_motor(struct sim *sim, const json_t *motor, uint32_t *chosen, struct refusal *refusal)
+{
+    const unsigned axes = sim_device(sim)->axes;
+    if (json_is_integer(motor) && json_integer_value(motor) >= 1 && json_integer_value(motor) <= axes) {
+        *chosen |= 1u << (unsigned)json_integer_value(motor);
+        return true;
+    }
+    refuse(refusal, REFUSED_PARAMS, "motor: expected a number from 1 to %u, or a list of them", axes);
+    return false;
+}
+
+static bool add_unit(struct sim *sim, const json_t *unit, uint32_t *chosen, struct refusal *refusal)
+{
+    json_t *params = json_pack("{s:O}", "unit", unit);
+    unsigned number = param_unit(sim, params, refusal);
+    json_decref(params);
+    *chosen |= 1u << number;
+    return number > 0;
+}
+
+/* One or a list of them; left out: all. */
+static bool read_some(struct sim *sim, const json_t *given,
+                      bool (*add)(struct sim *sim, const json_t *one, uint32_t *chosen, struct refusal *refusal),
+                      uint32_t *chosen, struct refusal *refusal)
+{
+    size_t i;
+    const json_t *one;
+    if (!given)
+        return true;
+    *chosen = 0;
+    if (!json_is_array(given) || json_array_size(given) == 0)
+        return add(sim, given, chosen, refusal);
+    json_array_foreach(given, i, one) {
+        if (!add(sim, one, chosen, refusal))
+            return false;
+    }
+    return true;
+}
+
+bool event_filter_read(struct event_filter *filter, struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {"kinds", "motor", "unit", NULL};
+    *filter = (struct event_filter){WATCH_ALL, ALL_MOTORS, ALL_UNITS};
+    return params_known(params, names, refusal) && read_kinds(json_object_get(params, "kinds"), &filter->kinds, refusal) &&
+           read_some(sim, json_object_get(params, "motor"), add_motor, &filter->motors, refusal) &&
+           read_some(sim, json_object_get(params, "unit"), add_unit, &filter->units, refusal);
+}
+
+bool event_filter_passes(const struct event_filter *filter, const struct watch_event *event)
+{
+    return (!event->motor || (filter->motors >> event->motor & 1u)) && (!event->unit || (filter->units >> event->unit & 1u));
+}
