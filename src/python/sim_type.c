@@ -149,7 +149,7 @@ static PyObject *sim_next_event_(struct sim_object *self, PyObject *unused)
     leave(self);
     event = due < event ? due : event;
     if (event == DEVICE_NEVER)
-        Py_RETURN_NONE;
+        return none();
     return PyLong_FromUnsignedLongLong(event > now ? event : now);
 }
 
@@ -180,7 +180,7 @@ static PyObject *sim_advance_(struct sim_object *self, PyObject *value)
     leave(self);
     if (self->raised)
         return NULL;
-    Py_RETURN_NONE;
+    return none();
 }
 
 static PyObject *sim_wait_byte(struct sim_object *self, PyObject *value)
@@ -241,7 +241,7 @@ static PyObject *sim_configure(struct sim_object *self, PyObject *args)
         return NULL;
     handle_host_configure(handle, (struct line_settings){baud, (uint8_t)data_bits, parity[0], (uint8_t)stop_halves});
     leave(self);
-    Py_RETURN_NONE;
+    return none();
 }
 
 /* Take bytes that have come; `each` makes an object of every one, or is NULL: they become a bytes object. */
@@ -315,7 +315,7 @@ static PyObject *sim_break_(struct sim_object *self, PyObject *on)
         return NULL;
     sim_break(&handle->sim, level != 0);
     leave(self);
-    Py_RETURN_NONE;
+    return none();
 }
 
 /* Forget what the host has written and has not set out. Returns the number of bytes. */
@@ -430,14 +430,14 @@ static PyObject *sim_close(struct sim_object *self, PyObject *unused)
 {
     (void)unused;
     if (!self->handle)
-        Py_RETURN_NONE;
+        return none();
     struct handle *handle = enter(self);
     if (!handle)
         return NULL;
     self->handle = NULL;
     leave(self);
     handle_free(handle);
-    Py_RETURN_NONE;
+    return none();
 }
 
 static void sim_dealloc(struct sim_object *self)
