@@ -5,13 +5,15 @@
  *     client_port, client_link                      the port: pty, device or TCP; one client at a time
  *     client_control*, client_rpc                   methods of a control socket
  *     client_watch, client_panel                    the front panel in a terminal
- *     client_job, client_usage                      one command line, and what is wrong with it
+ *     client_find                                   the emulators that are running
+ *     client_job, client_usage, client_help         one command line, what is wrong with it, help for a command
  *
  * Knows text formats and the public headers of the core, and nothing of the emulator. */
 #ifndef RKM04_CLIENT_H
 #define RKM04_CLIENT_H
 
 #include "client_control.h"
+#include "client_help.h"
 #include "client_link.h"
 #include "client_request.h"
 #include "client_usage.h"

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "client_find.h"
 #include "client_watch.h"
 #include "text/text.h"
 
@@ -18,6 +19,14 @@
 
 bool client_job_connect(struct client_job *job)
 {
+    char path[PATH_MAX];
+    const char *named = job->path != NULL ? job->path : getenv("RKM04_CONTROL");
+    if (!job->connected && (named == NULL || named[0] == '\0') && client_rpc_path(NULL, path) && access(path, F_OK) != 0) {
+        const struct client_found *found = client_find_one("--control");
+        if (found == NULL)
+            return false;
+        job->path = found->control;
+    }
     if (!job->connected)
         job->connected = client_rpc_open(&job->rpc, job->path);
     return job->connected;

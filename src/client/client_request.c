@@ -3,9 +3,11 @@
 
 #include <err.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "client_find.h"
 #include "client_link.h"
 #include "client_port.h"
 #include "client_send.h"
@@ -37,6 +39,7 @@ static const struct command {
 struct asking {
     const struct client_request *request;
     const struct command *command;
+    const char *port;
     uint8_t raw[CLIENT_MESSAGE_MAX];
     size_t raw_length;
 };
@@ -99,17 +102,27 @@ static enum exit_status take_words(struct asking *a)
     return STATUS_SUCCESS;
 }
 
+/* --port, else RKM04_PORT of the environment, else the bus of the emulator that is running. NULL: said. */
+static const char *port_of(const struct client_request *request)
+{
+    const char *named = request->port != NULL ? request->port : getenv("RKM04_PORT");
+    if (named != NULL && named[0] != '\0')
+        return named;
+    const struct client_found *found = client_find_one("--port");
+    return found != NULL ? found->port : NULL;
+}
+
 static enum exit_status check(struct asking *a)
 {
     const struct client_request *request = a->request;
     enum exit_status status = take_words(a);
     if (status != STATUS_SUCCESS)
         return status;
-    if (request->port == NULL)
-        return client_usage("no port: expected -p PORT, a serial device, a pseudo terminal or tcp:HOST:PORT");
-    if (!client_port_valid(request->port))
-        return client_usage("--port: expected tcp:HOST:PORT, PORT 1 to 65535, like tcp:localhost:4001, found '%s'",
-                            request->port);
+    a->port = port_of(request);
+    if (a->port == NULL)
+        return STATUS_USAGE;
+    if (!client_port_valid(a->port))
+        return client_usage("--port: expected tcp:HOST:PORT, PORT 1 to 65535, like tcp:localhost:4001, found '%s'", a->port);
     if (a->command->motors == ONE_MOTOR && request->motor == 0)
         return client_usage("%s works with one motor only: -m 1 to 4", a->command->name);
     return STATUS_SUCCESS;
@@ -172,11 +185,11 @@ enum exit_status client_request(const struct client_request *request, const char
     enum exit_status status = check(&a);
     if (status != STATUS_SUCCESS)
         return status;
-    client.port = request->port;
+    client.port = a.port;
     client.framing = request->framing;
     client.node = (uint8_t)request->node;
     client.timeout_ms = request->timeout_ms;
-    client.fd = client_port_open(request->port, request->timeout_ms);
+    client.fd = client_port_open(a.port, request->timeout_ms);
     if (client.fd < 0)
         return STATUS_FAILURE;
     status = run(&a, &client);

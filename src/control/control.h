@@ -3,6 +3,7 @@
 #ifndef RKM04_CONTROL_H
 #define RKM04_CONTROL_H
 
+#include <jansson.h>
 #include <uv.h>
 
 #include "bus/bus.h"
@@ -12,6 +13,7 @@ struct control;
 struct control_calls {
     void (*shutdown)(void *context);               /* a client wants the emulator to end */
     void (*presence)(void *context);               /* a client has come or gone */
+    json_t *(*ready)(void *context);               /* what READY says, as it is now; a new reference, NULL: out of memory */
     void *context;
 };
 

@@ -42,6 +42,14 @@ void control_refuse_line(struct control_client *client, int code, const char *te
 
 /* ---- Methods -------------------------------------------------------------------------------------------------------- */
 
+/* Where everything is: what READY said, as it is now. */
+static json_t *ready_result(struct control_context *context, struct refusal *refusal)
+{
+    static const char *const none[] = {NULL};
+    const struct control_calls *calls = &context->client->control->calls;
+    return params_known(context->request->params, none, refusal) ? calls->ready(calls->context) : NULL;
+}
+
 /* Of one line, or of all: then of none if one of them is being advanced. */
 static bool set_clocks(const struct control_context *context, const char *text, struct refusal *refusal)
 {
@@ -86,6 +94,7 @@ static const struct {
     const char *name;
     control_method *function;
 } methods[] = {
+    {"ready", ready_result},
     {"clock", set_clock},
     {"shutdown", shut_down},
     {"wait", control_wait},

@@ -36,8 +36,11 @@ enum {
 
 static const struct argp_option option_table[] = {
     {NULL, 0, NULL, 0, "A unit on the bus:", 1},
-    {"port", 'p', "PORT", 0, "Serial device, pseudo terminal, or tcp:HOST:PORT", 0},
-    {"node", 'n', "NODE", 0, "Address of the unit, 1 to 16; 0: all units, which do not answer (default 1)", 0},
+    {"port", 'p', "PORT", 0,
+     "Serial device, pseudo terminal, or tcp:HOST:PORT (default: RKM04_PORT of the environment, else the bus of the one emulator "
+     "of yours that is running)", 0},
+    {"node", 'n', "NODE", 0,
+     "Address of the unit, 1 to 16; 0: all units, which do not answer (default: RKM04_NODE of the environment, else 1)", 0},
     {"motor", 'm', "MOTOR", 0, "Motor 1 to 4; 0: all four (default 1)", 0},
     {"framing", KEY_FRAMING, "NAME", 0, "hdlc or plain, as the unit has it (default hdlc)", 0},
     {"message-max", KEY_MESSAGE_MAX, "BYTES", 0, "Longest message the unit takes, 64 to 9216 (default 9216)", 0},
@@ -45,7 +48,8 @@ static const struct argp_option option_table[] = {
      "set, send: a program that overflows the unit's memory is a warning, not a failure", 0},
     {NULL, 0, NULL, 0, "The emulator:", 2},
     {"control", 'c', "PATH", 0,
-     "Its control socket (default: RKM04_CONTROL of the environment, else that of an `rkm04 serve' without --link)", 0},
+     "Its control socket (default: RKM04_CONTROL of the environment, else that of an `rkm04 serve' without --link, else that of "
+     "the one emulator of yours that is running)", 0},
     {"unit", 'u', "UNIT", 0, "The unit, as in 3; 3-2: the second unit with address 3; not needed if there is only one", 0},
     {"line", KEY_LINE, "N", 0, "The bus of an emulator with several, 0 to 255 (default 0)", 0},
     {"limit", KEY_LIMIT, "TIME", 0,
@@ -114,6 +118,8 @@ static const char doc[] =
     "  rkmctl watch\n"
     "  rkmctl di 3=1 && rkmctl wait 'm1.position>=5000' --limit 10s\n"
     "  rkmctl -c bus.control -u 3 fault inject drop direction=to_master count=1\n"
+    "\n"
+    "`rkmctl COMMAND --help' tells more about a command.\n"
     "\n"
     "Exit status: 0 success; 1 failure (refused, memory overflowed, flash not written, port or emulator cannot be reached); 2 "
     "wrong usage; 3 no answer, the condition did not hold, or too few events, in time.";
@@ -205,6 +211,9 @@ static enum exit_status do_request(struct options *options)
     if (job->path != NULL || job->unit != NULL || job->line >= 0 || job->limit != NULL || job->once || job->advance ||
         job->force)
         return client_usage("%s goes to a unit on the bus: expected --port, --node and --motor", options->command);
+    const char *node = getenv("RKM04_NODE");
+    if (options->node == NULL && node != NULL && node[0] != '\0')
+        request->node = take_number("RKM04_NODE", node, 0, RKM04_NODE_MAX);
     request->json = options->json;
     request->words = options->words;
     request->count = options->count;
@@ -252,6 +261,8 @@ int main(int argc, char **argv)
     if (options.words == NULL)
         err(STATUS_FAILURE, "memory");
     argp_err_exit_status = STATUS_USAGE;
+    if (client_help_wanted(argc, argv) && arguments_printed() == STATUS_SUCCESS)
+        return STATUS_SUCCESS;
     arguments_parse(&argp, argc, argv, &options);
     signal(SIGPIPE, SIG_IGN); /* writing says so, too */
     enum exit_status status = run(&options);

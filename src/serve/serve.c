@@ -78,6 +78,12 @@ static void on_failed(void *context)
     uv_stop(&serve->loop);
 }
 
+static json_t *on_ready(void *context)
+{
+    const struct serve *serve = context;
+    return serve_report_json(&serve->options, serve->bus, control_path(serve->control));
+}
+
 /* Somebody has come or gone, or used a device. */
 static void on_presence(void *context)
 {
@@ -230,7 +236,8 @@ static bool default_control(const struct serve *serve, char path[PATH_MAX])
 static bool start_control(struct serve *serve)
 {
     const struct bus_options *options = &serve->options;
-    const struct control_calls control_calls = {.shutdown = on_shutdown, .presence = on_presence, .context = serve};
+    const struct control_calls control_calls = {.shutdown = on_shutdown, .presence = on_presence, .ready = on_ready,
+                                                .context = serve};
     char path[PATH_MAX];
     if (options->no_control)
         return true;

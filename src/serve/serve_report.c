@@ -107,7 +107,7 @@ static json_t *ports_json(const struct bus *bus)
 }
 
 /* With several lines the ports at the top are those of line 0, and `lines` has all. */
-static json_t *ready_json(const struct bus_options *options, struct bus *const *buses, const char *control)
+json_t *serve_report_json(const struct bus_options *options, struct bus *const *buses, const char *control)
 {
     const struct device_kind *kind = options->device.kind;
     json_t *ready = ports_json(buses[0]), *lines = NULL;
@@ -132,7 +132,7 @@ static json_t *ready_json(const struct bus_options *options, struct bus *const *
 
 bool serve_report_ready(const struct bus_options *options, struct bus *const *buses, const char *control)
 {
-    json_t *ready = ready_json(options, buses, control);
+    json_t *ready = serve_report_json(options, buses, control);
     char *text = ready ? json_dumps(ready, JSON_COMPACT) : NULL, *line = NULL;
     char units[NODES_TEXT_SIZE], status[NODES_TEXT_SIZE + 32];
     json_decref(ready);

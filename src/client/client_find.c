@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+#include "client_find.h"
+
+#include <err.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "client_rpc.h"
+
+#define ENDING ".control"
+#define ANSWER_MS 500
+
+/* Is `path` a socket of this user that ends like a control socket? */
+static bool is_candidate(const char *path)
+{
+    struct stat found;
+    size_t length = strlen(path), end = sizeof ENDING - 1;
+    return path[0] == '/' && length > end && strcmp(path + length - end, ENDING) == 0 && stat(path, &found) == 0 &&
+           S_ISSOCK(found.st_mode) && found.st_uid == geteuid();
+}
+
+static bool is_known(const struct client_found *found, size_t count, const char *path)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(found[i].control, path) == 0)
+            return true;
+    return false;
+}
+
+/* Its bus, as --port takes it. */
+static void put_port(char port[PATH_MAX], const json_t *ready)
+{
+    static const char *const members[] = {"link", "pty", "port", "tcp"};
+    port[0] = '\0';
+    if (json_object_get(ready, "lines") != NULL)
+        return;
+    for (size_t i = 0; i < sizeof members / sizeof members[0] && port[0] == '\0'; i++) {
+        const char *value = json_string_value(json_object_get(ready, members[i]));
+        if (value != NULL)
+            snprintf(port, PATH_MAX, "%s%s", strcmp(members[i], "tcp") == 0 ? "tcp:" : "", value);
+    }
+}
+
+/* Ask who listens there. Returns false if it is no emulator, or says nothing. */
+static bool ask(struct client_found *found, const char *path)
+{
+    struct client_rpc rpc = {.quiet = true};
+    json_t *ready = NULL;
+    if (!client_rpc_open(&rpc, path))
+        return false;
+    bool answered = client_rpc_call(&rpc, "ready", NULL, ANSWER_MS, &ready) == CLIENT_RPC_RESULT;
+    client_rpc_close(&rpc);
+    if (answered) {
+        snprintf(found->control, sizeof found->control, "%s", path);
+        put_port(found->port, ready);
+    }
+    json_decref(ready);
+    return answered;
+}
+
+size_t client_find(struct client_found found[CLIENT_FOUND_MAX])
+{
+    FILE *sockets = fopen("/proc/net/unix", "re");
+    char line[PATH_MAX + 128];
+    size_t count = 0;
+    while (sockets != NULL && count < CLIENT_FOUND_MAX && fgets(line, sizeof line, sockets) != NULL) {
+        char *path = strchr(line, '/');
+        if (path == NULL)
+            continue;
+        path[strcspn(path, "\n")] = '\0';
+        if (is_candidate(path) && !is_known(found, count, path))
+            count += ask(&found[count], path);
+    }
+    if (sockets != NULL)
+        fclose(sockets);
+    return count;
+}
+
+const struct client_found *client_find_one(const char *option)
+{
+    static struct client_found found[CLIENT_FOUND_MAX];
+    const bool is_port = strcmp(option, "--port") == 0;
+    size_t count = client_find(found);
+    if (count == 1 && (!is_port || found[0].port[0] != '\0'))
+        return &found[0];
+    if (count == 0)
+        warnx("no emulator of yours is running: expected %s, or `rkm04 serve' beside", option);
+    else
+        warnx("%s: choose one of these with %s:", count > 1 ? "several emulators are running" : "the emulator has several buses",
+              option);
+    for (size_t i = 0; i < count; i++) {
+        if (is_port && found[i].port[0] == '\0')
+            fprintf(stderr, "  a bus of the emulator with the control socket %s\n", found[i].control);
+        else
+            fprintf(stderr, "  %s %s\n", option, is_port ? found[i].port : found[i].control);
+    }
+    return NULL;
+}

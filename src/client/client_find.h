@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* client_find.h: the emulators of this user that are running now: whoever answers on a control socket (/proc/net/unix). */
+#ifndef RKM04_CLIENT_FIND_H
+#define RKM04_CLIENT_FIND_H
+
+#include <limits.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#define CLIENT_FOUND_MAX 32u
+
+struct client_found {
+    char control[PATH_MAX]; /* of the control socket */
+    char port[PATH_MAX];    /* of its bus, as --port takes it; empty: it has several buses, or told none */
+};
+
+/* Find at most CLIENT_FOUND_MAX of them. Returns their number. */
+size_t client_find(struct client_found found[CLIENT_FOUND_MAX]);
+
+/* The one that is meant by who names none. NULL: there is none, or there are several, which is said; `option` is what chooses one
+ * ("--port"). */
+const struct client_found *client_find_one(const char *option);
+
+#endif

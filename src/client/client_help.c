@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+#include "client_help.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define UNIT_OPTIONS "  -p PORT, -n NODE, --timeout=MS, --framing=NAME, --json"
+#define MOTOR_OPTIONS "  -m MOTOR, " UNIT_OPTIONS
+#define EMULATOR_OPTIONS "  -c PATH, --line=N, --timeout=MS, --json"
+
+static const struct help {
+    const char *name, *usage, *text, *options, *examples;
+} commands[] = {
+    {"version", "version", "The unit's version text.", UNIT_OPTIONS, "  rkmctl -p /dev/ttyUSB0 version\n"},
+    {"set", "set TEXT",
+     "Send a program text in one message; it begins to run. The unit's flag and the character it refuses are shown.",
+     "  --allow-overflow\n" MOTOR_OPTIONS, "  rkmctl -m 2 set '\\ S100 V1000 A2000 F5000 R'\n"},
+    {"send", "send FILE",
+     "Check a program file and send it, in several messages if it is long; - is standard input.",
+     "  --allow-overflow, --message-max=BYTES\n" MOTOR_OPTIONS, "  rkmctl -n 3 -m 2 send drill.rks\n"},
+    {"store", "store", "Write the program in memory to flash; the unit starts it at power-up.", MOTOR_OPTIONS,
+     "  rkmctl -m 0 store\n"},
+    {"position", "position", "The position counter; with -m 0 those of all motors.", MOTOR_OPTIONS,
+     "  rkmctl -m 0 --json position\n"},
+    {"command", "command", "The program in memory.", MOTOR_OPTIONS, "  rkmctl -m 1 command\n"},
+    {"table", "table", "Break points of the present motion: (step;speed).", MOTOR_OPTIONS, "  rkmctl -m 1 table\n"},
+    {"progress", "progress", "Steps done in the present motion, and the place of the present command.", MOTOR_OPTIONS,
+     "  rkmctl -m 1 progress\n"},
+    {"raw", "raw HEX", "Send these bytes as a message and show those of the answer.", UNIT_OPTIONS, "  rkmctl raw 04 31\n"},
+    {"state", "state", "Everything about the unit, or about all units.", "  -u UNIT\n" EMULATOR_OPTIONS,
+     "  rkmctl state --json\n"},
+    {"watch", "watch", "The front panel of the units, live.", "  --once\n" EMULATOR_OPTIONS, "  rkmctl watch\n"},
+    {"di", "di [N=LEVEL...]", "The inputs; with N=LEVEL set them.", "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl di 3=1 5=0\n"},
+    {"wait", "wait CONDITION",
+     "Wait until the condition holds. Exit status 3 if it does not within --limit of virtual time.",
+     "  --limit=TIME, --advance, -u UNIT\n" EMULATOR_OPTIONS,
+     "  rkmctl wait 'm1.position>=5000' --limit 10s\n  rkmctl wait --advance idle\n"},
+    {"advance", "advance TIME|CONDITION", "Advance a stepped clock by a time, or until a condition holds.",
+     "  --limit=TIME, -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl advance 250ms\n  rkmctl advance 'm1.idle' --limit 1min\n"},
+    {"events", "events [KIND...] [motor=N] [count=N]",
+     "What happens, a line each. Exit status 3 if there are fewer than count within --limit.",
+     "  --limit=TIME, -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl events motion command motor=1 count=4\n"},
+    {"snapshot", "snapshot NAME|file=PATH", "Save the state of everything, under a name or in a file.",
+     "  --force\n" EMULATOR_OPTIONS, "  rkmctl snapshot homed\n"},
+    {"restore", "restore NAME|file=PATH", "Return to a snapshot.", EMULATOR_OPTIONS, "  rkmctl restore homed\n"},
+    {"reset", "reset", "Power off and on; flash is kept.", "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl reset\n"},
+    {"power", "power on|off", "The power switch.", "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl -u 3 power off\n"},
+    {"switch", "switch NODE [reset]", "The address switch S1; it counts from the next power-up, with reset at once.",
+     "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl switch 5 reset\n"},
+    {"clock", "clock [CLOCK]", "Show or set the clock: real, xN, max, stepped.", EMULATOR_OPTIONS, "  rkmctl clock x100\n"},
+    {"fault", "fault [inject KIND NAME=VALUE...|clear [ID]]", "List injected faults; inject one; clear one or all.",
+     "  -u UNIT\n" EMULATOR_OPTIONS,
+     "  rkmctl fault inject drop direction=to_master count=1\n  rkmctl fault clear\n"},
+    {"plant", "plant [set FILE|none|motor=N NAME=VALUE...]", "Show, attach or change the simulated mechanics.",
+     "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl plant set axis.yaml\n  rkmctl plant motor=1 jammed=true\n"},
+    {"trace", "trace start FILE|stop [NUMBER]", "Begin a trace (.vcd, .csv, .jsonl, .log, .pcapng), or end it.",
+     "  --force\n" EMULATOR_OPTIONS, "  rkmctl trace start run.vcd\n"},
+    {"call", "call METHOD [JSON|NAME=VALUE...]", "Any other method of the control socket.", EMULATOR_OPTIONS,
+     "  rkmctl call units\n"},
+    {"shutdown", "shutdown", "End the emulator.", EMULATOR_OPTIONS, "  rkmctl shutdown\n"},
+};
+
+#define COMMANDS (sizeof commands / sizeof commands[0])
+
+const char *client_help_name(unsigned i)
+{
+    return i < COMMANDS ? commands[i].name : NULL;
+}
+
+bool client_help_show(const char *command)
+{
+    for (size_t i = 0; i < COMMANDS; i++) {
+        const struct help *help = &commands[i];
+        if (strcmp(help->name, command) != 0)
+            continue;
+        printf("Usage: rkmctl [OPTION...] %s\n%s\n\nOptions (`rkmctl --help' describes them):\n%s\n\nExamples:\n%s", help->usage,
+               help->text, help->options, help->examples);
+        return true;
+    }
+    return false;
+}
+
+bool client_help_wanted(int argc, char **argv)
+{
+    const char *command = NULL;
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (command != NULL && (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-?") == 0))
+            return client_help_show(command);
+        for (size_t k = 0; command == NULL && k < COMMANDS; k++)
+            if (strcmp(argv[i], commands[k].name) == 0)
+                command = commands[k].name;
+    }
+    return false;
+}
