@@ -253,6 +253,13 @@ class Bus:
                  trace: Optional[TracebackType]) -> None:
         self.close()
 
+    @property
+    def simulation(self) -> _sim.Sim:
+        """The extension's object of a bus in this process. Raises TypeError for one behind a control socket."""
+        if not isinstance(self._transport, InProcess):
+            raise TypeError(f"expected a bus in this process, as rkm04.Bus() makes it, found {self!r}")
+        return self._transport.sim
+
     # ---- Units ----
 
     @property

@@ -72,8 +72,8 @@ json_t *handle_call(struct handle *handle, const char *method, const json_t *par
 /* Let time pass up to `tick`. Returns false if it was paused before. */
 bool handle_advance(struct handle *handle, uint64_t tick);
 
-/* The same, but no further than to where a byte that the host can read has come. */
-bool handle_advance_to_byte(struct handle *handle, uint64_t tick);
+/* The same, but no further than to where the host has `count` bytes to read, or one of them is `stop` (-1: none is meant). */
+bool handle_advance_to_bytes(struct handle *handle, uint64_t tick, size_t count, int stop);
 
 /* Let time pass until the condition holds, at most up to `end`. *holds: it does. Returns false if it was paused before. */
 bool handle_advance_until(struct handle *handle, struct condition *condition, uint64_t end, bool *holds);

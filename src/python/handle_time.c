@@ -36,17 +36,27 @@ bool handle_advance(struct handle *handle, uint64_t tick)
     return true;
 }
 
-bool handle_advance_to_byte(struct handle *handle, uint64_t tick)
+/* Has the host `count` bytes, or `stop` among those from *seen on? *seen becomes the number of those looked at. */
+static bool has_bytes(const struct handle_host *host, size_t count, size_t *seen, int stop)
+{
+    for (; stop >= 0 && *seen < host->count; (*seen)++)
+        if (host->heard[(host->head + *seen) % host->room].byte == stop)
+            return true;
+    return host->count >= count;
+}
+
+bool handle_advance_to_bytes(struct handle *handle, uint64_t tick, size_t count, int stop)
 {
     struct sim *sim = &handle->sim;
+    size_t seen = 0;
     tick = earlier(tick, SIM_TIME_MAX);
     sim_settle(sim);
-    while (handle->host.count == 0 && sim_now(sim) < tick) {
+    while (!has_bytes(&handle->host, count, &seen, stop) && sim_now(sim) < tick) {
         uint64_t now = sim_now(sim), next = earlier(sim_due(sim), faults_next(&sim->faults));
         next = earlier(next > now ? next : now + 1, slice_end(sim));
         sim_advance(sim, earlier(tick, next));
         handle_host_settle(handle);
-        if (handle->host.count == 0 && is_paused(handle))
+        if (is_paused(handle))
             return false;
     }
     return true;

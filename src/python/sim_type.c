@@ -183,14 +183,19 @@ static PyObject *sim_advance_(struct sim_object *self, PyObject *value)
     return none();
 }
 
-static PyObject *sim_wait_byte(struct sim_object *self, PyObject *value)
+static PyObject *sim_wait_byte(struct sim_object *self, PyObject *args)
 {
     uint64_t tick;
+    PyObject *value;
+    Py_ssize_t count = 1;
+    int stop = -1;
+    if (!PyArg_ParseTuple(args, "O|ni:wait_byte", &value, &count, &stop))
+        return NULL;
     struct handle *handle = read_tick(value, &tick) ? enter(self) : NULL;
     if (!handle)
         return NULL;
     release(self);
-    handle_advance_to_byte(handle, tick);
+    handle_advance_to_bytes(handle, tick, count > 0 ? (size_t)count : 0, stop);
     take_back(self);
     bool heard = handle->host.count > 0;
     leave(self);
@@ -388,7 +393,7 @@ static PyObject *sim_hear_message(struct sim_object *self, PyObject *value)
     }
     const struct rkm04_framing *framing = sim_device(&handle->sim)->framing(&handle->sim.config.unit);
     release(self);
-    while (!whole && handle_advance_to_byte(handle, tick) && handle_host_read(handle, &byte, 1) > 0)
+    while (!whole && handle_advance_to_bytes(handle, tick, 1, -1) && handle_host_read(handle, &byte, 1) > 0)
         whole = framing->receive(&receiver, byte.byte, byte.tick, message, ANSWER_ROOM);
     take_back(self);
     leave(self);
@@ -479,7 +484,8 @@ static PyMethodDef sim_methods[] = {
     METHOD("now", sim_now_, METH_NOARGS, "now(): present tick, us."),
     METHOD("next_event", sim_next_event_, METH_NOARGS, "next_event(): tick before which nothing happens, or None."),
     METHOD("advance", sim_advance_, METH_O, "advance(tick): let time pass up to the tick."),
-    METHOD("wait_byte", sim_wait_byte, METH_O, "wait_byte(tick): let time pass until the host has a byte, up to the tick."),
+    METHOD("wait_byte", sim_wait_byte, METH_VARARGS,
+           "wait_byte(tick, count=1, stop=-1): let time pass until the host has so many bytes, or the byte stop, up to the tick."),
     METHOD("write", sim_write, METH_O, "write(data): the host sends; returns the tick at which it has passed."),
     METHOD("configure", sim_configure, METH_VARARGS, "configure(baud, data_bits, parity, stop_halves): the host's port."),
     METHOD("read", sim_read, METH_O, "read(most): bytes that have come; -1: all."),
