@@ -75,6 +75,17 @@ def _sender(event: Dict[str, Any]) -> Optional[int]:
     return node or None
 
 
+class Count(int):
+    """A number of exchanges, which knows what was counted, for assertions that fail."""
+
+    what: str
+    """What was looked for, in words."""
+    found: "Dialogue"
+    """The exchanges that were found."""
+    dialogue: "Dialogue"
+    """All exchanges at that time."""
+
+
 class Dialogue(Base):
     """A list of exchanges, in the order in which they began. That of a bus grows with it; what its methods return does not."""
 
@@ -82,6 +93,8 @@ class Dialogue(Base):
         self._pull = pull
         self._exchanges: List[Exchange] = list(exchanges)
         self._open: List[Exchange] = []
+        self._sought = ""
+        self._among: Optional[Dialogue] = None
 
     def _update(self) -> List[Exchange]:
         if self._pull is not None:
@@ -134,19 +147,28 @@ class Dialogue(Base):
         The result is empty, and so false, if there are none: `assert bus.dialogue.sent("Version")`.
         """
         number = None if kind is None else number_of(kind)
-        return Dialogue(exchanges=[
-            exchange for exchange in self._update()
+        all_of_it = self._update()
+        found = Dialogue(exchanges=[
+            exchange for exchange in all_of_it
             if exchange.request is not None
             and (number is None or exchange.request.number == number)
             and (motor is None or exchange.request.motor == motor)
             and (text is None or exchange.request.text == text)
             and (node is None or exchange.node == node)
         ])
+        sought = {"motor": motor, "text": text, "node": node}
+        words = ["any request" if kind is None else f"{kind!r}"]
+        found._sought = ", ".join(words + [f"{name}={value!r}" for name, value in sought.items() if value is not None])
+        found._among = Dialogue(exchanges=all_of_it)
+        return found
 
     def count(self, kind: Any = None, *, motor: Optional[int] = None, text: Optional[str] = None,
-              node: Optional[int] = None) -> int:
+              node: Optional[int] = None) -> Count:
         """How many exchanges `sent` finds."""
-        return len(self.sent(kind, motor=motor, text=text, node=node))
+        found = self.sent(kind, motor=motor, text=text, node=node)
+        count = Count(len(found))
+        count.what, count.found, count.dialogue = found._sought, found, found._among or found
+        return count
 
     def between(self, first: Time, last: Time) -> "Dialogue":
         """The exchanges that began at first <= tick < last, us of the bus or texts as in "1.5s"."""
@@ -172,7 +194,18 @@ class Dialogue(Base):
         """All of it in words, a line an exchange."""
         return "\n".join(repr(exchange)[1:-1] for exchange in self._update())
 
+    def __eq__(self, other: object) -> bool:
+        """Equal to a list of texts if these are the exchanges in words."""
+        if isinstance(other, list) and all(isinstance(each, str) for each in other):
+            return [exchange.words for exchange in self] == other
+        return list(self) == list(other) if isinstance(other, (Dialogue, list)) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __repr__(self) -> str:
+        if not self and self._among is not None:
+            last = "; ".join(exchange.words for exchange in self._among[-3:]) or "nothing"
+            return f"<no exchange with {self._sought}; the last of {len(self._among)}: {last}>"
         if len(self) > 10:
             return f"<dialogue of {len(self)} exchanges>"
         return f"<dialogue\n{self.words}>" if self else "<dialogue: nothing>"

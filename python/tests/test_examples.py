@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""The example in examples/python and what docs/PYTHON.md shows, run as a user runs them."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "examples" / "python"
+
+
+def run_pytest(folder, *arguments, **environment):
+    """Run a pytest of its own. Returns (exit status, output)."""
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--rootdir", str(folder), *arguments]
+    done = subprocess.run(command, cwd=folder, env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **environment},
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=240)
+    return done.returncode, done.stdout
+
+
+def test_suite_in_virtual_time():
+    status, output = run_pytest(EXAMPLES, "-v")
+    assert status == 0, output
+    assert "test_axis_async.py::test_a_motion PASSED" in output
+    assert "test_exploration.py::test_move_to PASSED" in output
+
+
+def test_exploration_shows_that_a_retry_executes_a_program_twice():
+    status, output = run_pytest(EXAMPLES, "explore_move_by.py")
+    assert status == 1, output
+    assert "  - answer 1 (2 Set Command m1 -> flag 0) is not sent" in output
+    line = re.search(r"RKM04_REPLAY='(.*)' pytest 'explore_move_by.py::test_move_by'", output)
+    status, output = run_pytest(EXAMPLES, "explore_move_by.py::test_move_by", RKM04_REPLAY=line[1])
+    assert status == 1 and "assert 600 == 300" in output
+
+
+def blocks():
+    """(name, text) of the Python files that docs/PYTHON.md shows."""
+    text = (ROOT / "docs" / "PYTHON.md").read_text()
+    return re.findall(r"<!-- test: (\S+) -->\n+```python\n(.*?)```", text, re.S)
+
+
+@pytest.mark.parametrize("name, text", blocks())
+def test_what_the_document_shows(tmp_path, name, text):
+    (tmp_path / name).write_text(text)
+    (tmp_path / "axis.yaml").write_text((EXAMPLES / "axis.plant.yaml").read_text())
+    for file in EXAMPLES.glob("rkm_*.py"):
+        (tmp_path / file.name).write_text(file.read_text())
+    if name.startswith("test_"):
+        status, output = run_pytest(tmp_path, name)
+        assert status == 0, output
+    else:
+        subprocess.run([sys.executable, name], cwd=tmp_path, check=True, timeout=120)
