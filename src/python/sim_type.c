@@ -485,7 +485,7 @@ static PyMethodDef sim_methods[] = {
     METHOD("next_event", sim_next_event_, METH_NOARGS, "next_event(): tick before which nothing happens, or None."),
     METHOD("advance", sim_advance_, METH_O, "advance(tick): let time pass up to the tick."),
     METHOD("wait_byte", sim_wait_byte, METH_VARARGS,
-           "wait_byte(tick, count=1, stop=-1): let time pass until the host has so many bytes, or the byte stop, up to the tick."),
+           "wait_byte(tick, count=1, stop=-1): let time pass until the host has so many bytes, or that one, up to the tick."),
     METHOD("write", sim_write, METH_O, "write(data): the host sends; returns the tick at which it has passed."),
     METHOD("configure", sim_configure, METH_VARARGS, "configure(baud, data_bits, parity, stop_halves): the host's port."),
     METHOD("read", sim_read, METH_O, "read(most): bytes that have come; -1: all."),
