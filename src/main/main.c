@@ -12,7 +12,7 @@
 #include "run/run.h"
 #include "serve/serve.h"
 
-#define NAMES "serve, exec, check, fmt, test, replay, plot or devices"
+#define NAMES "serve, exec, check, fmt, explain, estimate, test, replay, plot or devices"
 
 const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
@@ -21,6 +21,8 @@ static const char help[] =
     "  or:  rkm04 exec [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 check [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 fmt [OPTION...] FILE...\n"
+    "  or:  rkm04 explain [OPTION...] [M=]FILE...\n"
+    "  or:  rkm04 estimate [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 test [OPTION...] SCENARIO...\n"
     "  or:  rkm04 replay [OPTION...] RECORDING\n"
     "  or:  rkm04 plot [OPTION...] [M=]FILE...\n"
@@ -31,6 +33,8 @@ static const char help[] =
     "  exec       run programs in virtual time, as fast as the machine can\n"
     "  check      report what is wrong with programs\n"
     "  fmt        lay out programs\n"
+    "  explain    tell in words what programs do\n"
+    "  estimate   tell how long programs take, how far and how fast they move\n"
     "  test       run scenarios in virtual time and report which pass\n"
     "  replay     repeat a recording of `serve' or `test' and compare\n"
     "  plot       draw speed and position over time\n"
@@ -59,6 +63,8 @@ static const struct {
     {"exec", "rkm04 exec", exec_main},
     {"check", "rkm04 check", check_main},
     {"fmt", "rkm04 fmt", fmt_main},
+    {"explain", "rkm04 explain", explain_main},
+    {"estimate", "rkm04 estimate", estimate_main},
     {"test", "rkm04 test", test_main},
     {"replay", "rkm04 replay", replay_main},
     {"plot", "rkm04 plot", plot_main},

@@ -135,7 +135,7 @@ static bool run_check(struct check *check)
         if (!look_at(check, &check->motors[i]))
             return false;
     check_outputs(check);
-    if (!check_variables(check))
+    if (!check_variables(check) || !check_plant(check))
         return false;
     check_nolint(check);
     return !check->found->no_memory;

@@ -5,6 +5,7 @@
 #define RKM04_PROGRAM_TOOLS_CHECK_H
 
 #include <stdint.h>
+#include <stdio.h>
 
 #include <rkm04/readings.h>
 
@@ -37,6 +38,7 @@
     ROW(CHECK_UNUSED_GUARD, "unused-guard", "M or N that no motion uses") \
     ROW(CHECK_USED_GUARD, "used-guard", "M or N that guards only one of the passes of a loop") \
     ROW(CHECK_OUTPUT_STAYS, "output-stays", "an output that is set and never cleared") \
+    ROW(CHECK_INPUT_NEVER_COMES, "input-never-comes", "a wait for an input that the plant never brings") \
     ROW(CHECK_VARIABLE_NEVER_SET, "variable-never-set", "a wait for a variable that no motor sets") \
     ROW(CHECK_DEADLOCK, "deadlock", "motors that wait for each other") \
     ROW(CHECK_APOSTROPHE, "apostrophe", "a typographic apostrophe as a call") \
@@ -59,6 +61,10 @@ const char *check_warning_names(void);
 struct check_options {
     uint64_t off;                   /* bit w: warning w is switched off */
     struct rkm04_readings readings; /* of the unit; all 0: as specified */
+    const char *plant;              /* YAML text of what the motors move (docs/PLANT.md); NULL: none */
+    size_t plant_length;
+    const char *plant_name;         /* for messages about it, to `errors` */
+    FILE *errors;
 };
 
 /* Check sources that belong together: the programs of one unit, each motor's read in order. A single program is one source for

@@ -47,6 +47,9 @@ void check_guards(struct check *check, const struct check_motor *motor);
 void check_outputs(struct check *check);
 bool check_variables(struct check *check);
 
+/* check_plant.c: run the programs with the plant. */
+bool check_plant(struct check *check);
+
 /* check_nolint.c: drop what a comment in the text has switched off. */
 void check_nolint(struct check *check);
 

@@ -10,13 +10,14 @@
 #include "program_tools.h"
 #include "tool_files.h"
 
-enum option_key { KEY_NO_WARN = 256, KEY_WERROR, KEY_FORMAT, KEY_READINGS, KEY_LIST };
+enum option_key { KEY_NO_WARN = 256, KEY_WERROR, KEY_FORMAT, KEY_READINGS, KEY_LIST, KEY_PLANT };
 
 struct options {
     struct tool_files files;
     struct check_options check;
     readings_set named;
     enum check_format format;
+    const char *plant;
     bool werror, list;
 };
 
@@ -25,6 +26,7 @@ static const struct argp_option option_table[] = {
     {"werror", KEY_WERROR, NULL, 0, "Exit status 1 also for warnings", 0},
     {"format", KEY_FORMAT, "FORMAT", 0, "Print as " CHECK_FORMAT_NAMES, 0},
     {"json", 'j', NULL, 0, "The same as --format json", 0},
+    {"plant", KEY_PLANT, "FILE", 0, "What the motors move (docs/PLANT.md): waits for its inputs are looked at", 0},
     {"list", KEY_LIST, NULL, 0, "List the warnings and what they say", 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {0},
@@ -85,6 +87,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case 'j':
         options->format = CHECK_JSON;
         return 0;
+    case KEY_PLANT:
+        options->plant = text;
+        return 0;
     case KEY_LIST:
         options->list = true;
         return 0;
@@ -117,10 +122,11 @@ static bool check_some(struct check_printer *printer, const struct options *opti
     struct diagnostics found;
     bool well = check_programs(sources, count, &options->check, &found);
     check_print(printer, sources, &found);
+    const bool bad_plant = found.bad_plant;
     diagnostics_free(&found);
     if (!well)
         fputs("rkm04 check: out of memory\n", stderr);
-    return well;
+    return well && !bad_plant;
 }
 
 /* Check each file without a motor by itself, then those with one together. Returns false if something could not be done. */
@@ -148,11 +154,28 @@ static bool check_files(struct check_printer *printer, struct options *options)
     return well;
 }
 
+/* Read the file of --plant. Returns false if that is not possible, which is reported. */
+static bool read_plant(struct options *options, struct program_text *plant)
+{
+    *plant = (struct program_text){0};
+    if (options->plant == NULL)
+        return true;
+    const char *wrong = program_text_read_raw(plant, options->plant);
+    if (wrong != NULL)
+        fprintf(stderr, "rkm04 check: cannot read %s: %s\n", options->plant, wrong);
+    options->check.plant = plant->text;
+    options->check.plant_length = plant->length;
+    options->check.plant_name = options->plant;
+    options->check.errors = stderr;
+    return wrong == NULL;
+}
+
 int check_main(int argc, char **argv)
 {
     static const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, NULL, NULL, NULL};
     struct options options = {.format = CHECK_TEXT};
     struct check_printer printer;
+    struct program_text plant;
     tool_files_begin(&options.files, argc);
     arguments_parse(&argp, argc, argv, &options);
     if (options.list) {
@@ -160,8 +183,9 @@ int check_main(int argc, char **argv)
         return print_list();
     }
     check_print_begin(&printer, options.format, stdout);
-    bool well = check_files(&printer, &options);
+    bool well = read_plant(&options, &plant) && check_files(&printer, &options);
     well = check_print_end(&printer) && well;
+    program_text_free(&plant);
     tool_files_end(&options.files);
     if (arguments_printed() != 0)
         return STATUS_FAILURE;

@@ -33,6 +33,7 @@ struct diagnostics {
     struct diagnostic *list;
     size_t count;
     size_t errors, warnings; /* those beyond DIAGNOSTICS_MAX included */
+    bool bad_plant;          /* the plant given has an error, which has been reported */
     size_t room;             /* inside */
     bool no_memory;          /* inside: a diagnostic is missing */
 };

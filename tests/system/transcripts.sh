@@ -39,7 +39,7 @@ manual() {
 test_the_manual_pages_have_every_option() {
     local page option file
     for page in 'rkm04 serve' 'rkm04 exec' 'rkm04 test' 'rkm04 replay' 'rkm04 plot' \
-        'rkm04 check' 'rkm04 fmt' 'rkmctl'; do
+        'rkm04 check' 'rkm04 fmt' 'rkm04 explain' 'rkm04 estimate' 'rkmctl'; do
         file=${page// /-} # rkm04-check(1), or all in rkm04(1)
         [[ -e $source/docs/man/$file.1 ]] || file=${page%% *}
         # shellcheck disable=SC2086
