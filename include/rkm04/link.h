@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* rkm04/link.h: framings, bytes on the line <-> addressed messages (specification section 4).
  *
- * A framing is one const record; the unit and a master use the same one. Adding a framing takes one file and one row in
+ * A framing is one const record; the unit and a host use the same one. Adding a framing takes one file and one row in
  * rkm04_framings[]. Times are ticks of 1 us. */
 #ifndef RKM04_LINK_H
 #define RKM04_LINK_H

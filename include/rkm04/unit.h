@@ -301,7 +301,7 @@ uint16_t rkm04_variables(const struct rkm04_unit *unit); /* VAR 80 in bit 0 */
 struct rkm04_counters rkm04_counters(const struct rkm04_unit *unit);
 
 /* The same as message 2 (Set Command) without a line: store a text for motor '0'..'4' at the present tick. For programs
- * run without a master. Must not be called while an answer is going out on the line. Returns the flag 0..3 of P1 and, with 1
+ * run without a host. Must not be called while an answer is going out on the line. Returns the flag 0..3 of P1 and, with 1
  * and 2, the character in *character (may be NULL). */
 int rkm04_set_command(struct rkm04_unit *unit, char motor, const void *text, size_t length, uint8_t *character);
 

@@ -55,7 +55,7 @@ static void watch_for_log(struct bus *bus)
     bus->news = (struct watcher){
         .kinds = WATCH_BIT(WATCH_FAULT) | WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_PLANT) | WATCH_BIT(WATCH_INJECTED) |
                  (bus->coverage ? WATCH_BIT(WATCH_MESSAGE) : 0),
-        .see = on_event,
+        .on_event = on_event,
         .context = bus,
     };
     bus->time.own_kinds = bus->news.kinds;
@@ -144,7 +144,7 @@ static void on_take(void *context, const uint8_t *bytes, size_t length, uint64_t
     bus_time_note_bytes(&bus->time);
     if (bus->taken < tick)
         bus->taken = tick;
-    sim_take(&bus->sim, bytes, length, bus->taken);
+    sim_queue_bytes(&bus->sim, bytes, length, bus->taken);
 }
 
 static void on_break(void *context, bool on)

@@ -5,7 +5,7 @@
  *     m1.state=idle       m1.led=blink   m1.fault!=none    words; = !=
  *     m1.idle             idle           powered=0         one motor; all motors of the unit; its power
  *     do3=1               di08=0         var80=1           binary values
- *     message             message=4      master.message=2  one that passes, of any number; who sent it: master, unit, u3
+ *     message             message=4      host.message=2  one that passes, of any number; who sent it: host, unit, u3
  *     dropped                                              a frame that was dropped
  *     t>=2.5s                                              the line's time, with its unit or in us
  *     u3.m1.position=0    u3-2.do1=1                       of unit 3; of the second one with address 3

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* client_link.h: one request and its answer over an open line, as the master (node 0, specification section 4). */
+/* client_link.h: one request and its answer over an open line, as the host (node 0, specification section 4). */
 #ifndef RKM04_CLIENT_LINK_H
 #define RKM04_CLIENT_LINK_H
 

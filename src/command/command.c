@@ -10,20 +10,20 @@
 
 static const struct command_method *const tables[] = {unit_methods, plant_methods, fault_methods};
 
-static const struct command_method *find_in(const struct command_method *method, const char *name)
+static const struct command_method *find_in_table(const struct command_method *method, const char *name)
 {
     while (method->name && strcmp(method->name, name) != 0)
         method++;
     return method->name ? method : NULL;
 }
 
-static const struct command_method *find(const struct sim *sim, const char *name)
+static const struct command_method *find_method(const struct sim *sim, const char *name)
 {
     const struct command_method *method = NULL;
     for (size_t i = 0; i < sizeof tables / sizeof tables[0] && !method; i++)
-        method = find_in(tables[i], name);
+        method = find_in_table(tables[i], name);
     for (size_t i = 0; i < SIM_COMMAND_TABLES && sim->commands[i] && !method; i++)
-        method = find_in(sim->commands[i], name);
+        method = find_in_table(sim->commands[i], name);
     return method;
 }
 
@@ -38,20 +38,20 @@ bool command_attach(struct sim *sim, const struct command_method *methods)
     return false;
 }
 
-bool sim_command_known(const struct sim *sim, const char *method)
+bool sim_has_command(const struct sim *sim, const char *method)
 {
-    return find(sim, method) != NULL;
+    return find_method(sim, method) != NULL;
 }
 
 json_t *sim_command(struct sim *sim, const char *name, const json_t *params, struct refusal *refusal)
 {
-    const struct command_method *method = find(sim, name);
+    const struct command_method *method = find_method(sim, name);
     if (!method)
         return refuse(refusal, REFUSED_METHOD, "there is no method `%s'", name);
     if (params && !json_is_object(params))
         return refuse(refusal, REFUSED_PARAMS, "params: expected an object, as in {\"unit\": 1}");
     if (method->changes)
-        sim_settle(sim);
+        sim_finish_tick(sim);
     uint64_t now = sim_now(sim);
     json_t *result = method->function(sim, params, refusal);
     if (result && method->changes && sim->journal)

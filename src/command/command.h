@@ -43,7 +43,7 @@ bool command_attach(struct sim *sim, const struct command_method *methods);
 json_t *sim_command(struct sim *sim, const char *method, const json_t *params, struct refusal *refusal);
 
 /* Does `sim` know such a method? */
-bool sim_command_known(const struct sim *sim, const char *method);
+bool sim_has_command(const struct sim *sim, const char *method);
 
 /* ---- For the functions behind it -------------------------------------------------------------------------------------- */
 

@@ -7,7 +7,7 @@
 #include "unit_state.h"
 
 /* "1", "01", … -> 1..inputs; 0: no input. */
-static unsigned input_named(const char *name, unsigned inputs)
+static unsigned find_input(const char *name, unsigned inputs)
 {
     size_t length = strlen(name);
     unsigned number = 0;
@@ -19,7 +19,7 @@ static unsigned input_named(const char *name, unsigned inputs)
 }
 
 /* 0, 1, false, true -> 0, 1; -1: none of these. */
-static int level_of(const json_t *value)
+static int read_level(const json_t *value)
 {
     if (json_is_boolean(value))
         return json_is_true(value);
@@ -46,8 +46,8 @@ static bool read_inputs(const json_t *di, unsigned inputs, uint32_t *given, uint
     const char *name;
     const json_t *value;
     json_object_foreach((json_t *)di, name, value) {
-        unsigned input = input_named(name, inputs);
-        int level = level_of(value);
+        unsigned input = find_input(name, inputs);
+        int level = read_level(value);
         if (input == 0) {
             refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': expected 1 to %u", name, inputs);
             return false;

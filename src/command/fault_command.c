@@ -12,33 +12,33 @@ enum { UNIT = 1, DIRECTION = 2, DURATION = 4, EVERY = 8 };
 
 typedef bool read_function(const json_t *params, struct fault *fault, struct refusal *refusal);
 
-static read_function read_nothing, read_mask, read_byte, read_delay, read_bytes, read_flash, read_power, read_input;
+static read_function read_no_members, read_mask, read_byte, read_delay, read_bytes, read_flash, read_power, read_input;
 
 static const struct kind {
     unsigned takes;
     const char *own[3]; /* further parameters */
     read_function *read;
 } kinds[FAULT_KINDS] = {
-    [FAULT_DROP] = {UNIT | DIRECTION, {NULL}, read_nothing},
+    [FAULT_DROP] = {UNIT | DIRECTION, {NULL}, read_no_members},
     [FAULT_FLIP] = {UNIT | DIRECTION, {"mask"}, read_mask},
-    [FAULT_DUPLICATE] = {UNIT | DIRECTION, {NULL}, read_nothing},
+    [FAULT_DUPLICATE] = {UNIT | DIRECTION, {NULL}, read_no_members},
     [FAULT_INSERT] = {UNIT | DIRECTION, {"byte"}, read_byte},
-    [FAULT_ECHO] = {0, {NULL}, read_nothing},
+    [FAULT_ECHO] = {0, {NULL}, read_no_members},
     [FAULT_DELAY] = {UNIT, {"delay"}, read_delay},
-    [FAULT_NO_ANSWER] = {UNIT, {NULL}, read_nothing},
-    [FAULT_WRONG_FCS] = {UNIT, {NULL}, read_nothing},
+    [FAULT_NO_ANSWER] = {UNIT, {NULL}, read_no_members},
+    [FAULT_WRONG_FCS] = {UNIT, {NULL}, read_no_members},
     [FAULT_CUT] = {UNIT, {"bytes"}, read_bytes},
     [FAULT_FLASH] = {UNIT, {"operation", "torn"}, read_flash},
     [FAULT_POWER] = {UNIT | DURATION, {"operation"}, read_power},
-    [FAULT_BREAK] = {DURATION | EVERY, {NULL}, read_nothing},
-    [FAULT_UNPLUGGED] = {DURATION | EVERY, {NULL}, read_nothing},
-    [FAULT_CABLE] = {UNIT | DURATION | EVERY, {NULL}, read_nothing},
+    [FAULT_BREAK] = {DURATION | EVERY, {NULL}, read_no_members},
+    [FAULT_UNPLUGGED] = {DURATION | EVERY, {NULL}, read_no_members},
+    [FAULT_CABLE] = {UNIT | DURATION | EVERY, {NULL}, read_no_members},
     [FAULT_INPUT] = {UNIT | DURATION | EVERY, {"input", "level"}, read_input},
 };
 
 /* ---- Reading: one kind's own ---------------------------------------------------------------------------------------- */
 
-static bool read_nothing(const json_t *params, struct fault *fault, struct refusal *refusal)
+static bool read_no_members(const json_t *params, struct fault *fault, struct refusal *refusal)
 {
     (void)params, (void)fault, (void)refusal;
     return true;
@@ -83,7 +83,7 @@ static bool read_bytes(const json_t *params, struct fault *fault, struct refusal
 }
 
 /* A truth value: true, false, 1, 0. `missing` < 0: it must be given. */
-static bool read_truth(const json_t *params, const char *name, int missing, bool *truth, struct refusal *refusal)
+static bool read_boolean(const json_t *params, const char *name, int missing, bool *truth, struct refusal *refusal)
 {
     const json_t *value = json_object_get(params, name);
     int64_t number = json_is_boolean(value) ? json_is_true(value) : json_is_integer(value) ? json_integer_value(value) : -1;
@@ -106,7 +106,7 @@ static bool read_flash(const json_t *params, struct fault *fault, struct refusal
         {"write", FAULT_ERASE | FAULT_PROGRAM}, {"erase", FAULT_ERASE}, {"program", FAULT_PROGRAM}, {"read", FAULT_READ},
     };
     const char *name = "write";
-    if (!read_truth(params, "torn", 0, &fault->torn, refusal))
+    if (!read_boolean(params, "torn", 0, &fault->torn, refusal))
         return false;
     if (json_object_get(params, "operation") && !(name = param_string(params, "operation", refusal)))
         return false;
@@ -133,7 +133,7 @@ static bool read_power(const json_t *params, struct fault *fault, struct refusal
 
 static bool read_input(const json_t *params, struct fault *fault, struct refusal *refusal)
 {
-    return read_truth(params, "level", -1, &fault->level, refusal);
+    return read_boolean(params, "level", -1, &fault->level, refusal);
 }
 
 /* ---- Reading: what several kinds have ------------------------------------------------------------------------------- */
@@ -187,7 +187,7 @@ static bool read_probability(const json_t *params, struct fault *fault, struct r
     return true;
 }
 
-static bool read_occasions(const json_t *params, struct fault *fault, struct refusal *refusal)
+static bool read_opportunities(const json_t *params, struct fault *fault, struct refusal *refusal)
 {
     int64_t count, skip;
     if (!param_integer_or(params, "count", 1, COUNT_MAX, 0, &count, refusal) ||
@@ -215,7 +215,7 @@ static bool read_window(const struct sim *sim, const json_t *params, struct faul
     return true;
 }
 
-static bool read_spell(const json_t *params, unsigned takes, struct fault *fault, struct refusal *refusal)
+static bool read_interval(const json_t *params, unsigned takes, struct fault *fault, struct refusal *refusal)
 {
     if (!(takes & DURATION))
         return true;
@@ -239,15 +239,16 @@ static bool read_spell(const json_t *params, unsigned takes, struct fault *fault
     return !wrong;
 }
 
-/* Which unit, and which way: bytes of the master cannot be those of one unit. Without a unit: all of them. */
-static bool read_whose(struct sim *sim, const json_t *params, unsigned takes, struct fault *fault, struct refusal *refusal)
+/* Which unit, and which way: bytes of the host cannot be those of one unit. Without a unit: all of them. */
+static bool read_unit_and_direction(struct sim *sim, const json_t *params, unsigned takes, struct fault *fault,
+                                    struct refusal *refusal)
 {
-    static const char *const ways[] = {[FAULT_TO_UNITS] = "to_units", [FAULT_TO_MASTER] = "to_master", [FAULT_BOTH] = "both"};
+    static const char *const ways[] = {[FAULT_TO_UNITS] = "to_units", [FAULT_TO_HOST] = "to_master", [FAULT_BOTH] = "both"};
     if ((takes & UNIT) && json_object_get(params, "unit") && !(fault->unit = (uint8_t)param_unit(sim, params, refusal)))
         return false;
     if (!(takes & DIRECTION))
         return true;
-    fault->direction = fault->unit > 0 ? FAULT_TO_MASTER : FAULT_BOTH;
+    fault->direction = fault->unit > 0 ? FAULT_TO_HOST : FAULT_BOTH;
     if (!json_object_get(params, "direction"))
         return true;
     const char *way = json_string_value(json_object_get(params, "direction"));
@@ -257,7 +258,7 @@ static bool read_whose(struct sim *sim, const json_t *params, unsigned takes, st
             fault->direction = i;
     if (fault->direction == 0)
         refuse(refusal, REFUSED_PARAMS, "direction: expected \"to_units\", \"to_master\" or \"both\"");
-    else if (fault->unit > 0 && fault->direction != FAULT_TO_MASTER)
+    else if (fault->unit > 0 && fault->direction != FAULT_TO_HOST)
         refuse(refusal, REFUSED_PARAMS,
                "direction: with unit expected \"to_master\": all units hear the same bytes of the master");
     else
@@ -273,9 +274,9 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
     if (!read_kind(params, &fault, refusal))
         return NULL;
     const struct kind *kind = &kinds[fault.kind];
-    if (!check_names(params, kind, refusal) || !read_occasions(params, &fault, refusal) ||
-        !read_window(sim, params, &fault, refusal) || !read_spell(params, kind->takes, &fault, refusal) ||
-        !read_whose(sim, params, kind->takes, &fault, refusal) || !kind->read(params, &fault, refusal))
+    if (!check_names(params, kind, refusal) || !read_opportunities(params, &fault, refusal) ||
+        !read_window(sim, params, &fault, refusal) || !read_interval(params, kind->takes, &fault, refusal) ||
+        !read_unit_and_direction(sim, params, kind->takes, &fault, refusal) || !kind->read(params, &fault, refusal))
         return NULL;
     if (fault.kind == FAULT_INPUT && !read_number(params, "input", 1, sim_device(sim)->inputs, -1, &fault, refusal))
         return NULL;
@@ -302,26 +303,26 @@ static json_t *command_fault_clear(struct sim *sim, const json_t *params, struct
 
 /* ---- fault.list: what faults there are, and how often each has acted ---------------------------------------------------- */
 
-static void put(json_t *object, const char *name, json_t *value)
+static void put_member(json_t *object, const char *name, json_t *value)
 {
     json_object_set_new(object, name, value); /* short of memory: it is missing */
 }
 
 static void put_time(json_t *object, const char *name, uint64_t ticks)
 {
-    put(object, name, ticks == DEVICE_NEVER ? json_null() : json_integer((json_int_t)ticks));
+    put_member(object, name, ticks == DEVICE_NEVER ? json_null() : json_integer((json_int_t)ticks));
 }
 
-static const char *state_of(const struct fault *fault, uint64_t now)
+static const char *fault_state(const struct fault *fault, uint64_t now)
 {
     if (fault->active || fault->victim != 0)
         return "active";
-    if (fault_spent(fault, now))
+    if (fault_is_spent(fault, now))
         return "spent";
     return fault->from > now ? "waiting" : "armed";
 }
 
-static const char *operation_of(const struct fault *fault)
+static const char *fault_operation_name(const struct fault *fault)
 {
     switch (fault->operations) {
     case FAULT_READ:
@@ -336,58 +337,58 @@ static const char *operation_of(const struct fault *fault)
 }
 
 /* What the kind has of its own. */
-static void put_own(json_t *object, const struct fault *fault)
+static void put_kind_members(json_t *object, const struct fault *fault)
 {
     switch (fault->kind) {
     case FAULT_FLIP:
-        put(object, "mask", json_integer(fault->number));
+        put_member(object, "mask", json_integer(fault->number));
         break;
     case FAULT_INSERT:
-        put(object, "byte", json_integer(fault->number));
+        put_member(object, "byte", json_integer(fault->number));
         break;
     case FAULT_DELAY:
         put_time(object, "delay_us", fault->ticks);
         break;
     case FAULT_CUT:
-        put(object, "bytes", json_integer(fault->number));
+        put_member(object, "bytes", json_integer(fault->number));
         break;
     case FAULT_FLASH:
-        put(object, "operation", json_string(operation_of(fault)));
-        put(object, "torn", json_boolean(fault->torn));
+        put_member(object, "operation", json_string(fault_operation_name(fault)));
+        put_member(object, "torn", json_boolean(fault->torn));
         break;
     case FAULT_POWER:
-        put(object, "operation", json_integer(fault->number));
+        put_member(object, "operation", json_integer(fault->number));
         break;
     case FAULT_INPUT:
-        put(object, "input", json_integer(fault->number));
-        put(object, "level", json_integer(fault->level));
+        put_member(object, "input", json_integer(fault->number));
+        put_member(object, "level", json_integer(fault->level));
         break;
     default:
         break;
     }
 }
 
-static json_t *show(const struct sim *sim, const struct fault *fault)
+static json_t *fault_json(const struct sim *sim, const struct fault *fault)
 {
     static const char *const ways[] = {NULL, "to_units", "to_master", "both"};
     json_t *object = json_object();
-    put(object, "id", json_integer((json_int_t)fault->id));
-    put(object, "kind", json_string(fault_kind_name((enum fault_kind)fault->kind)));
-    put(object, "state", json_string(state_of(fault, sim_now(sim))));
-    put(object, "acted", json_integer((json_int_t)fault->acted));
-    put(object, "left", fault->counted ? json_integer((json_int_t)fault->left) : json_null());
-    put(object, "skip", json_integer((json_int_t)fault->skip));
-    put(object, "probability", json_real(fault->millionths / 1e6));
+    put_member(object, "id", json_integer((json_int_t)fault->id));
+    put_member(object, "kind", json_string(fault_kind_name((enum fault_kind)fault->kind)));
+    put_member(object, "state", json_string(fault_state(fault, sim_now(sim))));
+    put_member(object, "acted", json_integer((json_int_t)fault->acted));
+    put_member(object, "left", fault->counted ? json_integer((json_int_t)fault->left) : json_null());
+    put_member(object, "skip", json_integer((json_int_t)fault->skip));
+    put_member(object, "probability", json_real(fault->millionths / 1e6));
     put_time(object, "from_us", fault->from);
     put_time(object, "until_us", fault->until);
-    put(object, "unit", fault->unit > 0 ? json_string(sim->unit[fault->unit - 1u].name) : json_null());
+    put_member(object, "unit", fault->unit > 0 ? json_string(sim->unit[fault->unit - 1u].name) : json_null());
     if (fault->direction != 0)
-        put(object, "direction", json_string(ways[fault->direction]));
+        put_member(object, "direction", json_string(ways[fault->direction]));
     if (fault->kind >= FAULT_POWER)
         put_time(object, "duration_us", fault->ticks);
     if (fault->kind >= FAULT_BREAK)
         put_time(object, "every_us", fault->every > 0 ? fault->every : DEVICE_NEVER);
-    put_own(object, fault);
+    put_kind_members(object, fault);
     return object;
 }
 
@@ -398,7 +399,7 @@ static json_t *command_fault_list(struct sim *sim, const json_t *params, struct 
         return NULL;
     json_t *list = json_array();
     for (unsigned i = 0; i < sim->faults.count; i++)
-        json_array_append_new(list, show(sim, &sim->faults.fault[i]));
+        json_array_append_new(list, fault_json(sim, &sim->faults.fault[i]));
     return json_pack("{s:o}", "faults", list);
 }
 

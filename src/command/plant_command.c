@@ -22,7 +22,7 @@ static bool add_counters(struct sim *sim, unsigned number, json_t *motors)
 }
 
 /* All that there is to say of the plant of a unit. */
-static json_t *report(struct sim *sim, unsigned number, struct refusal *refusal)
+static json_t *plant_result(struct sim *sim, unsigned number, struct refusal *refusal)
 {
     json_t *plant = plant_json(sim->unit[number - 1u].plant);
     json_t *result = json_pack("{s:I, s:o}", "t_us", (json_int_t)sim_now(sim), "plant", plant);
@@ -36,7 +36,7 @@ static json_t *command_plant_get(struct sim *sim, const json_t *params, struct r
 {
     static const char *const names[] = {"unit", NULL};
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
-    return number > 0 ? report(sim, number, refusal) : NULL;
+    return number > 0 ? plant_result(sim, number, refusal) : NULL;
 }
 
 /* ---- A new plant ---------------------------------------------------------------------------------------------------- */
@@ -66,7 +66,7 @@ static json_t *configure_text(struct sim *sim, const char *text, bool object, st
     return result;
 }
 
-static json_t *configure(struct sim *sim, const json_t *plant, struct refusal *refusal)
+static json_t *configure_plant(struct sim *sim, const json_t *plant, struct refusal *refusal)
 {
     if (json_is_null(plant))
         return configure_text(sim, NULL, false, refusal);
@@ -82,7 +82,7 @@ static json_t *configure(struct sim *sim, const json_t *plant, struct refusal *r
 
 /* ---- A hand at the motor -------------------------------------------------------------------------------------------- */
 
-static json_t *place(struct sim *sim, struct sim_unit *unit, unsigned motor, int64_t position, struct refusal *refusal)
+static json_t *place_axis(struct sim *sim, struct sim_unit *unit, unsigned motor, int64_t position, struct refusal *refusal)
 {
     struct plant_change change;
     if (!plant_place(unit->plant, sim_now(sim), motor, position))
@@ -91,10 +91,10 @@ static json_t *place(struct sim *sim, struct sim_unit *unit, unsigned motor, int
         /* it counts from now on */
     }
     sim_update_inputs(sim, unit->number);
-    return report(sim, unit->number, refusal);
+    return plant_result(sim, unit->number, refusal);
 }
 
-static json_t *handle(struct sim *sim, unsigned number, const json_t *params, struct refusal *refusal)
+static json_t *change_motor(struct sim *sim, unsigned number, const json_t *params, struct refusal *refusal)
 {
     struct sim_unit *unit = &sim->unit[number - 1u];
     bool held = json_object_get(params, "jammed"), taken = json_object_get(params, "missing_lead"), jammed, missing;
@@ -112,13 +112,13 @@ static json_t *handle(struct sim *sim, unsigned number, const json_t *params, st
         return refuse(refusal, REFUSED_PARAMS, "expected position alone, without jammed and missing_lead");
     if (placed)
         return param_integer(params, "position", -PLANT_POSITION_MAX, PLANT_POSITION_MAX, &position, refusal)
-                   ? place(sim, unit, which, position, refusal)
+                   ? place_axis(sim, unit, which, position, refusal)
                    : NULL;
     if (held)
         plant_jam(unit->plant, which, jammed);
     if (taken)
         plant_take_lead(unit->plant, which, missing);
-    return report(sim, number, refusal);
+    return plant_result(sim, number, refusal);
 }
 
 static json_t *command_plant_set(struct sim *sim, const json_t *params, struct refusal *refusal)
@@ -127,11 +127,11 @@ static json_t *command_plant_set(struct sim *sim, const json_t *params, struct r
     static const char *const names[] = {"unit", "motor", "position", "jammed", "missing_lead", NULL};
     const json_t *plant = json_object_get(params, "plant");
     if (plant)
-        return params_known(params, whole, refusal) ? configure(sim, plant, refusal) : NULL;
+        return params_known(params, whole, refusal) ? configure_plant(sim, plant, refusal) : NULL;
     if (json_object_size(params) == 0)
         return refuse(refusal, REFUSED_PARAMS, "expected plant, or motor and one of position, jammed, missing_lead");
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
-    return number > 0 ? handle(sim, number, params, refusal) : NULL;
+    return number > 0 ? change_motor(sim, number, params, refusal) : NULL;
 }
 
 const struct command_method plant_methods[] = {

@@ -6,7 +6,7 @@
 #include "sim/sim.h"
 
 /* Put `value` into the object, which is NULL if memory has been short. */
-static void put(json_t *object, const char *name, json_t *value)
+static void put_member(json_t *object, const char *name, json_t *value)
 {
     if (!value || !object)
         json_decref(value);
@@ -19,7 +19,7 @@ static void move_to_end(json_t *object, const char *name)
 {
     json_t *value = json_incref(json_object_get(object, name));
     json_object_del(object, name);
-    put(object, name, value);
+    put_member(object, name, value);
 }
 
 static void put_true_positions(json_t *motors, const struct plant *plant)
@@ -27,7 +27,7 @@ static void put_true_positions(json_t *motors, const struct plant *plant)
     int64_t position;
     for (unsigned motor = 1; plant && motor <= json_array_size(motors); motor++)
         if (plant_position(plant, motor, &position))
-            put(json_array_get(motors, motor - 1u), "true_position", json_integer(position));
+            put_member(json_array_get(motors, motor - 1u), "true_position", json_integer(position));
 }
 
 static json_t *line_json(const struct segment *segment)
@@ -43,13 +43,13 @@ json_t *unit_state(struct sim *sim, unsigned number)
     const struct sim_unit *unit = &sim->unit[number - 1u];
     json_t *state = sim_device(sim)->describe(sim_core(sim, number), sim_now(sim));
     put_true_positions(json_object_get(state, "motors"), unit->plant);
-    put(state, "unit", json_string(unit->name));
+    put_member(state, "unit", json_string(unit->name));
     move_to_end(state, "node");
-    put(state, "switch", json_integer(sim->config.nodes.node[number - 1u]));
-    put(state, "powered", json_boolean(sim_powered(sim, number)));
-    put(state, "since_us", json_integer((json_int_t)segment_since(&sim->segment, number)));
+    put_member(state, "switch", json_integer(sim->config.nodes.node[number - 1u]));
+    put_member(state, "powered", json_boolean(sim_powered(sim, number)));
+    put_member(state, "since_us", json_integer((json_int_t)segment_since(&sim->segment, number)));
     move_to_end(state, "simulation");
     move_to_end(state, "counters");
-    put(state, "line", line_json(&sim->segment));
+    put_member(state, "line", line_json(&sim->segment));
     return state;
 }

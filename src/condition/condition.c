@@ -47,7 +47,7 @@ static int64_t motor_value(const struct term *term, struct sim *sim)
     }
 }
 
-static int64_t value(const struct term *term, struct sim *sim)
+static int64_t term_value(const struct term *term, struct sim *sim)
 {
     switch ((enum term_kind)term->kind) {
     case TERM_TIME:
@@ -85,15 +85,15 @@ bool term_compares(int64_t is, enum term_relation relation, int64_t wanted)
     }
 }
 
-static bool holds(const struct term *term, struct sim *sim)
+static bool term_holds(const struct term *term, struct sim *sim)
 {
     if (term->kind == TERM_MESSAGE)
         return term->message.seen;
     if (term->kind != TERM_ALL && term->kind != TERM_ANY)
-        return term_compares(value(term, sim), (enum term_relation)term->relation, term->value);
+        return term_compares(term_value(term, sim), (enum term_relation)term->relation, term->value);
     bool any = term->kind == TERM_ANY;
     for (size_t i = 0; i < term->subs; i++) {
-        if (holds(&term->sub[i], sim) == any)
+        if (term_holds(&term->sub[i], sim) == any)
             return any;
     }
     return !any;
@@ -101,12 +101,12 @@ static bool holds(const struct term *term, struct sim *sim)
 
 bool condition_holds(struct condition *condition)
 {
-    return holds(&condition->root, condition->sim);
+    return term_holds(&condition->root, condition->sim);
 }
 
 /* ---- Messages ------------------------------------------------------------------------------------------------------- */
 
-static bool is_meant(const struct term_message *wanted, const struct wire_message *message)
+static bool matches_message(const struct term_message *wanted, const struct wire_message *message)
 {
     if (wanted->dropped != (message->dropped != NULL))
         return false;
@@ -121,34 +121,34 @@ static bool is_meant(const struct term_message *wanted, const struct wire_messag
     return wanted->motor < 0 || (message->length >= 2 && message->message[1] == wanted->motor);
 }
 
-static void see(struct term *term, const struct wire_message *message)
+static void note_message(struct term *term, const struct wire_message *message)
 {
-    if (term->kind == TERM_MESSAGE && is_meant(&term->message, message))
+    if (term->kind == TERM_MESSAGE && matches_message(&term->message, message))
         term->message.seen = true;
     for (size_t i = 0; i < term->subs; i++)
-        see(&term->sub[i], message);
+        note_message(&term->sub[i], message);
 }
 
-static void see_event(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct condition *condition = context;
-    see(&condition->root, event->message);
+    note_message(&condition->root, event->message);
 }
 
-static void forget(struct term *term)
+static void clear_seen(struct term *term)
 {
     term->message.seen = false;
     for (size_t i = 0; i < term->subs; i++)
-        forget(&term->sub[i]);
+        clear_seen(&term->sub[i]);
 }
 
 void condition_arm(struct condition *condition)
 {
-    forget(&condition->root);
+    clear_seen(&condition->root);
     if (!condition->messages || condition->armed)
         return;
     condition->armed = true;
-    condition->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_MESSAGE), .see = see_event, .context = condition};
+    condition->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_MESSAGE), .on_event = on_event, .context = condition};
     sim_watch(condition->sim, &condition->watcher);
 }
 
@@ -183,12 +183,12 @@ static uint64_t next_time(const struct term *term, uint64_t now)
 }
 
 /* Does a term ask for anything but time? */
-static bool asks_units(const struct term *term)
+static bool depends_on_units(const struct term *term)
 {
     if (term->kind != TERM_ALL && term->kind != TERM_ANY)
         return term->kind != TERM_TIME;
     for (size_t i = 0; i < term->subs; i++) {
-        if (asks_units(&term->sub[i]))
+        if (depends_on_units(&term->sub[i]))
             return true;
     }
     return false;
@@ -198,7 +198,7 @@ uint64_t condition_next(const struct condition *condition)
 {
     struct sim *sim = condition->sim;
     uint64_t now = sim_now(sim), next = next_time(&condition->root, now);
-    if (!asks_units(&condition->root))
+    if (!depends_on_units(&condition->root))
         return next;
     uint64_t event = sim_next_event(sim), due = sim_due(sim);
     if (event != DEVICE_NEVER && event + 1 < next)
@@ -303,7 +303,7 @@ static void print_term(FILE *out, const struct term *term, struct sim *sim, enum
         fprintf(out, " %02u", term->number);
     fputc(' ', out);
     if (part == PART_FOUND) {
-        print_value(out, term, sim, value(term, sim));
+        print_value(out, term, sim, term_value(term, sim));
         return;
     }
     fprintf(out, "%s ", term_relation_name((enum term_relation)term->relation));
@@ -311,19 +311,19 @@ static void print_term(FILE *out, const struct term *term, struct sim *sim, enum
     if (part == PART_WANTED)
         return;
     fputs(" (is ", out);
-    print_value(out, term, sim, value(term, sim));
+    print_value(out, term, sim, term_value(term, sim));
     fputc(')', out);
 }
 
 /* Do both ask for the same number, as in {">=": 1, "<": 9}? */
-static bool same_subject(const struct term *left, const struct term *right)
+static bool has_same_subject(const struct term *left, const struct term *right)
 {
     return left->kind == right->kind && left->unit == right->unit && left->motor == right->motor &&
            left->number == right->number && left->subs == 0 && right->subs == 0 && left->kind != TERM_MESSAGE;
 }
 
 /* What is found is a list; what is wanted has its structure. */
-static void print(FILE *out, const struct term *term, struct sim *sim, enum part part, bool inside)
+static void print_terms(FILE *out, const struct term *term, struct sim *sim, enum part part, bool inside)
 {
     if (term->kind != TERM_ALL && term->kind != TERM_ANY) {
         print_term(out, term, sim, part);
@@ -334,24 +334,24 @@ static void print(FILE *out, const struct term *term, struct sim *sim, enum part
     if (brackets)
         fputc('(', out);
     for (size_t i = 0; i < term->subs; i++) {
-        if (part == PART_FOUND && i > 0 && same_subject(&term->sub[i - 1], &term->sub[i]))
+        if (part == PART_FOUND && i > 0 && has_same_subject(&term->sub[i - 1], &term->sub[i]))
             continue;
         if (i > 0)
             fputs(between, out);
-        print(out, &term->sub[i], sim, part, inside || term->subs > 1);
+        print_terms(out, &term->sub[i], sim, part, inside || term->subs > 1);
     }
     if (brackets)
         fputc(')', out);
 }
 
-static char *text_of(struct condition *condition, enum part part)
+static char *print_to_text(struct condition *condition, enum part part)
 {
     char *text = NULL;
     size_t length;
     FILE *out = open_memstream(&text, &length);
     if (out == NULL)
         return NULL;
-    print(out, &condition->root, condition->sim, part, false);
+    print_terms(out, &condition->root, condition->sim, part, false);
     if (fclose(out) != 0) {
         free(text);
         return NULL;
@@ -361,15 +361,15 @@ static char *text_of(struct condition *condition, enum part part)
 
 char *condition_text(struct condition *condition)
 {
-    return text_of(condition, PART_BOTH);
+    return print_to_text(condition, PART_BOTH);
 }
 
-char *condition_wanted(struct condition *condition)
+char *condition_wanted_text(struct condition *condition)
 {
-    return text_of(condition, PART_WANTED);
+    return print_to_text(condition, PART_WANTED);
 }
 
-char *condition_found(struct condition *condition)
+char *condition_found_text(struct condition *condition)
 {
-    return text_of(condition, PART_FOUND);
+    return print_to_text(condition, PART_FOUND);
 }

@@ -43,8 +43,8 @@ bool condition_run(struct condition *condition, uint64_t limit);
 char *condition_text(struct condition *condition);
 
 /* The same in two: "motor 1 position >= 5000", "motor 1 position 1200". */
-char *condition_wanted(struct condition *condition);
-char *condition_found(struct condition *condition);
+char *condition_wanted_text(struct condition *condition);
+char *condition_found_text(struct condition *condition);
 
 /* ---- What the methods `advance` and `wait` are given and what they answer (docs/CONTROL.md) ---------------------------- */
 

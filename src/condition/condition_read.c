@@ -53,7 +53,7 @@ void term_clear(struct term *term)
 #define REFUSE(...) (refuse(r->refusal, REFUSED_PARAMS, __VA_ARGS__), false)
 
 /* Put a copy of `term` behind the others of `group`, which owns what hangs on it then. */
-static bool add(struct reader *r, struct term *group, const struct term *term)
+static bool add_term(struct reader *r, struct term *group, const struct term *term)
 {
     if (r->terms++ == TERMS_MAX)
         return REFUSE("condition: expected at most %d conditions in all", TERMS_MAX);
@@ -80,7 +80,7 @@ static bool is_flag(const json_t *json, int64_t *value)
 
 /* ---- Numbers -------------------------------------------------------------------------------------------------------- */
 
-static bool is_whole(const json_t *json, const struct term *term, int64_t *value)
+static bool read_whole(const json_t *json, const struct term *term, int64_t *value)
 {
     if (json_is_integer(json)) {
         *value = json_integer_value(json);
@@ -102,11 +102,11 @@ static bool read_number(struct reader *r, struct term *group, struct term term, 
     const char *name;
     json_t *bound;
     if (!json_is_object(json)) {
-        if (!is_whole(json, &term, &term.value))
+        if (!read_whole(json, &term, &term.value))
             return REFUSE("%s: expected %s, or {\">=\": …} with one of ==, !=, <, <=, >, >=", key, what);
         /* time that has been leapt over would never be again */
         term.relation = term.kind == TERM_TIME ? TERM_GREATER_EQUAL : TERM_EQUAL;
-        return add(r, group, &term);
+        return add_term(r, group, &term);
     }
     if (json_object_size(json) == 0)
         return REFUSE("%s: expected %s, found {}", key, what);
@@ -114,10 +114,10 @@ static bool read_number(struct reader *r, struct term *group, struct term term, 
         enum term_relation relation;
         if (!term_relation_named(name, &relation))
             return REFUSE("%s: expected one of ==, !=, <, <=, >, >=, found \"%.20s\"", key, name);
-        if (!is_whole(bound, &term, &term.value))
+        if (!read_whole(bound, &term, &term.value))
             return REFUSE("%s: expected %s after \"%s\"", key, what, name);
         term.relation = (uint8_t)relation;
-        if (!add(r, group, &term))
+        if (!add_term(r, group, &term))
             return false;
     }
     return true;
@@ -155,7 +155,7 @@ static bool read_name(struct reader *r, struct term *group, struct term term, co
     for (unsigned i = 0; wanted != NULL && (name = name_of(sim_device(r->sim), (enum term_kind)term.kind, i)) != NULL; i++) {
         if (strcmp(name, wanted) == 0) {
             term.value = i;
-            return add(r, group, &term);
+            return add_term(r, group, &term);
         }
     }
     list_names(sim_device(r->sim), (enum term_kind)term.kind, list);
@@ -170,7 +170,7 @@ static bool read_flag(struct reader *r, struct term *group, struct term term, co
 {
     if (!is_flag(json, &term.value))
         return REFUSE("%s: expected true or false", key);
-    return add(r, group, &term);
+    return add_term(r, group, &term);
 }
 
 /* Read "8", "08", "80". Returns 0 if it is no number low..high. */
@@ -204,7 +204,7 @@ static bool read_bits(struct reader *r, struct term *group, struct term term, co
             return REFUSE("%s: expected a number %02u to %02u, found \"%.20s\"", key, low, high, name);
         if (!is_flag(level, &term.value))
             return REFUSE("%s: expected 0 or 1 for %02u", key, term.number);
-        if (!add(r, group, &term))
+        if (!add_term(r, group, &term))
             return false;
     }
     return true;
@@ -248,7 +248,7 @@ static bool read_message(struct reader *r, struct term *group, struct term term,
     if (term.message.dropped && (number >= 0 || motor >= 0))
         return REFUSE("message: a dropped message has no number and no motor");
     r->messages = true;
-    return add(r, group, &term);
+    return add_term(r, group, &term);
 }
 
 /* ---- The whole ------------------------------------------------------------------------------------------------------ */
@@ -267,14 +267,14 @@ static bool read_list(struct reader *r, struct term *group, struct term term, co
     term = (struct term){.kind = term.kind};
     json_array_foreach((json_t *)json, index, item) {
         struct term sub = {.kind = TERM_ALL};
-        if (!read_object(r, &sub, item) || !add(r, &term, &sub)) {
+        if (!read_object(r, &sub, item) || !add_term(r, &term, &sub)) {
             term_clear(&sub);
             term_clear(&term);
             return false;
         }
     }
     r->depth--;
-    if (add(r, group, &term))
+    if (add_term(r, group, &term))
         return true;
     term_clear(&term);
     return false;

@@ -31,7 +31,7 @@ enum term_relation { TERM_EQUAL, TERM_UNEQUAL, TERM_LESS, TERM_LESS_EQUAL, TERM_
 struct term_message {
     int number;   /* its first byte */
     int motor;    /* its second one, '0'..'4' */
-    int from;     /* 0: the master; 1..16: that unit; TERM_ANY_UNIT */
+    int from;     /* 0: the host; 1..16: that unit; TERM_ANY_UNIT */
     bool dropped; /* one that was dropped, not a whole one */
     bool seen;
 };

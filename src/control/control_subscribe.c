@@ -59,7 +59,7 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     new.head_length = (size_t)snprintf(new.head, sizeof new.head, HEAD, new.number);
     new.next = client->subscriptions;
     *subscription = new;
-    subscription->watcher.see = on_event;
+    subscription->watcher.on_event = on_event;
     subscription->watcher.context = subscription;
     client->subscriptions = subscription;
     sim_watch(sim, &subscription->watcher);

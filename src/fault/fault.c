@@ -43,7 +43,7 @@ uint64_t faults_random(struct faults *faults)
 }
 
 /* An occasion within the window. Returns whether the fault acts, and counts it. */
-static bool use_occasion(struct faults *faults, struct fault *fault)
+static bool use_opportunity(struct faults *faults, struct fault *fault)
 {
     if (fault->counted && fault->left == 0)
         return false;
@@ -69,7 +69,7 @@ struct fault *fault_apply(struct faults *faults, enum fault_kind kind, unsigned 
         bool meant = fault->kind == kind && (fault->unit == 0 || fault->unit == unit) &&
                      (direction == 0 || (fault->direction & direction) != 0) &&
                      (operation == 0 || (fault->operations & operation) != 0);
-        if (meant && fault->from <= now && now < fault->until && use_occasion(faults, fault))
+        if (meant && fault->from <= now && now < fault->until && use_opportunity(faults, fault))
             acting = fault;
     }
     return acting;
@@ -77,12 +77,12 @@ struct fault *fault_apply(struct faults *faults, enum fault_kind kind, unsigned 
 
 /* ---- Spells --------------------------------------------------------------------------------------------------------- */
 
-static bool has_spells(const struct fault *fault)
+static bool has_intervals(const struct fault *fault)
 {
     return fault->kind >= FAULT_BREAK;
 }
 
-const struct fault *fault_in_force(const struct faults *faults, enum fault_kind kind, unsigned unit)
+const struct fault *fault_find_active(const struct faults *faults, enum fault_kind kind, unsigned unit)
 {
     if ((faults->kinds >> kind & 1u) == 0)
         return NULL;
@@ -127,7 +127,7 @@ static void report_begin(const struct faults *faults, const struct fault *fault)
 }
 
 /* Begin and end the spells of a fault that are due by now. */
-static void update_spells(struct faults *faults, struct fault *fault)
+static void update_intervals(struct faults *faults, struct fault *fault)
 {
     uint64_t now = segment_now(faults->segment);
     if (fault->active && fault->ends <= now) {
@@ -139,7 +139,7 @@ static void update_spells(struct faults *faults, struct fault *fault)
         fault->next = fault->every > 0 ? later(at, fault->every) : DEVICE_NEVER;
         if (fault->next >= fault->until)
             fault->next = DEVICE_NEVER;
-        if (!use_occasion(faults, fault))
+        if (!use_opportunity(faults, fault))
             continue;
         if (fault->counted && fault->left == 0)
             fault->next = DEVICE_NEVER;
@@ -151,7 +151,7 @@ static void update_spells(struct faults *faults, struct fault *fault)
 }
 
 /* Give the power back to a unit that has lost it. */
-static void give_power(struct faults *faults, struct fault *fault)
+static void restore_power(struct faults *faults, struct fault *fault)
 {
     unsigned unit = fault->victim;
     fault->victim = 0;
@@ -163,10 +163,10 @@ static void give_power(struct faults *faults, struct fault *fault)
 }
 
 /* Let the line, the adapter and the inputs be as the spells in force want them. */
-static void apply_spells(struct faults *faults)
+static void apply_intervals(struct faults *faults)
 {
-    bool unplugged = fault_in_force(faults, FAULT_UNPLUGGED, 0) != NULL;
-    bool disturbed = fault_in_force(faults, FAULT_BREAK, 0) != NULL;
+    bool unplugged = fault_find_active(faults, FAULT_UNPLUGGED, 0) != NULL;
+    bool disturbed = fault_find_active(faults, FAULT_BREAK, 0) != NULL;
     if (disturbed != faults->segment->disturbed)
         segment_disturb(faults->segment, disturbed);
     for (unsigned number = 1; number <= faults->segment->units; number++)
@@ -183,15 +183,15 @@ static void apply_spells(struct faults *faults)
 void faults_update(struct faults *faults)
 {
     for (unsigned number = 1; number <= faults->segment->units && faults->dying != 0; number++)
-        faults_hooks.obeyed(faults, number);
+        faults_hooks.processed(faults, number);
     for (unsigned i = 0; i < faults->count; i++) {
         struct fault *fault = &faults->fault[i];
-        if (has_spells(fault))
-            update_spells(faults, fault);
+        if (has_intervals(fault))
+            update_intervals(faults, fault);
         else if (fault->victim != 0 && fault->ends <= segment_now(faults->segment))
-            give_power(faults, fault);
+            restore_power(faults, fault);
     }
-    apply_spells(faults);
+    apply_intervals(faults);
 }
 
 uint64_t faults_next(const struct faults *faults)
@@ -199,7 +199,7 @@ uint64_t faults_next(const struct faults *faults)
     uint64_t next = faults->dying != 0 ? segment_now(faults->segment) : DEVICE_NEVER;
     for (unsigned i = 0; i < faults->count; i++) {
         const struct fault *fault = &faults->fault[i];
-        if (has_spells(fault))
+        if (has_intervals(fault))
             next = earlier(next, fault->active ? fault->ends : fault->next);
         else if (fault->victim != 0)
             next = earlier(next, fault->ends);
@@ -241,18 +241,18 @@ void faults_begin(struct faults *faults, uint64_t seed, struct segment *segment,
 {
     *faults = (struct faults){.segment = segment, .calls = calls, .context = context, .random = seed};
     for (unsigned at = 0; at < SEGMENT_UNITS; at++)
-        faults->answer[at] = fault_answer_well;
+        faults->answer[at] = fault_answer_unchanged;
 }
 
-bool fault_spent(const struct fault *fault, uint64_t now)
+bool fault_is_spent(const struct fault *fault, uint64_t now)
 {
     bool done = fault->until <= now || (fault->counted && fault->left == 0);
-    if (has_spells(fault))
+    if (has_intervals(fault))
         return !fault->active && (done || fault->next == DEVICE_NEVER);
     return done && fault->victim == 0;
 }
 
-static void drop_at(struct faults *faults, unsigned at)
+static void remove_at(struct faults *faults, unsigned at)
 {
     faults->count--;
     memmove(&faults->fault[at], &faults->fault[at + 1u], (faults->count - at) * sizeof faults->fault[0]);
@@ -265,8 +265,8 @@ static void drop_at(struct faults *faults, unsigned at)
 static bool make_room(struct faults *faults, uint64_t now)
 {
     for (unsigned i = 0; i < faults->count && faults->count == FAULTS_MAX; i++)
-        if (fault_spent(&faults->fault[i], now))
-            drop_at(faults, i);
+        if (fault_is_spent(&faults->fault[i], now))
+            remove_at(faults, i);
     return faults->count < FAULTS_MAX;
 }
 
@@ -277,7 +277,7 @@ uint32_t faults_add(struct faults *faults, const struct fault *fault)
     struct fault *added = &faults->fault[faults->count++];
     *added = *fault;
     added->id = ++faults->last_id;
-    added->next = has_spells(fault) ? fault->from : DEVICE_NEVER;
+    added->next = has_intervals(fault) ? fault->from : DEVICE_NEVER;
     added->ends = DEVICE_NEVER;
     added->acted = 0;
     added->victim = 0;
@@ -295,7 +295,7 @@ unsigned faults_remove(struct faults *faults, uint32_t id)
     for (unsigned i = faults->count; i-- > 0;) {
         if (id != 0 && faults->fault[i].id != id)
             continue;
-        drop_at(faults, i);
+        remove_at(faults, i);
         removed++;
     }
     faults_update(faults);

@@ -29,7 +29,7 @@ enum fault_kind {
     FAULT_FLIP,        /* bits of a byte are inverted: `number` is the mask */
     FAULT_DUPLICATE,   /* a byte is there twice */
     FAULT_INSERT,      /* byte `number` is there before a byte */
-    FAULT_ECHO,        /* the master hears its own byte, too (two-wire adapter) */
+    FAULT_ECHO,        /* the host hears its own byte, too (two-wire adapter) */
     FAULT_DELAY,       /* the answer sets out `ticks` later */
     FAULT_NO_ANSWER,   /* the answer is not sent; the unit believes that it was */
     FAULT_WRONG_FCS,   /* hdlc: the check value of the answer is wrong, everything else is right */
@@ -51,7 +51,7 @@ static const char *const fault_names[FAULT_KINDS] = {
     [FAULT_UNPLUGGED] = "unplugged", [FAULT_CABLE] = "cable", [FAULT_INPUT] = "input",
 };
 
-enum fault_direction { FAULT_TO_UNITS = 1, FAULT_TO_MASTER = 2, FAULT_BOTH = 3 };
+enum fault_direction { FAULT_TO_UNITS = 1, FAULT_TO_HOST = 2, FAULT_BOTH = 3 };
 
 /* Operations of the flash, as a mask. */
 enum fault_operation { FAULT_READ = 1, FAULT_ERASE = 2, FAULT_PROGRAM = 4 };
@@ -86,7 +86,7 @@ struct fault_answer {
     uint8_t mask;      /* bits that are inverted there */
 };
 
-extern const struct fault_answer fault_answer_well; /* nothing is */
+extern const struct fault_answer fault_answer_unchanged; /* nothing is */
 
 /* What faults need of what is around the bus. All are set, but for `adapter`. */
 struct fault_calls {
@@ -128,10 +128,10 @@ uint32_t faults_add(struct faults *faults, const struct fault *fault);
 unsigned faults_remove(struct faults *faults, uint32_t id);
 
 /* Will it never act again? It is kept for a while so that it can be seen how often it did. */
-bool fault_spent(const struct fault *fault, uint64_t now);
+bool fault_is_spent(const struct fault *fault, uint64_t now);
 
 /* Is there a spell of this kind in force now, for unit `unit` alone, or with 0 for all? Returns it, or NULL. */
-const struct fault *fault_in_force(const struct faults *faults, enum fault_kind kind, unsigned unit);
+const struct fault *fault_find_active(const struct faults *faults, enum fault_kind kind, unsigned unit);
 
 /* `levels` of the inputs of a unit, with those that a fault holds as it holds them. */
 uint32_t faults_hold_inputs(const struct faults *faults, unsigned unit, uint32_t levels);

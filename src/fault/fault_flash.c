@@ -3,7 +3,8 @@
 #include "fault.h"
 
 /* An operation done in part: of the bits that had to change some have. `data`: NULL for an erase. */
-static void tear(struct faults *faults, unsigned unit, unsigned block, unsigned offset, const uint8_t *data, unsigned length)
+static void write_partly(struct faults *faults, unsigned unit, unsigned block, unsigned offset, const uint8_t *data,
+                         unsigned length)
 {
     uint8_t bytes[64];
     for (unsigned at = 0; at < length; at += sizeof bytes) {
@@ -24,9 +25,9 @@ static const char *name_of(enum fault_operation operation)
     return operation == FAULT_ERASE ? "an erase" : operation == FAULT_PROGRAM ? "a write" : "a read";
 }
 
-/* Does an operation succeed? Otherwise it has been done as far as it gets. */
-static bool is_done(struct faults *faults, unsigned unit, enum fault_operation operation, unsigned block, unsigned offset,
-                    const void *data, unsigned length)
+/* Returns whether an operation has been done completely; otherwise it has been done as far as the fault allows. */
+static bool is_operation_done(struct faults *faults, unsigned unit, enum fault_operation operation, unsigned block,
+                              unsigned offset, const void *data, unsigned length)
 {
     struct fault *fault;
     if ((faults->dying >> unit & 1u) != 0)
@@ -37,33 +38,33 @@ static bool is_done(struct faults *faults, unsigned unit, enum fault_operation o
         fault->ends = fault->ticks < DEVICE_NEVER - now ? now + fault->ticks : DEVICE_NEVER;
         faults->dying |= UINT32_C(1) << unit;
         fault_report(faults, fault, unit, "power is lost during %s of block %u", name_of(operation), block);
-        tear(faults, unit, block, offset, data, length);
+        write_partly(faults, unit, block, offset, data, length);
         return false;
     }
     if (!(fault = fault_apply(faults, FAULT_FLASH, unit, 0, operation)))
         return true;
     fault_report(faults, fault, unit, "%s of block %u fails", name_of(operation), block);
     if (fault->torn && operation != FAULT_READ)
-        tear(faults, unit, block, offset, data, length);
+        write_partly(faults, unit, block, offset, data, length);
     return false;
 }
 
 int faults_flash_read(struct faults *faults, unsigned unit, unsigned block, unsigned offset, void *data, unsigned length)
 {
-    bool done = is_done(faults, unit, FAULT_READ, block, offset, NULL, length);
+    bool done = is_operation_done(faults, unit, FAULT_READ, block, offset, NULL, length);
     return done ? faults->calls->flash_read(faults->context, unit, block, offset, data, length) : 1;
 }
 
 int faults_flash_erase(struct faults *faults, unsigned unit, unsigned block)
 {
     unsigned size = segment_kind(faults->segment)->flash_block_size;
-    bool done = is_done(faults, unit, FAULT_ERASE, block, 0, NULL, size);
+    bool done = is_operation_done(faults, unit, FAULT_ERASE, block, 0, NULL, size);
     return done ? faults->calls->flash_erase(faults->context, unit, block) : 1;
 }
 
 int faults_flash_program(struct faults *faults, unsigned unit, unsigned block, unsigned offset, const void *data,
                          unsigned length)
 {
-    bool done = is_done(faults, unit, FAULT_PROGRAM, block, offset, data, length);
+    bool done = is_operation_done(faults, unit, FAULT_PROGRAM, block, offset, data, length);
     return done ? faults->calls->flash_program(faults->context, unit, block, offset, data, length) : 1;
 }

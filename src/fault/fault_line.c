@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-const struct fault_answer fault_answer_well = {.end = UINT32_MAX, .wrong_at = UINT32_MAX};
+const struct fault_answer fault_answer_unchanged = {.end = UINT32_MAX, .wrong_at = UINT32_MAX};
 
 struct name {
     char text[16];
@@ -27,7 +27,7 @@ static uint64_t on_answer(void *context, unsigned number)
     struct fault_answer *answer = &faults->answer[number - 1u];
     const struct fault *fault;
     uint64_t delay = 0;
-    *answer = fault_answer_well;
+    *answer = fault_answer_unchanged;
     if ((fault = fault_apply(faults, FAULT_NO_ANSWER, number, 0, 0))) {
         answer->end = 0;
         fault_report(faults, fault, number, "no answer");
@@ -49,7 +49,7 @@ static uint64_t on_answer(void *context, unsigned number)
 }
 
 /* What the unit has sent as the next byte of its answer. Returns false if nothing of it goes out. */
-static bool as_answered(struct fault_answer *answer, uint8_t *byte)
+static bool apply_to_answer(struct fault_answer *answer, uint8_t *byte)
 {
     uint32_t at = answer->at++;
     if (at == answer->wrong_at)
@@ -62,18 +62,18 @@ static bool as_answered(struct fault_answer *answer, uint8_t *byte)
 /* Does what a station sends get as far as the line? */
 static bool is_connected(const struct faults *faults, unsigned station)
 {
-    if (station == 0 && fault_in_force(faults, FAULT_UNPLUGGED, 0))
+    if (station == 0 && fault_find_active(faults, FAULT_UNPLUGGED, 0))
         return false;
-    return !fault_in_force(faults, FAULT_CABLE, station);
+    return !fault_find_active(faults, FAULT_CABLE, station);
 }
 
 static size_t on_send(void *context, unsigned station, uint8_t byte, uint8_t *bytes)
 {
     struct faults *faults = context;
-    unsigned direction = station == 0 ? FAULT_TO_UNITS : FAULT_TO_MASTER;
+    unsigned direction = station == 0 ? FAULT_TO_UNITS : FAULT_TO_HOST;
     const struct fault *fault;
     size_t length = 0;
-    if (station > 0 && !as_answered(&faults->answer[station - 1u], &byte))
+    if (station > 0 && !apply_to_answer(&faults->answer[station - 1u], &byte))
         return 0;
     if (!is_connected(faults, station))
         return 0;
@@ -99,7 +99,7 @@ static size_t on_send(void *context, unsigned station, uint8_t byte, uint8_t *by
     return length;
 }
 
-static bool on_hears(void *context, unsigned station, uint32_t senders)
+static bool on_receiving(void *context, unsigned station, uint32_t senders)
 {
     const struct faults *faults = context;
     if (!is_connected(faults, station))
@@ -107,7 +107,7 @@ static bool on_hears(void *context, unsigned station, uint32_t senders)
     return senders != 1u || is_connected(faults, 0); /* cut while the byte was under way */
 }
 
-static bool on_echoes(void *context, uint8_t byte)
+static bool on_echo(void *context, uint8_t byte)
 {
     struct faults *faults = context;
     const struct fault *fault = fault_apply(faults, FAULT_ECHO, 0, 0, 0);
@@ -116,7 +116,7 @@ static bool on_echoes(void *context, uint8_t byte)
     return fault != NULL;
 }
 
-static void on_obeyed(void *context, unsigned number)
+static void on_processed(void *context, unsigned number)
 {
     struct faults *faults = context;
     uint32_t bit = UINT32_C(1) << number;
@@ -129,7 +129,7 @@ static void on_obeyed(void *context, unsigned number)
 const struct segment_hooks faults_hooks = {
     .answer = on_answer,
     .send = on_send,
-    .hears = on_hears,
-    .echoes = on_echoes,
-    .obeyed = on_obeyed,
+    .is_receiving = on_receiving,
+    .has_echo = on_echo,
+    .processed = on_processed,
 };

@@ -38,7 +38,7 @@ static void drop_report(struct plant *plant)
     memmove(&plant->report[0], &plant->report[1], plant->reports * sizeof plant->report[0]);
 }
 
-__attribute__((format(printf, 5, 6))) static void report(struct plant *plant, uint64_t tick, unsigned at, enum plant_news news,
+__attribute__((format(printf, 5, 6))) static void report(struct plant *plant, uint64_t tick, unsigned at, enum plant_event news,
                                                          const char *format, ...)
 {
     va_list list;
@@ -86,7 +86,7 @@ bool plant_take_report(struct plant *plant, struct plant_report *taken)
     return true;
 }
 
-const char *plant_news_name(enum plant_news news)
+const char *plant_event_name(enum plant_event news)
 {
     static const char *const names[] = {
         [PLANT_STALL] = "stall", [PLANT_END_STOP] = "end_stop",   [PLANT_JAM] = "jam",
@@ -186,7 +186,7 @@ uint32_t plant_levels(const struct plant *plant)
 
 /* ---- Motors --------------------------------------------------------------------------------------------------------- */
 
-static bool jammed(const struct plant_motor *motor, uint64_t tick)
+static bool is_jammed(const struct plant_motor *motor, uint64_t tick)
 {
     bool jammed = motor->held;
     for (unsigned i = 0; i < motor->jams; i++)
@@ -194,23 +194,23 @@ static bool jammed(const struct plant_motor *motor, uint64_t tick)
     return jammed;
 }
 
-bool plant_jammed(const struct plant *plant, unsigned number)
+bool plant_is_jammed(const struct plant *plant, unsigned number)
 {
-    return jammed(&plant->motor[number - 1u], plant->now);
+    return is_jammed(&plant->motor[number - 1u], plant->now);
 }
 
-static bool at_stop(const struct plant_motor *motor, bool forward)
+static bool is_at_stop(const struct plant_motor *motor, bool forward)
 {
     return forward ? motor->position >= motor->high : motor->position <= motor->low;
 }
 
 /* What becomes of a pulse? */
-static enum plant_hold hold_of(struct plant_motor *motor, uint64_t tick, bool forward)
+static enum plant_hold decide_pulse(struct plant_motor *motor, uint64_t tick, bool forward)
 {
     bool follows = stall_follows(&motor->stall, tick, forward);
     enum plant_hold hold = motor->no_lead             ? PLANT_NO_LEAD
-                           : jammed(motor, tick)      ? PLANT_JAMMED
-                           : at_stop(motor, forward)  ? PLANT_AT_STOP
+                           : is_jammed(motor, tick)      ? PLANT_JAMMED
+                           : is_at_stop(motor, forward)  ? PLANT_AT_STOP
                            : !follows                 ? PLANT_STALLED
                                                       : PLANT_MOVES;
     if (hold != PLANT_MOVES)
@@ -219,7 +219,7 @@ static enum plant_hold hold_of(struct plant_motor *motor, uint64_t tick, bool fo
 }
 
 /* Do the first pulse of a motor. */
-static void move(struct plant *plant, unsigned at)
+static void move_axis(struct plant *plant, unsigned at)
 {
     struct plant_motor *motor = &plant->motor[at];
     uint64_t tick = motor->pulse[motor->first].tick;
@@ -227,7 +227,7 @@ static void move(struct plant *plant, unsigned at)
     motor->first = (motor->first + 1u) % PLANT_PULSES;
     motor->pulses--;
 
-    enum plant_hold hold = hold_of(motor, tick, forward);
+    enum plant_hold hold = decide_pulse(motor, tick, forward);
     if (hold != motor->hold)
         report_hold(plant, tick, at, hold);
     if (motor->hold == PLANT_MOVES || hold == PLANT_MOVES)
@@ -249,7 +249,7 @@ void plant_step(struct plant *plant, uint64_t tick, unsigned number, bool forwar
     if (!motor->present)
         return;
     if (motor->pulses == PLANT_PULSES)
-        move(plant, at);
+        move_axis(plant, at);
     unsigned last = (motor->first + motor->pulses++) % PLANT_PULSES;
     motor->pulse[last].tick = tick;
     motor->pulse[last].forward = forward;
@@ -277,7 +277,7 @@ static struct plant_switch *next_bounce(struct plant *plant)
 }
 
 /* Do the first thing that can be seen before `tick`. A pulse can be seen one tick later. Returns false if there is none. */
-static bool do_next(struct plant *plant, uint64_t tick)
+static bool apply_next(struct plant *plant, uint64_t tick)
 {
     struct plant_switch *contact = next_bounce(plant);
     uint64_t first = contact ? contact->next : DEVICE_NEVER;
@@ -294,7 +294,7 @@ static bool do_next(struct plant *plant, uint64_t tick)
         return false;
     }
     if (at < plant->axes)
-        move(plant, at);
+        move_axis(plant, at);
     else
         bounce(contact);
     plant->now = first;
@@ -306,7 +306,7 @@ bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *
     uint32_t levels;
     do {
         levels = plant_contacts(plant) & plant->mask;
-    } while (levels == plant->levels && do_next(plant, tick));
+    } while (levels == plant->levels && apply_next(plant, tick));
     if (levels == plant->levels)
         return false;
     uint32_t differ = levels ^ plant->levels;

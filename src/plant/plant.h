@@ -20,7 +20,7 @@ struct plant;
 
 #define PLANT_POSITION_MAX INT64_C(1000000000000) /* steps, either way, of everything configured */
 
-enum plant_news {
+enum plant_event {
     PLANT_STALL,    /* steps are being lost: too fast, too steep; text says which motor and where */
     PLANT_END_STOP, /* the axis stands at an end stop and loses steps */
     PLANT_JAM,
@@ -34,7 +34,7 @@ enum plant_news {
 struct plant_report {
     uint64_t tick; /* of the line: that of the pulse */
     uint8_t motor; /* 1..axes */
-    uint8_t news;  /* enum plant_news */
+    uint8_t news;  /* enum plant_event */
     char text[PLANT_TEXT_SIZE];
 };
 
@@ -73,7 +73,7 @@ bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *
 bool plant_take_report(struct plant *plant, struct plant_report *report);
 
 /* "stall", "end_stop", "jam", "free", "missing_lead". Never NULL. */
-const char *plant_news_name(enum plant_news news);
+const char *plant_event_name(enum plant_event news);
 
 /* When something changes without a pulse (a switch bounces); DEVICE_NEVER: never. */
 uint64_t plant_next(const struct plant *plant);

@@ -3,11 +3,11 @@
 
 static json_t *hold_json(enum plant_hold hold)
 {
-    static const enum plant_news news[] = {[PLANT_AT_STOP] = PLANT_END_STOP,
-                                           [PLANT_JAMMED] = PLANT_JAM,
-                                           [PLANT_STALLED] = PLANT_STALL,
-                                           [PLANT_NO_LEAD] = PLANT_LEAD};
-    return hold == PLANT_MOVES ? json_null() : json_string(plant_news_name(news[hold]));
+    static const enum plant_event news[] = {[PLANT_AT_STOP] = PLANT_END_STOP,
+                                            [PLANT_JAMMED] = PLANT_JAM,
+                                            [PLANT_STALLED] = PLANT_STALL,
+                                            [PLANT_NO_LEAD] = PLANT_LEAD};
+    return hold == PLANT_MOVES ? json_null() : json_string(plant_event_name(news[hold]));
 }
 
 static json_t *angle_json(const struct plant_motor *motor)
@@ -26,7 +26,7 @@ static json_t *motors_json(const struct plant *plant)
             continue;
         json_t *item = json_pack("{s:i, s:I, s:o, s:I, s:o, s:b, s:b}", "motor", (int)(at + 1u), "true_position",
                                  (json_int_t)motor->position, "angle", angle_json(motor), "lost", (json_int_t)motor->lost, "hold",
-                                 hold_json(motor->hold), "jammed", (int)plant_jammed(plant, at + 1u), "missing_lead",
+                                 hold_json(motor->hold), "jammed", (int)plant_is_jammed(plant, at + 1u), "missing_lead",
                                  (int)motor->no_lead);
         if (json_array_append_new(list, item) != 0) {
             json_decref(list);

@@ -98,7 +98,7 @@ struct plant *plant_new(unsigned axes);
 uint32_t plant_contacts(const struct plant *plant);
 
 /* Is a motor, from 1, jammed now? */
-bool plant_jammed(const struct plant *plant, unsigned motor);
+bool plant_is_jammed(const struct plant *plant, unsigned motor);
 
 /* A pulse comes: can the rotor follow it? */
 bool stall_follows(struct plant_stall *stall, uint64_t tick, bool forward);

@@ -37,7 +37,7 @@ static void begin_span(struct plant_stall *stall, uint64_t tick)
 }
 
 /* It stands, or goes so slowly that it follows anything. The interval before it may have been up to a tick shorter. */
-static void calm(struct plant_stall *stall, uint64_t tick, uint64_t interval)
+static void restart_from_rest(struct plant_stall *stall, uint64_t tick, uint64_t interval)
 {
     stall->base = larger(stall->start, interval > 1 ? (int64_t)(MICRO / (interval - 1)) + 1 : (int64_t)MICRO);
     stall->out_of_step = false;
@@ -79,7 +79,7 @@ static bool changes_too_fast(const struct plant_stall *stall, int64_t ticks, int
     return change * 2 * (int64_t)MICRO / MILLI > limit * (before + ticks);
 }
 
-static bool span_too_much(struct plant_stall *stall, uint64_t tick)
+static bool is_span_too_much(struct plant_stall *stall, uint64_t tick)
 {
     int64_t ticks = (int64_t)(tick - stall->begin);
     if (ticks < (int64_t)PLANT_SPAN)
@@ -104,14 +104,14 @@ bool stall_follows(struct plant_stall *stall, uint64_t tick, bool forward)
     stall->last = tick;
     stall->forward = forward;
     if (slow) {
-        calm(stall, tick, interval);
+        restart_from_rest(stall, tick, interval);
         return true;
     }
     stall->run++;
     stall->steps++;
     int64_t speed = (int64_t)(MICRO / (interval + 1)); /* at least */
     bool too_fast = speed > (int64_t)stall->point[stall->points - 1u].speed || starts_too_fast(stall, speed);
-    if (span_too_much(stall, tick) || too_fast)
+    if (is_span_too_much(stall, tick) || too_fast)
         stall->out_of_step = true;
     return !stall->out_of_step;
 }

@@ -203,7 +203,7 @@ void collector_begin(struct collector *collector, struct plot_curves *curves, st
                                WATCH_BIT(WATCH_VARIABLES) | WATCH_BIT(WATCH_COMMAND) | WATCH_BIT(WATCH_POSITION);
     if (follow)
         collector->watcher.kinds |= WATCH_BIT(WATCH_STEP);
-    collector->watcher.see = follow ? see_and_look : see;
+    collector->watcher.on_event = follow ? see_and_look : see;
     collector->watcher.context = collector;
     sim_watch(sim, &collector->watcher);
     collector_look(collector);

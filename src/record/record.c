@@ -200,7 +200,7 @@ int record_failed(const struct record *record)
 
 int record_end(struct record *record)
 {
-    sim_settle(record->sim);
+    sim_finish_tick(record->sim);
     tally_finish(&record->tally);
     write_digests(record, sim_now(record->sim), ",\"partial\":true");
     if (record->error == 0) {

@@ -45,7 +45,7 @@ struct replay_difference {
 struct replay_counts {
     uint64_t lines;               /* of the file, read so far */
     uint64_t inputs;              /* bytes and commands, lines with */
-    uint64_t bytes_in, bytes_out; /* of the master */
+    uint64_t bytes_in, bytes_out; /* of the host */
     uint64_t steps;
     bool whole;                   /* the record has been brought to its end */
 };

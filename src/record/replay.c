@@ -72,7 +72,7 @@ static bool come_to_input(struct replay *replay, const char *const *keys, uint64
     if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, tick) ||
         !reach(replay, *tick, 0))
         return false;
-    sim_settle(replay->sim);
+    sim_finish_tick(replay->sim);
     if (!replay->outputs)
         return true;
     tally_settle(&replay->tally);
@@ -94,7 +94,7 @@ static bool do_bytes(struct replay *replay)
         return false;
     replay->counts.inputs++;
     replay->counts.bytes_in += length;
-    sim_take(replay->sim, bytes, length, at);
+    sim_queue_bytes(replay->sim, bytes, length, at);
     return true;
 }
 
@@ -193,7 +193,7 @@ static bool do_command(struct replay *replay)
         return false;
     if (!json_is_object(params))
         return replay_wrong(replay, "params", "expected \"params\", an object");
-    if (!sim_command_known(replay->sim, method))
+    if (!sim_has_command(replay->sim, method))
         return replay_wrong(replay, "command", "expected \"command\", one that rkm04 " RKM04_VERSION " knows");
     bool restore = strcmp(method, "restore") == 0 && json_object_get(params, "file");
     if (restore && !replay->embedded)
@@ -258,7 +258,7 @@ static bool do_out(struct replay *replay)
     const uint8_t *bytes = replay_bytes(replay, "out", SEGMENT_ROOM, &length);
     if (!bytes || !reach(replay, until, length))
         return false;
-    sim_settle(replay->sim);
+    sim_finish_tick(replay->sim);
     tally_settle(&replay->tally);
     return replay_nothing_more(replay, from, 0) && replay_compare_bytes(replay, from, until, bytes, length);
 }
@@ -300,7 +300,7 @@ static bool do_digest(struct replay *replay)
         !replay_flag(replay, "partial", false, &partial) || !reach(replay, span.tick, 0))
         return false;
     if (partial) {
-        sim_settle(replay->sim);
+        sim_finish_tick(replay->sim);
         tally_finish(&replay->tally);
     } else {
         tally_settle(&replay->tally);
@@ -315,7 +315,7 @@ static bool do_end(struct replay *replay)
     if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
         !reach(replay, tick, 0))
         return false;
-    sim_settle(replay->sim);
+    sim_finish_tick(replay->sim);
     replay->counts.whole = true;
     if (!replay->outputs)
         return true;

@@ -234,7 +234,7 @@ json_t *restore_end(struct restore *restore, struct refusal *refusal)
 {
     struct sim *sim = restore->sim;
     json_t *params = json_incref(restore->params);
-    sim_settle(sim);
+    sim_finish_tick(sim);
     uint64_t now = sim_now(sim);
     json_t *result = restore_put(restore, refusal);
     if (result && sim->journal)

@@ -50,7 +50,7 @@ static void pass_time(struct tally *tally, uint64_t tick)
     close_span(tally, tick);
 }
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct tally *tally = context;
     if (tally->count > 0 || event->tick >= tally->span_end)
@@ -112,7 +112,7 @@ void tally_begin(struct tally *tally, struct sim *sim, const struct tally_calls 
     tally->context = context;
     tally->span_end = (sim_now(sim) / RECORD_SPAN + 1u) * RECORD_SPAN;
     tally->watcher.kinds = WATCH_ALL & ~WATCH_BIT(WATCH_MESSAGE); /* these follow from the bytes */
-    tally->watcher.see = see;
+    tally->watcher.on_event = on_event;
     tally->watcher.context = tally;
     tally->config = sim->config;
     sim->config.out = on_out;
@@ -128,7 +128,7 @@ void tally_settle(struct tally *tally)
 
 void tally_finish(struct tally *tally)
 {
-    watch_hand_out(&tally->sim->watch, sim_now(tally->sim) + 1u);
+    watch_deliver(&tally->sim->watch, sim_now(tally->sim) + 1u);
     tally_settle(tally);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* tally.h: what goes out of a line, in a form that can be compared: every byte that reaches the master, and of all else, for each
+/* tally.h: what goes out of a line, in a form that can be compared: every byte that reaches the host, and of all else, for each
  * motor and each unit, a digest at the end of every span of time in which something happened. It does not depend on how time was
  * cut into pieces. */
 #ifndef RKM04_RECORD_TALLY_H
@@ -25,7 +25,7 @@ struct tally_byte {
 };
 
 struct tally_calls {
-    /* A byte has reached the master. */
+    /* A byte has reached the host. */
     void (*byte)(void *context, const struct tally_byte *byte);
     /* A span is over at `tick`: look at the streams that have changed. */
     void (*span)(void *context, uint64_t tick);

@@ -41,11 +41,11 @@ static bool judge_wait(struct running *running, const struct scenario_step *step
 {
     uint64_t now = sim_now(running->sim);
     if (!condition_holds(condition))
-        return running_failed(running, step, now, with_time(condition_wanted(condition), "within", step->within),
-                              condition_found(condition));
+        return running_failed(running, step, now, with_time(condition_wanted_text(condition), "within", step->within),
+                              condition_found_text(condition));
     if (now - begin < step->not_before)
-        return running_failed(running, step, now, with_time(condition_wanted(condition), "not before", step->not_before),
-                              with_time(condition_found(condition), "after", now - begin));
+        return running_failed(running, step, now, with_time(condition_wanted_text(condition), "not before", step->not_before),
+                              with_time(condition_found_text(condition), "after", now - begin));
     return true;
 }
 
@@ -64,7 +64,7 @@ static bool do_expect(struct running *running, const struct scenario_step *step)
 {
     struct condition *condition = arm(running, step);
     if (!running->over && !condition_holds(condition))
-        running_failed(running, step, sim_now(running->sim), condition_wanted(condition), condition_found(condition));
+        running_failed(running, step, sim_now(running->sim), condition_wanted_text(condition), condition_found_text(condition));
     condition_free(condition);
     return !running->over;
 }
@@ -76,8 +76,8 @@ static bool do_stays(struct running *running, const struct scenario_step *step)
     while (!running->over) {
         uint64_t now = sim_now(running->sim);
         if (!condition_holds(condition))
-            running_failed(running, step, now, with_time(condition_wanted(condition), "all the time for", step->time),
-                           condition_found(condition));
+            running_failed(running, step, now, with_time(condition_wanted_text(condition), "all the time for", step->time),
+                           condition_found_text(condition));
         else if (now >= end)
             break;
         else

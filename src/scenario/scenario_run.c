@@ -57,7 +57,7 @@ bool running_failed(struct running *running, const struct scenario_step *step, u
 
 /* ---- Watching ------------------------------------------------------------------------------------------------------- */
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct running *running = context;
     uint32_t bit = (UINT32_C(1) << event->motor) >> 1;
@@ -78,7 +78,7 @@ static void see(void *context, const struct watch_event *event)
 
 static void watch(struct running *running)
 {
-    running->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_FAULT), .see = see, .context = running};
+    running->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_FAULT), .on_event = on_event, .context = running};
     if (running->scenario->count_pulses)
         running->watcher.kinds |= WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_POWER);
     sim_watch(running->sim, &running->watcher);
@@ -110,9 +110,9 @@ static bool check_always(struct running *running)
         char *wanted;
         if (condition_holds(condition))
             continue;
-        wanted = condition_wanted(condition);
+        wanted = condition_wanted_text(condition);
         failed_at(running, config_at(running->scenario->always_node, i), NULL, sim_now(running->sim),
-                  wanted != NULL ? running_text("always %s", wanted) : NULL, condition_found(condition));
+                  wanted != NULL ? running_text("always %s", wanted) : NULL, condition_found_text(condition));
         free(wanted);
         return false;
     }
@@ -164,7 +164,7 @@ static bool check_all_acted(struct running *running)
         const struct running_stimulus *state = &running->stimulus[i];
         if (state->acted)
             continue;
-        char *seen = state->due == DEVICE_NEVER ? condition_found(state->when)
+        char *seen = state->due == DEVICE_NEVER ? condition_found_text(state->when)
                                                : running_text("the last step ended before its time");
         return running_failed(running, &running->scenario->stimulus[i].step, now,
                               running_text("the stimulus to act before the last step ends"), seen);
@@ -203,7 +203,7 @@ bool running_turn(struct running *running, uint64_t limit, struct condition *con
     for (size_t i = 0; i < always_count(running); i++)
         next = earlier(next, condition_next(running->always[i]));
     next = earlier(next, stimuli_next(running));
-    if (running->master.listening)
+    if (running->host.listening)
         next = earlier(next, sim_due(running->sim));
     sim_advance(running->sim, next > now ? next : now + 1);
     return look(running);

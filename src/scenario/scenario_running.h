@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* scenario_running.h: a scenario while it runs. Inside: scenario_run.c has time and stimuli, scenario_do.c the steps,
- * scenario_master.c what the master sends and hears. */
+ * scenario_host.c what the host sends and hears. */
 #ifndef RKM04_SCENARIO_RUNNING_H
 #define RKM04_SCENARIO_RUNNING_H
 
@@ -26,7 +26,7 @@ struct running_fault {
     unsigned fault;
 };
 
-struct master {
+struct host {
     struct rkm04_receiver receiver;
     uint8_t buffer[ANSWER_ROOM];
     bool listening, answered; /* the first answer since it began to listen is kept */
@@ -46,7 +46,7 @@ struct running {
     const struct scenario_step *step; /* being done */
     struct condition **always;
     struct running_stimulus *stimulus;
-    struct master master;
+    struct host host;
     struct watcher watcher;
     struct running_fault fault;
     uint32_t forward[SEGMENT_UNITS]; /* direction outputs, bit 0: motor 1 */
@@ -62,7 +62,7 @@ bool running_no_memory(struct running *running);
 char *running_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Let time go on, up to `limit` at most, but no further than to where `condition` (NULL: none) may have come to hold, or an
- * answer may be there while the master listens. Returns false if the run is over. */
+ * answer may be there while the host listens. Returns false if the run is over. */
 bool running_turn(struct running *running, uint64_t limit, struct condition *condition);
 
 /* Do a step, or what a stimulus has to do. Returns false if the run is over. */

@@ -45,8 +45,8 @@ static uint64_t us_of(const struct sim_unit *unit, uint64_t tick)
 }
 
 /* What a unit does at `tick` of its own time. */
-static void tell(const struct sim_unit *unit, uint64_t tick, enum watch_phase phase, enum watch_kind kind, unsigned motor,
-                 int32_t value)
+static void add_unit_event(const struct sim_unit *unit, uint64_t tick, enum watch_phase phase, enum watch_kind kind,
+                           unsigned motor, int32_t value)
 {
     struct watch_event event = {
         .tick = us_of(unit, tick),
@@ -70,7 +70,7 @@ static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t
     struct sim_unit *unit = context;
     for (size_t i = 0; i < count; i++) {
         uint32_t way = forward ? (uint32_t)i : 0u - (uint32_t)i;
-        tell(unit, tick[i], WATCH_PULSES, WATCH_STEP, motor, (int32_t)((uint32_t)position + way));
+        add_unit_event(unit, tick[i], WATCH_PULSES, WATCH_STEP, motor, (int32_t)((uint32_t)position + way));
         if (unit->plant)
             plant_step(unit->plant, us_of(unit, tick[i]), motor, forward);
     }
@@ -81,13 +81,13 @@ static void on_direction(void *context, uint64_t tick, unsigned motor, bool forw
     struct sim_unit *unit = context;
     uint32_t bit = UINT32_C(1) << (motor - 1u);
     unit->forward = forward ? unit->forward | bit : unit->forward & ~bit;
-    tell(unit, tick, phase_of(unit), WATCH_DIRECTION, motor, forward);
+    add_unit_event(unit, tick, phase_of(unit), WATCH_DIRECTION, motor, forward);
 }
 
 static void on_outputs(void *context, uint64_t tick, uint32_t mask)
 {
     const struct sim_unit *unit = context;
-    tell(unit, tick, phase_of(unit), WATCH_OUTPUTS, 0, (int32_t)mask);
+    add_unit_event(unit, tick, phase_of(unit), WATCH_OUTPUTS, 0, (int32_t)mask);
 }
 
 static void on_event(void *context, uint64_t tick, unsigned motor, enum device_event what, uint32_t value)
@@ -97,7 +97,7 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum device_e
         [DEVICE_EVENT_VARIABLE] = WATCH_VARIABLES, [DEVICE_EVENT_FAULT] = WATCH_FAULT,
         [DEVICE_EVENT_POSITION] = WATCH_POSITION,
     };
-    tell(context, tick, phase_of(context), kinds[what], motor, (int32_t)value);
+    add_unit_event(context, tick, phase_of(context), kinds[what], motor, (int32_t)value);
 }
 
 static int on_flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
@@ -119,7 +119,7 @@ static int on_flash_program(void *context, unsigned block, unsigned offset, cons
 }
 
 /* Pulses cost time: they are asked for while somebody wants them. */
-static void look_who_watches(struct sim *sim)
+static void update_step_reports(struct sim *sim)
 {
     for (unsigned number = 1; number <= sim->segment.units; number++) {
         struct sim_unit *unit = &sim->unit[number - 1u];
@@ -156,7 +156,7 @@ static void set_inputs(struct sim *sim, struct sim_unit *unit, uint64_t tick)
 void sim_update_inputs(struct sim *sim, unsigned number)
 {
     set_inputs(sim, &sim->unit[number - 1u], sim_now(sim));
-    look_who_watches(sim); /* a plant may have come or gone */
+    update_step_reports(sim); /* a plant may have come or gone */
 }
 
 void sim_set_di(struct sim *sim, unsigned number, uint32_t mask)
@@ -165,7 +165,7 @@ void sim_set_di(struct sim *sim, unsigned number, uint32_t mask)
     sim_update_inputs(sim, number);
 }
 
-static void tell_plant(struct sim *sim, const struct sim_unit *unit)
+static void add_plant_events(struct sim *sim, const struct sim_unit *unit)
 {
     struct plant_report report;
     while (plant_take_report(unit->plant, &report)) {
@@ -179,7 +179,7 @@ static void tell_plant(struct sim *sim, const struct sim_unit *unit)
 }
 
 /* The plants' changes up to the present tick. They are told with the tick at which they came about. */
-static void take_changes(struct sim *sim)
+static void apply_plant_changes(struct sim *sim)
 {
     struct plant_change change;
     for (unsigned at = 0; at < sim->segment.units; at++) {
@@ -188,7 +188,7 @@ static void take_changes(struct sim *sim)
             continue;
         while (plant_take_change(unit->plant, sim_now(sim) + 1u, &change))
             set_inputs(sim, unit, change.tick);
-        tell_plant(sim, unit);
+        add_plant_events(sim, unit);
     }
 }
 
@@ -230,17 +230,17 @@ size_t sim_room(const struct sim *sim)
     return segment_room(&sim->segment);
 }
 
-void sim_take(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tick)
+void sim_queue_bytes(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tick)
 {
-    sim_settle(sim);
+    sim_finish_tick(sim);
     if (sim->journal)
         sim->journal->bytes(sim->journal->context, sim_now(sim), tick, bytes, length);
-    segment_take(&sim->segment, bytes, length, tick);
+    segment_queue_bytes(&sim->segment, bytes, length, tick);
 }
 
 size_t sim_purge(struct sim *sim)
 {
-    sim_settle(sim);
+    sim_finish_tick(sim);
     if (sim->journal)
         sim->journal->purge(sim->journal->context, sim_now(sim));
     return segment_purge(&sim->segment);
@@ -248,7 +248,7 @@ size_t sim_purge(struct sim *sim)
 
 void sim_break(struct sim *sim, bool on)
 {
-    sim_settle(sim);
+    sim_finish_tick(sim);
     if (sim->journal)
         sim->journal->line_break(sim->journal->context, sim_now(sim), on);
     segment_break(&sim->segment, on);
@@ -335,14 +335,14 @@ void sim_advance(struct sim *sim, uint64_t tick)
     tick = earlier(tick, SIM_TIME_MAX);
     do {
         segment_advance(&sim->segment, leap_end(sim, tick));
-        take_changes(sim); /* they were before the faults that begin or end now */
+        apply_plant_changes(sim); /* they were before the faults that begin or end now */
         if (faults_next(&sim->faults) <= sim_now(sim))
             faults_update(&sim->faults);
-        watch_hand_out(&sim->watch, sim_now(sim) + 1u); /* of the present tick there is only what was delivered */
+        watch_deliver(&sim->watch, sim_now(sim) + 1u); /* of the present tick there is only what was delivered */
     } while (sim_now(sim) < tick);
 }
 
-void sim_settle(struct sim *sim)
+void sim_finish_tick(struct sim *sim)
 {
     sim_advance(sim, sim_now(sim));
 }
@@ -392,7 +392,7 @@ bool sim_powered(const struct sim *sim, unsigned number)
     return sim->segment.unit[number - 1u].powered;
 }
 
-static void tell_power(struct sim *sim, unsigned number, bool on)
+static void add_power_event(struct sim *sim, unsigned number, bool on)
 {
     struct watch_event event = {.tick = sim_now(sim), .value = on, .kind = WATCH_POWER, .unit = (uint8_t)number};
     watch_add(&sim->watch, WATCH_DELIVERED, event);
@@ -402,14 +402,14 @@ void sim_power(struct sim *sim, unsigned number, bool on)
 {
     struct sim_unit *unit = &sim->unit[number - 1u];
     if (sim_powered(sim, number))
-        tell_power(sim, number, false);
+        add_power_event(sim, number, false);
     unit->forward = 0;
     if (on)
         segment_set_node(&sim->segment, number, sim->config.nodes.node[number - 1u]); /* S1 is read now (U4) */
     segment_power(&sim->segment, number, on);
     if (!on)
         return;
-    tell_power(sim, number, true);
+    add_power_event(sim, number, true);
     sim_update_inputs(sim, number);
 }
 
@@ -417,14 +417,14 @@ void sim_power(struct sim *sim, unsigned number, bool on)
 
 void sim_watch(struct sim *sim, struct watcher *watcher)
 {
-    watch_join(&sim->watch, watcher);
-    look_who_watches(sim);
+    watch_add_watcher(&sim->watch, watcher);
+    update_step_reports(sim);
 }
 
 void sim_unwatch(struct sim *sim, struct watcher *watcher)
 {
-    watch_leave(&sim->watch, watcher);
-    look_who_watches(sim);
+    watch_remove_watcher(&sim->watch, watcher);
+    update_step_reports(sim);
 }
 
 /* ---- Faults ---------------------------------------------------------------------------------------------------------- */

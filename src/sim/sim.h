@@ -4,9 +4,9 @@
  * `rkm04 test` and `rkm04 replay` as fast as it goes.
  *
  *     sim_begin(&sim, &config);             // units are powered up at tick 0
- *     sim_take(&sim, bytes, n, sim_now(&sim));
+ *     sim_queue_bytes(&sim, bytes, n, sim_now(&sim));
  *     sim_command(&sim, "di.set", params, &refusal);   // command.h
- *     sim_advance(&sim, tick);              // bytes for the master through config.out, everything else through watchers
+ *     sim_advance(&sim, tick);              // bytes for the host through config.out, everything else through watchers
  *
  * The same calls at the same ticks give the same bytes and events at the same ticks. Ticks are those of the line; they only
  * grow. A unit's own time begins when it is powered up (segment_since()). */
@@ -38,7 +38,7 @@ struct sim_flash {
 
 /* Somebody who takes down everything that comes in from outside, in the order in which it does (record.h). `now` is sim_now(). */
 struct sim_journal {
-    void (*bytes)(void *context, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length); /* sim_take() */
+    void (*bytes)(void *context, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length); /* sim_queue_bytes() */
     void (*purge)(void *context, uint64_t now);
     void (*line_break)(void *context, uint64_t now, bool on);
     void (*timed)(void *context, uint64_t now, bool timed);
@@ -54,7 +54,7 @@ struct sim_config {
     uint32_t turnaround;           /* ticks (segment.h) */
     uint64_t seed;                 /* of faults with a probability */
     struct sim_flash flash;        /* all NULL: memory that lives as long as the sim */
-    segment_out *out;              /* bytes that reach the master; NULL: nobody */
+    segment_out *out;              /* bytes that reach the host; NULL: nobody */
     void (*adapter)(void *context, bool plugged); /* the fault `unplugged` begins or ends; NULL: nobody wants to know */
     void *context;                 /* of `out` and `adapter` */
 };
@@ -107,7 +107,7 @@ void sim_advance(struct sim *sim, uint64_t tick);
 
 /* Move what is due by the present tick: what comes in from outside now comes after it. Called by everything that comes in, so
  * that what follows does not depend on how time was cut. */
-void sim_settle(struct sim *sim);
+void sim_finish_tick(struct sim *sim);
 
 /* A tick before which no byte moves; DEVICE_NEVER: none is under way (segment_due()). */
 uint64_t sim_due(const struct sim *sim);
@@ -119,11 +119,12 @@ uint64_t sim_next_event(const struct sim *sim);
 /* The same, without pulses that nobody sees: for who does not look at counters on the way. */
 uint64_t sim_next_report(const struct sim *sim);
 
-/* ---- The master ------------------------------------------------------------------------------------------------------- */
+/* ---- The host ------------------------------------------------------------------------------------------------------- */
 
-/* As segment_room(), segment_take(), segment_purge(), segment_break(); taken down in the journal, and subject to faults. */
+/* As segment_room(), segment_queue_bytes(), segment_purge(), segment_break(); written to the journal,
+ * and subject to injected faults. */
 size_t sim_room(const struct sim *sim);
-void sim_take(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tick);
+void sim_queue_bytes(struct sim *sim, const uint8_t *bytes, size_t length, uint64_t tick);
 size_t sim_purge(struct sim *sim);
 void sim_break(struct sim *sim, bool on);
 
@@ -172,7 +173,8 @@ int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, co
 
 /* ---- Watching --------------------------------------------------------------------------------------------------------- */
 
-/* As watch_join(), watch_leave(); pulses are reported while somebody wants them. A watcher sees what happens from now on. */
+/* As watch_add_watcher(), watch_remove_watcher(); pulses are reported while a watcher wants them. A watcher gets the events from
+ * now on. */
 void sim_watch(struct sim *sim, struct watcher *watcher);
 void sim_unwatch(struct sim *sim, struct watcher *watcher);
 

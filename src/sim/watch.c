@@ -41,7 +41,7 @@ enum watch_kind watch_kind_named(const char *name)
 }
 
 /* What an event owns. */
-static void drop(const struct watch_event *event)
+static void free_event(const struct watch_event *event)
 {
     if (event->kind == WATCH_MESSAGE)
         free((void *)event->message);
@@ -65,19 +65,19 @@ static bool make_room(struct watch *watch)
 void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event event)
 {
     if ((watch->kinds & WATCH_BIT(event.kind)) == 0) {
-        drop(&event);
+        free_event(&event);
         return;
     }
     if (!make_room(watch)) {
         watch->short_of_memory = true;
-        drop(&event);
+        free_event(&event);
         return;
     }
     event.order = (uint64_t)phase << ORDER_PHASE | watch->sequence++;
     watch->events[watch->count++] = event;
 }
 
-static int compare(const void *left, const void *right)
+static int compare_events(const void *left, const void *right)
 {
     const struct watch_event *a = left, *b = right;
     if (a->tick != b->tick)
@@ -85,18 +85,18 @@ static int compare(const void *left, const void *right)
     return a->order < b->order ? -1 : a->order > b->order;
 }
 
-void watch_hand_out(struct watch *watch, uint64_t tick)
+void watch_deliver(struct watch *watch, uint64_t tick)
 {
     size_t done = 0;
     if (watch->count == 0)
         return;
-    qsort(watch->events, watch->count, sizeof watch->events[0], compare);
+    qsort(watch->events, watch->count, sizeof watch->events[0], compare_events);
     for (; done < watch->count && watch->events[done].tick < tick; done++) {
         const struct watch_event *event = &watch->events[done];
         for (struct watcher *watcher = watch->watchers; watcher; watcher = watcher->next)
             if (watcher->kinds & WATCH_BIT(event->kind))
-                watcher->see(watcher->context, event);
-        drop(event);
+                watcher->on_event(watcher->context, event);
+        free_event(event);
     }
     watch->count -= done;
     memmove(watch->events, watch->events + done, watch->count * sizeof watch->events[0]);
@@ -105,7 +105,7 @@ void watch_hand_out(struct watch *watch, uint64_t tick)
 void watch_end(struct watch *watch)
 {
     for (size_t i = 0; i < watch->count; i++)
-        drop(&watch->events[i]);
+        free_event(&watch->events[i]);
     free(watch->events);
     *watch = (struct watch){0};
 }
@@ -118,7 +118,7 @@ static void sum_kinds(struct watch *watch)
 }
 
 /* Behind those who are there: they see everything first who came first. */
-void watch_join(struct watch *watch, struct watcher *watcher)
+void watch_add_watcher(struct watch *watch, struct watcher *watcher)
 {
     struct watcher **at = &watch->watchers;
     while (*at)
@@ -128,7 +128,7 @@ void watch_join(struct watch *watch, struct watcher *watcher)
     sum_kinds(watch);
 }
 
-void watch_leave(struct watch *watch, struct watcher *watcher)
+void watch_remove_watcher(struct watch *watch, struct watcher *watcher)
 {
     for (struct watcher **at = &watch->watchers; *at; at = &(*at)->next) {
         if (*at == watcher) {

@@ -27,7 +27,7 @@ enum watch_kind {
     WATCH_POWER,     /* value: 1 the unit has been powered up, 0 it has lost its power */
     WATCH_BYTE,      /* unit 0; `byte` */
     WATCH_MESSAGE,   /* unit 0; `message`: a frame or what was dropped of one */
-    WATCH_PLANT,     /* value: enum plant_news (plant.h); `text` says what */
+    WATCH_PLANT,     /* value: enum plant_event (plant.h); `text` says what */
     WATCH_INJECTED,  /* a fault on demand has acted; value: its number; `text` says what it did */
     WATCH_KINDS
 };
@@ -61,7 +61,7 @@ struct watch_event {
 struct watcher {
     uint32_t kinds; /* WATCH_BIT()s of what it wants to see */
     /* Must not advance or change the line. */
-    void (*see)(void *context, const struct watch_event *event);
+    void (*on_event)(void *context, const struct watch_event *event);
     void *context;
     struct watcher *next; /* inside */
 };
@@ -87,13 +87,13 @@ enum watch_kind watch_kind_named(const char *name);
 void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event event);
 
 /* Hand everything before `tick` to the watchers, in order. */
-void watch_hand_out(struct watch *watch, uint64_t tick);
+void watch_deliver(struct watch *watch, uint64_t tick);
 
 /* Forget everybody and everything. */
 void watch_end(struct watch *watch);
 
 /* A watcher, which must stay, wants to see from now on; no more. */
-void watch_join(struct watch *watch, struct watcher *watcher);
-void watch_leave(struct watch *watch, struct watcher *watcher);
+void watch_add_watcher(struct watch *watch, struct watcher *watcher);
+void watch_remove_watcher(struct watch *watch, struct watcher *watcher);
 
 #endif

@@ -105,7 +105,7 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
     case WATCH_MESSAGE:
         return put_message(at, sim, event->message);
     case WATCH_PLANT:
-        return put_string(put_text(put_string(at, plant_news_name((enum plant_news)event->value)), ",\"text\":"), event->text);
+        return put_string(put_text(put_string(at, plant_event_name((enum plant_event)event->value)), ",\"text\":"), event->text);
     case WATCH_INJECTED:
         return put_string(put_text(put_signed(at, event->value), ",\"text\":"), event->text);
     case WATCH_INPUTS:

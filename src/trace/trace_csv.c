@@ -50,7 +50,7 @@ static void write_row(struct trace_file *file, const struct watch_event *event, 
     trace_wrote(file, at);
 }
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     write_row(context, event, names[event->kind]);
 }
@@ -107,6 +107,6 @@ const struct trace_writer trace_csv = {
              WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
              WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION),
     .begin = begin,
-    .see = see,
+    .on_event = on_event,
     .end = end,
 };

@@ -81,7 +81,7 @@ bool trace_file_named(const char *path)
 /* What has happened before, also in the present tick, is behind all who watch. */
 static void settle(struct sim *sim)
 {
-    watch_hand_out(&sim->watch, sim_now(sim) + 1u);
+    watch_deliver(&sim->watch, sim_now(sim) + 1u);
 }
 
 struct trace_file *trace_file_begin_on(struct sim *sim, FILE *out, enum trace_format format)
@@ -96,7 +96,7 @@ struct trace_file *trace_file_begin_on(struct sim *sim, FILE *out, enum trace_fo
     }
     file->sim = sim;
     file->writer = writer;
-    file->watcher = (struct watcher){.kinds = writer->kinds, .see = writer->see, .context = file};
+    file->watcher = (struct watcher){.kinds = writer->kinds, .on_event = writer->on_event, .context = file};
     file->out = out;
     file->owned = false;
     file->error = 0;

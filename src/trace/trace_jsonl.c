@@ -9,7 +9,7 @@
 #define MOTOR_ROOM 200u
 #define UNIT_ROOM (160u + DEVICE_AXES_MAX * MOTOR_ROOM)
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct trace_file *file = context;
     size_t room = event_json_room(event) + 3u;
@@ -94,6 +94,6 @@ const struct trace_writer trace_jsonl = {
     .kind = {.name = "a JSON Lines trace", .begins = {"{\"t_us\":"}},
     .kinds = WATCH_ALL,
     .begin = begin,
-    .see = see,
+    .on_event = on_event,
     .end = end,
 };

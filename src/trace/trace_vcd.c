@@ -317,7 +317,7 @@ static void see_masks(struct trace_file *file, const struct watch_event *event)
     }
 }
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct trace_file *file = context;
     go_to(file, event->tick);
@@ -518,6 +518,6 @@ const struct trace_writer trace_vcd = {
              WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION),
     .state = sizeof(struct vcd),
     .begin = begin,
-    .see = see,
+    .on_event = on_event,
     .end = end,
 };

@@ -14,7 +14,7 @@ struct trace_writer {
     uint32_t kinds; /* WATCH_BIT()s of what the format shows */
     size_t state;   /* size of what it remembers, zeroed at the beginning */
     void (*begin)(struct trace_file *file);
-    void (*see)(void *file, const struct watch_event *event);
+    void (*on_event)(void *file, const struct watch_event *event);
     void (*end)(struct trace_file *file);
 };
 

@@ -72,7 +72,7 @@ static void write_message(struct wire_file *file, const struct wire_message *mes
     write_entry(file, &entry);
 }
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct wire_file *file = context;
     if (file->error != 0)
@@ -108,7 +108,7 @@ struct wire_file *wire_file_begin(struct sim *sim, const char *path, unsigned fl
     write_entry(file, &entry);
     file->watcher = (struct watcher){
         .kinds = WATCH_BIT(WATCH_MESSAGE) | WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_INJECTED),
-        .see = see,
+        .on_event = on_event,
         .context = file,
     };
     sim_watch(sim, &file->watcher);

@@ -26,7 +26,7 @@ enum option {
 };
 
 /* Flags of a packet. */
-#define FLAG_INBOUND 1u /* as the master sees it */
+#define FLAG_INBOUND 1u /* as the host sees it */
 #define FLAG_OUTBOUND 2u
 #define FLAG_SYMBOL_ERROR (UINT32_C(1) << 31)
 #define FLAG_TOO_SHORT (UINT32_C(1) << 26)
@@ -37,8 +37,8 @@ enum option {
 #define HEAD_SIZE 12u
 enum serial_event {
     EVENT_STATUS = 0x00,
-    EVENT_TRANSMITTED = 0x01, /* from the master */
-    EVENT_RECEIVED = 0x02,    /* by the master */
+    EVENT_TRANSMITTED = 0x01, /* from the host */
+    EVENT_RECEIVED = 0x02,    /* by the host */
     EVENT_FRAMING_ERROR = 0x07,
     EVENT_BREAK = 0x09
 };

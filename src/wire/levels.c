@@ -20,7 +20,7 @@ static unsigned bit_at(const struct wire_signal *signal, uint64_t time)
     return signal->held ? 0 : (unsigned)((time - signal->start) / WIRE_BIT);
 }
 
-static bool level(const struct wire *wire, uint64_t time)
+static bool is_high(const struct wire *wire, uint64_t time)
 {
     for (unsigned i = 0; i < wire->count; i++) {
         const struct wire_signal *signal = &wire->signal[i];
@@ -33,7 +33,7 @@ static bool level(const struct wire *wire, uint64_t time)
 /* ---- Where the line falls ------------------------------------------------------------------------------------------- */
 
 /* The first time after `after` and before `before` at which a signal goes to 0 by itself and finds the line at 1. */
-static uint64_t signal_falls(const struct wire *wire, const struct wire_signal *signal, uint64_t after, uint64_t before)
+static uint64_t is_signal_falling(const struct wire *wire, const struct wire_signal *signal, uint64_t after, uint64_t before)
 {
     unsigned bit = after < signal->start ? 0 : bit_at(signal, after) + 1u;
     for (; bit < (signal->held ? 1u : STOP_BIT); bit++) {
@@ -41,7 +41,7 @@ static uint64_t signal_falls(const struct wire *wire, const struct wire_signal *
         bool falls = (signal->bits >> bit & 1u) == 0 && (bit == 0 || (signal->bits >> (bit - 1u) & 1u) != 0);
         if (time >= before || time >= signal->end)
             break;
-        if (falls && time > after && (time == 0 || level(wire, time - 1u)))
+        if (falls && time > after && (time == 0 || is_high(wire, time - 1u)))
             return time;
     }
     return DEVICE_NEVER;
@@ -50,14 +50,14 @@ static uint64_t signal_falls(const struct wire *wire, const struct wire_signal *
 /* The first time from `from` on at which the line falls. `high`: whatever went before, it was at 1. */
 static uint64_t line_falls(const struct wire *wire, uint64_t from, bool high)
 {
-    if ((high || from == 0 || level(wire, from - 1u)) && !level(wire, from))
+    if ((high || from == 0 || is_high(wire, from - 1u)) && !is_high(wire, from))
         return from;
     uint64_t first = DEVICE_NEVER;
     for (unsigned i = 0; i < wire->count; i++) {
         const struct wire_signal *signal = &wire->signal[i];
         if (signal->end <= from)
             continue;
-        uint64_t time = signal_falls(wire, signal, from, first);
+        uint64_t time = is_signal_falling(wire, signal, from, first);
         if (time < first)
             first = time;
     }
@@ -65,7 +65,7 @@ static uint64_t line_falls(const struct wire *wire, uint64_t from, bool high)
 }
 
 /* The end of what a station sends itself at some time from `from` to before `before`; DEVICE_NEVER: it sends nothing then. */
-static uint64_t own_end(const struct wire *wire, unsigned station, uint64_t from, uint64_t before)
+static uint64_t end_of_own_signal(const struct wire *wire, unsigned station, uint64_t from, uint64_t before)
 {
     for (unsigned i = 0; i < wire->count; i++) {
         const struct wire_signal *signal = &wire->signal[i];
@@ -76,29 +76,29 @@ static uint64_t own_end(const struct wire *wire, unsigned station, uint64_t from
 }
 
 /* Find the beginning of the next byte that an ear hears: one during which it does not send itself. */
-static void listen(struct wire *wire, unsigned ear)
+static void find_next_byte(struct wire *wire, unsigned receiver)
 {
-    uint64_t from = wire->ear[ear].from, fall = DEVICE_NEVER, end;
+    uint64_t from = wire->receiver[receiver].from, fall = DEVICE_NEVER, end;
     bool high = false; /* its receiver is off while it sends and gives a 1 */
-    if ((wire->stations & bit_of(ear)) != 0) {
+    if ((wire->stations & bit_of(receiver)) != 0) {
         do {
-            while ((end = own_end(wire, ear, from, from + 1u)) != DEVICE_NEVER) {
+            while ((end = end_of_own_signal(wire, receiver, from, from + 1u)) != DEVICE_NEVER) {
                 from = end;
                 high = true;
             }
             fall = line_falls(wire, from, high);
-            end = own_end(wire, ear, from, fall == DEVICE_NEVER ? DEVICE_NEVER : fall + DECIDED + 1u);
+            end = end_of_own_signal(wire, receiver, from, fall == DEVICE_NEVER ? DEVICE_NEVER : fall + DECIDED + 1u);
             from = end;
             high = true;
         } while (end != DEVICE_NEVER);
     }
-    wire->ear[ear].fall = fall;
+    wire->receiver[receiver].fall = fall;
 }
 
-static void listen_all(struct wire *wire)
+static void find_next_bytes(struct wire *wire)
 {
-    for (unsigned ear = 0; ear < WIRE_EARS; ear++)
-        listen(wire, ear);
+    for (unsigned receiver = 0; receiver < WIRE_RECEIVERS; receiver++)
+        find_next_byte(wire, receiver);
 }
 
 /* ---- Signals -------------------------------------------------------------------------------------------------------- */
@@ -111,20 +111,20 @@ static void drop_signal(struct wire *wire, unsigned at)
 
 /* Forget signals that ended before `time` and before anything that is being heard. Nothing fell until they ended, so the ears
  * need not look there again. */
-static void forget(struct wire *wire, uint64_t time)
+static void drop_old_signals(struct wire *wire, uint64_t time)
 {
-    for (unsigned ear = 0; ear < WIRE_EARS; ear++)
-        if (wire->ear[ear].fall < time)
-            time = wire->ear[ear].fall;
+    for (unsigned receiver = 0; receiver < WIRE_RECEIVERS; receiver++)
+        if (wire->receiver[receiver].fall < time)
+            time = wire->receiver[receiver].fall;
     for (unsigned i = 0; i < wire->count;) {
         uint64_t end = wire->signal[i].end;
         if (end + 1u >= time) {
             i++;
             continue;
         }
-        for (unsigned ear = 0; ear < WIRE_EARS; ear++)
-            if (wire->ear[ear].from <= end)
-                wire->ear[ear].from = end + 1u;
+        for (unsigned receiver = 0; receiver < WIRE_RECEIVERS; receiver++)
+            if (wire->receiver[receiver].from <= end)
+                wire->receiver[receiver].from = end + 1u;
         drop_signal(wire, i);
     }
 }
@@ -144,7 +144,7 @@ static void count_collisions(struct wire *wire, struct wire_signal *added)
 /* Put a signal on the wire. Returns it. */
 static void add_signal(struct wire *wire, struct wire_signal added)
 {
-    forget(wire, added.start < WIRE_TICK ? 0 : added.start - WIRE_TICK);
+    drop_old_signals(wire, added.start < WIRE_TICK ? 0 : added.start - WIRE_TICK);
     if (wire->count == WIRE_SIGNALS) /* only breaks can be that short */
         drop_signal(wire, 0);
     count_collisions(wire, &added);
@@ -154,11 +154,11 @@ static void add_signal(struct wire *wire, struct wire_signal added)
     memmove(&wire->signal[at + 1u], &wire->signal[at], (wire->count - at) * sizeof wire->signal[0]);
     wire->signal[at] = added;
     wire->count++;
-    listen_all(wire);
+    find_next_bytes(wire);
 }
 
 /* End what a station sends. */
-static void cut(struct wire *wire, unsigned station, uint64_t time)
+static void cut_signals(struct wire *wire, unsigned station, uint64_t time)
 {
     for (unsigned i = 0; i < wire->count; i++) {
         struct wire_signal *signal = &wire->signal[i];
@@ -169,23 +169,23 @@ static void cut(struct wire *wire, unsigned station, uint64_t time)
 
 void wire_begin(struct wire *wire)
 {
-    *wire = (struct wire){.stations = bit_of(WIRE_MASTER) | bit_of(WIRE_MONITOR)};
-    listen_all(wire);
+    *wire = (struct wire){.stations = bit_of(WIRE_HOST) | bit_of(WIRE_MONITOR)};
+    find_next_bytes(wire);
 }
 
 void wire_join(struct wire *wire, unsigned station, uint64_t time)
 {
-    cut(wire, station, time);
+    cut_signals(wire, station, time);
     wire->stations |= bit_of(station);
-    wire->ear[station].from = time;
-    listen_all(wire);
+    wire->receiver[station].from = time;
+    find_next_bytes(wire);
 }
 
 void wire_leave(struct wire *wire, unsigned station, uint64_t time)
 {
-    cut(wire, station, time);
+    cut_signals(wire, station, time);
     wire->stations &= ~bit_of(station);
-    listen_all(wire);
+    find_next_bytes(wire);
 }
 
 void wire_send(struct wire *wire, unsigned station, uint8_t byte, uint64_t start)
@@ -214,7 +214,7 @@ void wire_hold(struct wire *wire, unsigned station, bool on, uint64_t time)
     if (on && !held)
         add_signal(wire, (struct wire_signal){.start = time, .end = HELD_END, .station = (uint8_t)station, .held = true});
     else
-        listen_all(wire);
+        find_next_bytes(wire);
 }
 
 void wire_shift(struct wire *wire, uint64_t parts)
@@ -224,28 +224,28 @@ void wire_shift(struct wire *wire, uint64_t parts)
         if (wire->signal[i].end != HELD_END)
             wire->signal[i].end += parts;
     }
-    for (unsigned ear = 0; ear < WIRE_EARS; ear++) {
-        wire->ear[ear].from += parts;
-        if (wire->ear[ear].fall != DEVICE_NEVER)
-            wire->ear[ear].fall += parts;
+    for (unsigned receiver = 0; receiver < WIRE_RECEIVERS; receiver++) {
+        wire->receiver[receiver].from += parts;
+        if (wire->receiver[receiver].fall != DEVICE_NEVER)
+            wire->receiver[receiver].fall += parts;
     }
 }
 
 /* ---- Hearing -------------------------------------------------------------------------------------------------------- */
 
 /* The ear that hears a byte next. */
-static unsigned next_ear(const struct wire *wire)
+static unsigned next_receiver(const struct wire *wire)
 {
     unsigned next = 0;
-    for (unsigned ear = 1; ear < WIRE_EARS; ear++)
-        if (wire->ear[ear].fall < wire->ear[next].fall)
-            next = ear;
+    for (unsigned receiver = 1; receiver < WIRE_RECEIVERS; receiver++)
+        if (wire->receiver[receiver].fall < wire->receiver[next].fall)
+            next = receiver;
     return next;
 }
 
 uint64_t wire_due(const struct wire *wire)
 {
-    uint64_t fall = wire->ear[next_ear(wire)].fall;
+    uint64_t fall = wire->receiver[next_receiver(wire)].fall;
     return fall == DEVICE_NEVER ? DEVICE_NEVER : fall + WIRE_BYTE;
 }
 
@@ -259,39 +259,39 @@ static uint32_t senders(const struct wire *wire, uint64_t start, uint64_t end)
 }
 
 /* What an ear makes of the line from its fall on. Returns false if that was no start bit. */
-static bool sample(const struct wire *wire, unsigned ear, struct wire_byte *heard)
+static bool sample(const struct wire *wire, unsigned receiver, struct wire_byte *received)
 {
-    uint64_t start = wire->ear[ear].fall;
-    if (level(wire, start + MIDDLE))
+    uint64_t start = wire->receiver[receiver].fall;
+    if (is_high(wire, start + MIDDLE))
         return false;
     unsigned byte = 0;
     for (unsigned bit = 1; bit < STOP_BIT; bit++)
-        byte |= (unsigned)level(wire, start + bit * WIRE_BIT + MIDDLE) << (bit - 1u);
-    *heard = (struct wire_byte){
+        byte |= (unsigned)is_high(wire, start + bit * WIRE_BIT + MIDDLE) << (bit - 1u);
+    *received = (struct wire_byte){
         .start = start,
         .end = start + WIRE_BYTE,
-        .ear = ear,
+        .receiver = receiver,
         .senders = senders(wire, start, start + WIRE_BYTE),
         .byte = (uint8_t)byte,
-        .lost = !level(wire, start + DECIDED),
+        .lost = !is_high(wire, start + DECIDED),
     };
     return true;
 }
 
-bool wire_hear(struct wire *wire, uint64_t until, struct wire_byte *byte)
+bool wire_receive(struct wire *wire, uint64_t until, struct wire_byte *byte)
 {
     while (wire_due(wire) <= until && wire_due(wire) != DEVICE_NEVER) {
-        unsigned number = next_ear(wire);
-        struct wire_ear *ear = &wire->ear[number];
-        bool heard = sample(wire, number, byte);
-        ear->from = ear->fall + (heard ? DECIDED : MIDDLE) + 1u;
-        listen(wire, number);
-        if (!heard)
+        unsigned number = next_receiver(wire);
+        struct wire_receiver *receiver = &wire->receiver[number];
+        bool received = sample(wire, number, byte);
+        receiver->from = receiver->fall + (received ? DECIDED : MIDDLE) + 1u;
+        find_next_byte(wire, number);
+        if (!received)
             continue;
         if (byte->lost)
-            ear->framing_errors++;
+            receiver->framing_errors++;
         else
-            ear->heard++;
+            receiver->received++;
         if (!byte->lost || number == WIRE_MONITOR)
             return true;
     }

@@ -21,11 +21,11 @@
 #define WIRE_BIT 625u   /* parts of a bit at 19200 baud */
 #define WIRE_BYTE 6250u /* parts of ten bits */
 
-#define WIRE_MASTER 0u                          /* station 0; 1..16 are units */
+#define WIRE_HOST 0u                          /* station 0; 1..16 are units */
 #define WIRE_STATIONS 17u /* the host, and sixteen units */
 #define WIRE_MONITOR WIRE_STATIONS              /* an ear that never sends: it hears everything */
-#define WIRE_EARS (WIRE_STATIONS + 1u)
-#define WIRE_NOISE WIRE_EARS                    /* no station: something that disturbs the line, for wire_hold() */
+#define WIRE_RECEIVERS (WIRE_STATIONS + 1u)
+#define WIRE_NOISE WIRE_RECEIVERS                    /* no station: something that disturbs the line, for wire_hold() */
 #define WIRE_SIGNALS 80u /* signals that matter at a time: of each station those of the last three bytes' time, and spare ones */
 
 /* A byte on the wire, or a break. */
@@ -37,11 +37,11 @@ struct wire_signal {
     bool collided;       /* counted already */
 };
 
-struct wire_ear {
+struct wire_receiver {
     uint64_t from;           /* it waits for the line to fall since then */
     uint64_t fall;           /* when that was; DEVICE_NEVER: not yet */
     uint64_t framing_errors; /* bytes lost: the stop bit was 0 */
-    uint64_t heard;          /* bytes */
+    uint64_t received;       /* bytes */
 };
 
 struct wire {
@@ -50,13 +50,13 @@ struct wire {
     uint32_t stations;   /* ears in use: bit n is station n, or the monitor */
     unsigned count;
     struct wire_signal signal[WIRE_SIGNALS]; /* in order of their starts */
-    struct wire_ear ear[WIRE_EARS];
+    struct wire_receiver receiver[WIRE_RECEIVERS];
 };
 
 /* What an ear has heard. */
 struct wire_byte {
     uint64_t start, end; /* parts: of the ten bits */
-    unsigned ear;        /* station 0..16, or WIRE_MONITOR */
+    unsigned receiver;   /* station 0..16, or WIRE_MONITOR */
     uint32_t senders;    /* who was sending meanwhile: bit n is station n; several: a collision */
     uint8_t byte;
     bool lost;           /* framing error: told to the monitor alone, with the bits as they were */
@@ -84,6 +84,6 @@ uint64_t wire_due(const struct wire *wire);
 
 /* Fetch the next byte heard by `until`; those of the same time come in the order of their ears. Returns false if there is
  * none. */
-bool wire_hear(struct wire *wire, uint64_t until, struct wire_byte *byte);
+bool wire_receive(struct wire *wire, uint64_t until, struct wire_byte *byte);
 
 #endif

@@ -21,7 +21,7 @@ static uint64_t tick_of(uint64_t parts)
 }
 
 /* Do the ticks before `tick`. */
-static void bring(struct segment *segment, uint64_t tick)
+static void advance_units(struct segment *segment, uint64_t tick)
 {
     if (tick <= segment->now)
         return;
@@ -36,7 +36,7 @@ static void bring(struct segment *segment, uint64_t tick)
     segment->now = tick;
 }
 
-static void give_master(struct segment *segment, const uint8_t *bytes, size_t length)
+static void deliver_to_host(struct segment *segment, const uint8_t *bytes, size_t length)
 {
     if (segment->config.out)
         segment->config.out(segment->config.context, bytes, length);
@@ -44,29 +44,29 @@ static void give_master(struct segment *segment, const uint8_t *bytes, size_t le
 
 /* ---- What goes wrong ------------------------------------------------------------------------------------------------ */
 
-static bool hears(const struct segment *segment, unsigned station, uint32_t senders)
+static bool is_receiving(const struct segment *segment, unsigned station, uint32_t senders)
 {
     const struct segment_hooks *hooks = segment->config.hooks;
-    return !hooks || !hooks->hears || hooks->hears(segment->config.hooks_context, station, senders);
+    return !hooks || !hooks->is_receiving || hooks->is_receiving(segment->config.hooks_context, station, senders);
 }
 
-static bool echoes(const struct segment *segment, uint32_t senders, uint8_t byte)
+static bool has_echo(const struct segment *segment, uint32_t senders, uint8_t byte)
 {
     const struct segment_hooks *hooks = segment->config.hooks;
     if (segment->config.echo)
         return true;
-    return hooks && hooks->echoes && (senders & 1u) != 0 && hooks->echoes(segment->config.hooks_context, byte);
+    return hooks && hooks->has_echo && (senders & 1u) != 0 && hooks->has_echo(segment->config.hooks_context, byte);
 }
 
-static void obeyed(struct segment *segment, const struct segment_unit *unit)
+static void report_processed(struct segment *segment, const struct segment_unit *unit)
 {
     const struct segment_hooks *hooks = segment->config.hooks;
-    if (hooks && hooks->obeyed)
-        hooks->obeyed(segment->config.hooks_context, (unsigned)(unit - segment->unit) + 1u);
+    if (hooks && hooks->processed)
+        hooks->processed(segment->config.hooks_context, (unsigned)(unit - segment->unit) + 1u);
 }
 
 /* What passes on the line in the place of a byte: the first bytes of *more. */
-static void change(struct segment *segment, unsigned station, uint8_t byte, struct segment_more *more)
+static void alter_byte(struct segment *segment, unsigned station, uint8_t byte, struct segment_more *more)
 {
     const struct segment_hooks *hooks = segment->config.hooks;
     more->at = 0;
@@ -77,24 +77,24 @@ static void change(struct segment *segment, unsigned station, uint8_t byte, stru
 }
 
 /* Has the unit an answer, now or later? */
-static bool answers(const struct segment *segment, const struct segment_unit *unit)
+static bool has_answer(const struct segment *segment, const struct segment_unit *unit)
 {
     return unit->powered && segment->config.kind->has_answer(unit->unit);
 }
 
 /* Ticks until the unit can begin with its answer. */
-static uint64_t wait_of(const struct segment *segment, const struct segment_unit *unit)
+static uint64_t answer_wait(const struct segment *segment, const struct segment_unit *unit)
 {
     return segment->config.kind->answer_wait(unit->unit);
 }
 
 /* How much later than now a unit begins with its answer; ticks. 0 in the middle of one. */
-static uint64_t delay(struct segment *segment, struct segment_unit *unit)
+static uint64_t answer_delay(struct segment *segment, struct segment_unit *unit)
 {
     const struct segment_hooks *hooks = segment->config.hooks;
     if (unit->begun)
         return 0;
-    uint64_t wait = wait_of(segment, unit);
+    uint64_t wait = answer_wait(segment, unit);
     if (wait > 0)
         return wait;
     unit->begun = true;
@@ -102,7 +102,7 @@ static uint64_t delay(struct segment *segment, struct segment_unit *unit)
 }
 
 /* Fetch the next byte of a unit's answer. Returns false if there is none. */
-static bool fetch(const struct segment *segment, struct segment_unit *unit, uint8_t *byte)
+static bool fetch_byte(const struct segment *segment, struct segment_unit *unit, uint8_t *byte)
 {
     const struct device_kind *kind = segment->config.kind;
     uint32_t answers = kind->counters(unit->unit).answers;
@@ -114,13 +114,13 @@ static bool fetch(const struct segment *segment, struct segment_unit *unit, uint
 
 /* ---- Stations ------------------------------------------------------------------------------------------------------- */
 
-static void tell_monitor(struct segment *segment, const struct segment_byte *byte)
+static void report_to_monitor(struct segment *segment, const struct segment_byte *byte)
 {
     if (segment->config.monitor)
         segment->config.monitor(segment->config.context, byte);
 }
 
-static void give_unit(struct segment *segment, struct segment_unit *unit, uint8_t byte)
+static void deliver_to_unit(struct segment *segment, struct segment_unit *unit, uint8_t byte)
 {
     const struct device_kind *kind = segment->config.kind;
     if (kind->receive(unit->unit, &byte, 1) == 0) {
@@ -131,11 +131,11 @@ static void give_unit(struct segment *segment, struct segment_unit *unit, uint8_
     uint32_t frames = counters.requests + counters.others + counters.dropped;
     unit->in_frame = frames == unit->frames;
     unit->frames = frames;
-    obeyed(segment, unit);
+    report_processed(segment, unit);
 }
 
 /* Take the first byte of the queue. */
-static uint8_t take_first(struct segment *segment)
+static uint8_t pop_queue(struct segment *segment)
 {
     uint8_t byte = segment->queue[segment->head].byte;
     segment->head = (segment->head + 1u) % SEGMENT_ROOM;
@@ -150,10 +150,10 @@ static bool has_more(const struct segment *segment, unsigned station)
     return segment->more[station].at < segment->more[station].count;
 }
 
-/* When (parts) the next start bit of the master is due; DEVICE_NEVER: none. */
-static uint64_t next_of_master(const struct segment *segment)
+/* When (parts) the next start bit of the host is due; DEVICE_NEVER: none. */
+static uint64_t next_host_time(const struct segment *segment)
 {
-    if (has_more(segment, WIRE_MASTER))
+    if (has_more(segment, WIRE_HOST))
         return segment->more_start;
     return segment->count > 0 ? segment->queue[segment->head].start : DEVICE_NEVER;
 }
@@ -161,8 +161,8 @@ static uint64_t next_of_master(const struct segment *segment)
 /* When (parts) the next start bit is due, and of which station; DEVICE_NEVER: none. */
 static uint64_t next_start(const struct segment *segment, unsigned *station)
 {
-    uint64_t start = next_of_master(segment);
-    *station = WIRE_MASTER;
+    uint64_t start = next_host_time(segment);
+    *station = WIRE_HOST;
     for (unsigned i = 0; i < segment->units; i++) {
         if (segment->unit[i].next < start) {
             start = segment->unit[i].next;
@@ -182,8 +182,8 @@ static void push_queue(struct segment *segment, uint64_t time)
         *start = time;
         time += WIRE_BYTE;
     }
-    if (segment->master_free < time)
-        segment->master_free = time;
+    if (segment->host_free < time)
+        segment->host_free = time;
 }
 
 static void send_more(struct segment *segment, unsigned station, uint64_t start)
@@ -193,67 +193,67 @@ static void send_more(struct segment *segment, unsigned station, uint64_t start)
         wire_send(&segment->wire, station, more->byte[more->at++], start);
 }
 
-static void start_of_master(struct segment *segment, uint64_t start)
+static void host_start(struct segment *segment, uint64_t start)
 {
-    const struct segment_more *more = &segment->more[WIRE_MASTER];
-    if (!has_more(segment, WIRE_MASTER)) {
-        change(segment, WIRE_MASTER, take_first(segment), &segment->more[WIRE_MASTER]);
+    const struct segment_more *more = &segment->more[WIRE_HOST];
+    if (!has_more(segment, WIRE_HOST)) {
+        alter_byte(segment, WIRE_HOST, pop_queue(segment), &segment->more[WIRE_HOST]);
         push_queue(segment, start + WIRE_BYTE * (more->count > 0 ? more->count : 1u));
     }
-    send_more(segment, WIRE_MASTER, start);
+    send_more(segment, WIRE_HOST, start);
     segment->more_start = start + WIRE_BYTE;
 }
 
-static void start_of_unit(struct segment *segment, unsigned station, uint64_t start)
+static void unit_start(struct segment *segment, unsigned station, uint64_t start)
 {
     struct segment_unit *unit = &segment->unit[station - 1u];
     uint8_t byte;
     if (!has_more(segment, station)) {
-        uint64_t later = delay(segment, unit);
+        uint64_t later = answer_delay(segment, unit);
         if (later > 0) {
             unit->next = start + later * WIRE_TICK;
             return;
         }
-        if (fetch(segment, unit, &byte))
-            change(segment, station, byte, &segment->more[station]);
+        if (fetch_byte(segment, unit, &byte))
+            alter_byte(segment, station, byte, &segment->more[station]);
     }
     send_more(segment, station, start);
-    unit->next = has_more(segment, station) || answers(segment, unit) ? start + WIRE_BYTE : DEVICE_NEVER;
-    obeyed(segment, unit);
+    unit->next = has_more(segment, station) || has_answer(segment, unit) ? start + WIRE_BYTE : DEVICE_NEVER;
+    report_processed(segment, unit);
 }
 
 static void start_byte(struct segment *segment, unsigned station, uint64_t start)
 {
-    if (station == WIRE_MASTER)
-        start_of_master(segment, start);
+    if (station == WIRE_HOST)
+        host_start(segment, start);
     else
-        start_of_unit(segment, station, start);
+        unit_start(segment, station, start);
 }
 
-static void end_byte(struct segment *segment, const struct wire_byte *heard)
+static void end_byte(struct segment *segment, const struct wire_byte *received)
 {
-    uint32_t senders = heard->senders & ((UINT32_C(1) << WIRE_STATIONS) - 1u);
-    if (heard->ear == WIRE_MONITOR) {
+    uint32_t senders = received->senders & ((UINT32_C(1) << WIRE_STATIONS) - 1u);
+    if (received->receiver == WIRE_MONITOR) {
         struct segment_byte byte = {
-            .start = heard->start / WIRE_TICK,
+            .start = received->start / WIRE_TICK,
             .tick = segment->now,
             .senders = senders,
-            .byte = heard->byte,
-            .lost = heard->lost,
+            .byte = received->byte,
+            .lost = received->lost,
         };
-        if (!heard->lost && echoes(segment, senders, heard->byte) && hears(segment, WIRE_MASTER, senders))
-            give_master(segment, &heard->byte, 1);
-        tell_monitor(segment, &byte);
-    } else if (!hears(segment, heard->ear, senders)) {
+        if (!received->lost && has_echo(segment, senders, received->byte) && is_receiving(segment, WIRE_HOST, senders))
+            deliver_to_host(segment, &received->byte, 1);
+        report_to_monitor(segment, &byte);
+    } else if (!is_receiving(segment, received->receiver, senders)) {
         return;
-    } else if (heard->ear == WIRE_MASTER) {
+    } else if (received->receiver == WIRE_HOST) {
         if (!segment->config.echo) /* with an echo it hears what the monitor hears */
-            give_master(segment, &heard->byte, 1);
+            deliver_to_host(segment, &received->byte, 1);
     } else {
-        struct segment_unit *unit = &segment->unit[heard->ear - 1u];
-        give_unit(segment, unit, heard->byte);
-        if (unit->next == DEVICE_NEVER && answers(segment, unit))
-            unit->next = heard->end + (segment->config.turnaround + wait_of(segment, unit)) * (uint64_t)WIRE_TICK;
+        struct segment_unit *unit = &segment->unit[received->receiver - 1u];
+        deliver_to_unit(segment, unit, received->byte);
+        if (unit->next == DEVICE_NEVER && has_answer(segment, unit))
+            unit->next = received->end + (segment->config.turnaround + answer_wait(segment, unit)) * (uint64_t)WIRE_TICK;
     }
 }
 
@@ -264,11 +264,11 @@ static void advance_timed(struct segment *segment, uint64_t until)
         uint64_t start = next_start(segment, &station), end = wire_due(&segment->wire), next = earlier(start, end);
         if (next > until)
             return;
-        bring(segment, tick_of(next));
-        struct wire_byte heard;
+        advance_units(segment, tick_of(next));
+        struct wire_byte received;
         if (end <= start) {
-            if (wire_hear(&segment->wire, end, &heard))
-                end_byte(segment, &heard);
+            if (wire_receive(&segment->wire, end, &received))
+                end_byte(segment, &received);
         } else {
             start_byte(segment, station, start);
         }
@@ -277,26 +277,26 @@ static void advance_timed(struct segment *segment, uint64_t until)
 
 /* ---- Bytes that take no time ---------------------------------------------------------------------------------------- */
 
-/* Let the byte of a station be heard by the units in `ears` (bit n: unit n), the monitor, and the master if it is a unit's. */
-static void pass(struct segment *segment, unsigned station, uint32_t ears, uint8_t byte)
+/* Let the byte of a station be heard by the units in `ears` (bit n: unit n), the monitor, and the host if it is a unit's. */
+static void pass_byte(struct segment *segment, unsigned station, uint32_t receivers, uint8_t byte)
 {
     uint32_t sender = UINT32_C(1) << station;
     segment->quiet_bytes++;
-    if (!segment->disturbed && hears(segment, WIRE_MASTER, sender) &&
-        (station != WIRE_MASTER || echoes(segment, sender, byte)))
-        give_master(segment, &byte, 1);
+    if (!segment->disturbed && is_receiving(segment, WIRE_HOST, sender) &&
+        (station != WIRE_HOST || has_echo(segment, sender, byte)))
+        deliver_to_host(segment, &byte, 1);
     for (unsigned i = 0; i < segment->units && !segment->disturbed; i++)
-        if (segment->unit[i].powered && (ears >> (i + 1u) & 1u) != 0 && hears(segment, i + 1u, sender))
-            give_unit(segment, &segment->unit[i], byte);
-    tell_monitor(segment, &(struct segment_byte){segment->now, segment->now, sender, byte, segment->disturbed});
+        if (segment->unit[i].powered && (receivers >> (i + 1u) & 1u) != 0 && is_receiving(segment, i + 1u, sender))
+            deliver_to_unit(segment, &segment->unit[i], byte);
+    report_to_monitor(segment, &(struct segment_byte){segment->now, segment->now, sender, byte, segment->disturbed});
 }
 
-static void pass_changed(struct segment *segment, unsigned station, uint32_t ears, uint8_t byte)
+static void pass_altered(struct segment *segment, unsigned station, uint32_t receivers, uint8_t byte)
 {
     struct segment_more changed;
-    change(segment, station, byte, &changed);
+    alter_byte(segment, station, byte, &changed);
     for (unsigned i = 0; i < changed.count; i++)
-        pass(segment, station, ears, changed.byte[i]);
+        pass_byte(segment, station, receivers, changed.byte[i]);
 }
 
 /* Units that take each other's answers for requests go on for ever, and without time there is no end to how many they are in a
@@ -307,9 +307,9 @@ static void cut_answers(struct segment *segment)
     for (unsigned i = 0; i < segment->units; i++) {
         struct segment_unit *unit = &segment->unit[i];
         unit->next = DEVICE_NEVER;
-        while (answers(segment, unit)) {
-            (void)fetch(segment, unit, &byte);
-            obeyed(segment, unit);
+        while (has_answer(segment, unit)) {
+            (void)fetch_byte(segment, unit, &byte);
+            report_processed(segment, unit);
         }
     }
     segment->cuts++;
@@ -319,20 +319,20 @@ static void cut_answers(struct segment *segment)
 }
 
 /* Let a unit send its answer, and what it has to answer then (P10). */
-static void pass_answer(struct segment *segment, unsigned station, uint32_t ears)
+static void pass_answer(struct segment *segment, unsigned station, uint32_t receivers)
 {
     struct segment_unit *unit = &segment->unit[station - 1u];
     uint8_t byte;
-    while (answers(segment, unit)) {
+    while (has_answer(segment, unit)) {
         segment->unasked += !unit->begun;
-        uint64_t later = delay(segment, unit);
+        uint64_t later = answer_delay(segment, unit);
         if (later > 0) {
             unit->next = parts_of(segment->now + later);
             return;
         }
-        if (fetch(segment, unit, &byte))
-            pass_changed(segment, station, ears, byte);
-        obeyed(segment, unit);
+        if (fetch_byte(segment, unit, &byte))
+            pass_altered(segment, station, receivers, byte);
+        report_processed(segment, unit);
     }
 }
 
@@ -340,20 +340,20 @@ static void pass_answer(struct segment *segment, unsigned station, uint32_t ears
  * next tick, so that they cannot go on for ever in this one. */
 static void pass_answers(struct segment *segment)
 {
-    uint32_t ears = 0;
+    uint32_t receivers = 0;
     for (unsigned i = 0; i < segment->units; i++) {
         struct segment_unit *unit = &segment->unit[i];
         if (unit->next != DEVICE_NEVER && unit->next <= parts_of(segment->now))
             unit->next = DEVICE_NEVER; /* it has waited long enough */
-        ears |= (uint32_t)(!answers(segment, unit) || unit->next != DEVICE_NEVER) << (i + 1u);
+        receivers |= (uint32_t)(!has_answer(segment, unit) || unit->next != DEVICE_NEVER) << (i + 1u);
     }
     for (unsigned i = 0; i < segment->units; i++)
-        if ((ears >> (i + 1u) & 1u) == 0)
-            pass_answer(segment, i + 1u, ears);
+        if ((receivers >> (i + 1u) & 1u) == 0)
+            pass_answer(segment, i + 1u, receivers);
     segment->again = DEVICE_NEVER;
     for (unsigned i = 0; i < segment->units; i++) {
         const struct segment_unit *unit = &segment->unit[i];
-        if (answers(segment, unit))
+        if (has_answer(segment, unit))
             segment->again = earlier(segment->again, unit->next == DEVICE_NEVER ? segment->now + 1u : tick_of(unit->next));
     }
 }
@@ -367,11 +367,11 @@ static uint64_t untimed_due(const struct segment *segment)
 static void advance_untimed(struct segment *segment, uint64_t tick)
 {
     for (uint64_t due; (due = untimed_due(segment)) <= tick && due != DEVICE_NEVER;) {
-        bring(segment, due);
+        advance_units(segment, due);
         if (segment->again > segment->now) {
             segment->unasked = 0;
             segment->asked = segment->now;
-            pass_changed(segment, WIRE_MASTER, UINT32_MAX, take_first(segment));
+            pass_altered(segment, WIRE_HOST, UINT32_MAX, pop_queue(segment));
         }
         if (segment->unasked > SEGMENT_UNASKED_MAX)
             cut_answers(segment);
@@ -393,7 +393,7 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
     segment->unasked = 0;
     segment->asked = segment->cuts = segment->cut_ticks = 0;
     segment->again = DEVICE_NEVER;
-    segment->master_free = 0;
+    segment->host_free = 0;
     segment->head = segment->count = 0;
     segment->disturbed = false;
     for (unsigned station = 0; station < WIRE_STATIONS; station++)
@@ -480,8 +480,8 @@ void segment_set_timed(struct segment *segment, bool timed)
 {
     segment->config.timed = timed;
     wire_hold(&segment->wire, WIRE_NOISE, timed && segment->disturbed, parts_of(segment->now));
-    wire_hold(&segment->wire, WIRE_MASTER, timed && segment->held, parts_of(segment->now));
-    segment->master_free = parts_of(segment->now);
+    wire_hold(&segment->wire, WIRE_HOST, timed && segment->held, parts_of(segment->now));
+    segment->host_free = parts_of(segment->now);
 }
 
 size_t segment_room(const struct segment *segment)
@@ -491,16 +491,16 @@ size_t segment_room(const struct segment *segment)
 
 /* A byte sets out at its tick or when the one before has passed; within the tick in which that happens it follows without a gap,
  * so that no rounding adds up. */
-void segment_take(struct segment *segment, const uint8_t *bytes, size_t length, uint64_t tick)
+void segment_queue_bytes(struct segment *segment, const uint8_t *bytes, size_t length, uint64_t tick)
 {
-    if (!segment->config.timed || segment->master_free + WIRE_TICK <= parts_of(tick))
-        segment->master_free = parts_of(tick);
+    if (!segment->config.timed || segment->host_free + WIRE_TICK <= parts_of(tick))
+        segment->host_free = parts_of(tick);
     for (size_t i = 0; i < length; i++) {
         size_t at = (segment->head + segment->count++) % SEGMENT_ROOM;
-        segment->queue[at].start = segment->master_free;
+        segment->queue[at].start = segment->host_free;
         segment->queue[at].byte = bytes[i];
         if (segment->config.timed)
-            segment->master_free += WIRE_BYTE;
+            segment->host_free += WIRE_BYTE;
     }
 }
 
@@ -508,8 +508,8 @@ size_t segment_purge(struct segment *segment)
 {
     size_t count = segment->count;
     if (count > 0)
-        segment->master_free = next_of_master(segment);
-    segment->count = segment->more[WIRE_MASTER].count = 0;
+        segment->host_free = next_host_time(segment);
+    segment->count = segment->more[WIRE_HOST].count = 0;
     return count;
 }
 
@@ -517,7 +517,7 @@ void segment_break(struct segment *segment, bool on)
 {
     segment->held = on;
     if (segment->config.timed)
-        wire_hold(&segment->wire, WIRE_MASTER, on, parts_of(segment->now));
+        wire_hold(&segment->wire, WIRE_HOST, on, parts_of(segment->now));
 }
 
 void segment_disturb(struct segment *segment, bool on)
@@ -539,7 +539,7 @@ void segment_advance(struct segment *segment, uint64_t tick)
         advance_timed(segment, parts_of(goal));
     else
         advance_untimed(segment, goal);
-    bring(segment, goal);
+    advance_units(segment, goal);
 }
 
 uint64_t segment_due(const struct segment *segment)
@@ -551,7 +551,7 @@ uint64_t segment_due(const struct segment *segment)
     return tick_of(earlier(wire_due(&segment->wire), start == DEVICE_NEVER ? DEVICE_NEVER : start + WIRE_BYTE));
 }
 
-static uint64_t next_of_units(const struct segment *segment, uint64_t (*next_of)(const struct device_unit *))
+static uint64_t next_unit_time(const struct segment *segment, uint64_t (*next_of)(const struct device_unit *))
 {
     uint64_t next = DEVICE_NEVER;
     for (unsigned i = 0; i < segment->units; i++) {
@@ -565,12 +565,12 @@ static uint64_t next_of_units(const struct segment *segment, uint64_t (*next_of)
 
 uint64_t segment_next_event(const struct segment *segment)
 {
-    return next_of_units(segment, segment->config.kind->next_event);
+    return next_unit_time(segment, segment->config.kind->next_event);
 }
 
 uint64_t segment_next_report(const struct segment *segment)
 {
-    return next_of_units(segment, segment->config.kind->next_report);
+    return next_unit_time(segment, segment->config.kind->next_report);
 }
 
 bool segment_in_frame(const struct segment *segment)
@@ -591,7 +591,7 @@ struct segment_counters segment_counters(const struct segment *segment)
     return (struct segment_counters){
         .bytes = segment->wire.sent + segment->quiet_bytes,
         .collisions = segment->wire.collisions,
-        .framing_errors = segment->wire.ear[WIRE_MONITOR].framing_errors,
+        .framing_errors = segment->wire.receiver[WIRE_MONITOR].framing_errors,
         .overruns = segment->overruns,
         .cuts = segment->cuts,
         .cut_ticks = segment->cut_ticks,

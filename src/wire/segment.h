@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: MIT */
-/* segment.h: one RS485 line in virtual time: a master and up to sixteen units on one pair of wires. Pure: no file, no clock.
+/* segment.h: one RS485 line in virtual time: a host and up to sixteen units on one pair of wires. Pure: no file, no clock.
  *
  *     static struct segment segment;                              // large, zero-initialised
  *     segment_begin(&segment, &config);
  *     number = segment_add_unit(&segment, &unit_config, &port, context);  // power-up; 1, 2, …
- *     segment_take(&segment, bytes, length, tick);                // the master sends, length <= segment_room()
- *     segment_advance(&segment, segment_due(&segment));           // config.out gets what the master hears
+ *     segment_queue_bytes(&segment, bytes, length, tick);                // the host sends, length <= segment_room()
+ *     segment_advance(&segment, segment_due(&segment));           // config.out gets what the host hears
  *
- * With `timed`, bytes take the time they take at 19200 baud (U7): ten bits, 3125/6 us, in either direction. One of the master
+ * With `timed`, bytes take the time they take at 19200 baud (U7): ten bits, 3125/6 us, in either direction. One of the host
  * sets out when it is handed over or when the one before has passed; every unit gets it at the tick at which its stop bit ends
  * (K4), so byte k of a burst has arrived at ceil(k * 3125 / 6) after its beginning. Gaps stay. The first start bit of an answer
  * follows the end of the request after the turnaround; the bytes of an answer follow one another without a gap.
  *   Every station hears every other one: units hear the answers of other units too, and leave them alone (L1). Nobody hears while
  * it sends itself. Nobody waits for a free line either: who begins while another is sending collides with it, and what is heard
  * comes out of the levels, bit by bit (wire.h). So two units of the same address answer at once; where their answers are the same
- * nobody can tell, otherwise the check sum fails at the master.
+ * nobody can tell, otherwise the check sum fails at the host.
  *   P10: a request heard during a unit's turnaround is taken when the last byte of the answer before has set out. What else comes
  * in until then is lost, as it is on a line where nobody can be made to wait; see segment_counters.overruns.
  *
- * Without `timed`, bytes take no time: a byte of the master reaches all units at the tick at which it is handed over, an answer
- * goes out in the tick of its request, whole, and the next byte of the master comes after it (P10). No turnaround, no
+ * Without `timed`, bytes take no time: a byte of the host reaches all units at the tick at which it is handed over, an answer
+ * goes out in the tick of its request, whole, and the next byte of the host comes after it (P10). No turnaround, no
  * collisions: of several answers at once the lower number's comes first, and those who answer do not hear one another.
  *
  * Order within a tick: bytes, then what the units do (K2). What a segment does depends on the bytes handed over and their ticks
@@ -34,22 +34,22 @@
 #include "device/device.h"
 #include "levels.h"
 
-#define SEGMENT_UNITS 16u                /* on one line (U4) */
-#define SEGMENT_ROOM 4096u              /* bytes of the master that may be under way */
+#define SEGMENT_UNITS 16u               /* on one line (U4) */
+#define SEGMENT_ROOM 4096u              /* bytes of the host that may be under way */
 #define SEGMENT_TURNAROUND 521u         /* ticks, the default: one character */
-#define SEGMENT_UNASKED_MAX 1000u       /* without time: more answers than this without a byte of the master are cut off */
+#define SEGMENT_UNASKED_MAX 1000u       /* without time: more answers than this without a byte of the host are cut off */
 #define SEGMENT_TURNAROUND_MAX 1000000u /* ticks */
 
 /* A byte on the line, for a monitor that hears everything. */
 struct segment_byte {
     uint64_t start;   /* tick at which its start bit began, rounded down */
     uint64_t tick;    /* at which it had passed, rounded up: the present one */
-    uint32_t senders; /* bit 0: the master; bit n: unit n; several bits: a collision; none: segment_disturb() */
+    uint32_t senders; /* bit 0: the host; bit n: unit n; several bits: a collision; none: segment_disturb() */
     uint8_t byte;     /* as heard by someone who sends nothing */
     bool lost;        /* framing error: nobody has got it */
 };
 
-/* Gets the bytes that reach the master, at the tick segment_now(). Must not call back into the segment, but for reading. */
+/* Gets the bytes that reach the host, at the tick segment_now(). Must not call back into the segment, but for reading. */
 typedef void segment_out(void *context, const uint8_t *bytes, size_t length);
 
 /* Gets every byte on the line when it has passed, after the stations. The same restriction. */
@@ -62,23 +62,23 @@ typedef void segment_monitor(void *context, const struct segment_byte *byte);
 struct segment_hooks {
     /* Unit `number` is to begin with its answer now. Returns by how many ticks later it will, at most SEGMENT_DELAY_MAX. */
     uint64_t (*answer)(void *context, unsigned number);
-    /* `station` (0: the master, n: unit n) sends a byte. Writes what passes on the line instead. Returns its length, at most
+    /* `station` (0: the host, n: unit n) sends a byte. Writes what passes on the line instead. Returns its length, at most
      * SEGMENT_CHANGED_MAX; 0: silence for as long as the byte would have taken. */
     size_t (*send)(void *context, unsigned station, uint8_t byte, uint8_t *bytes);
     /* Does `station` get what `senders` (as in struct segment_byte) have sent? */
-    bool (*hears)(void *context, unsigned station, uint32_t senders);
-    /* Does the master hear this byte, which it has sent itself? */
-    bool (*echoes)(void *context, uint8_t byte);
+    bool (*is_receiving)(void *context, unsigned station, uint32_t senders);
+    /* Does the host hear this byte, which it has sent itself? */
+    bool (*has_echo)(void *context, uint8_t byte);
     /* Unit `number` has looked at a byte, or fetched one to send: it may have obeyed a request. This one may switch the unit off
      * or on (segment_power()). */
-    void (*obeyed)(void *context, unsigned number);
+    void (*processed)(void *context, unsigned number);
 };
 
 #define SEGMENT_DELAY_MAX UINT64_C(1000000000000) /* ticks */
 
 struct segment_config {
     bool timed;             /* false: bytes take no time (--baud 0) */
-    bool echo;              /* the master hears its own bytes, too (a two-wire adapter with local echo) */
+    bool echo;              /* the host hears its own bytes, too (a two-wire adapter with local echo) */
     uint32_t turnaround;    /* ticks, 0..SEGMENT_TURNAROUND_MAX, from the end of a request to the start bit of the answer */
     const struct device_kind *kind; /* of all units; NULL: the RKM04 */
     segment_out *out;       /* NULL: nobody */
@@ -135,12 +135,12 @@ struct segment {
     bool disturbed, held;    /* segment_disturb(), segment_break() */
     uint64_t more_start;     /* parts: start bit of the next of the master's more[0] */
     struct segment_more more[WIRE_STATIONS];
-    uint64_t master_free;    /* parts: when the master's last byte will have passed */
-    size_t head, count;      /* of the queue */
+    uint64_t host_free;    /* parts: when the master's last byte will have passed */
+    size_t head, count;    /* of the queue */
     struct {
         uint64_t start;      /* parts */
         uint8_t byte;
-    } queue[SEGMENT_ROOM];   /* bytes of the master that have not set out */
+    } queue[SEGMENT_ROOM];   /* bytes of the host that have not set out */
 };
 
 /* ---- Begin ------------------------------------------------------------------------------------------------------------ */
@@ -182,19 +182,19 @@ uint64_t segment_since(const struct segment *segment, unsigned number);
  * is on is switched off and on again. */
 void segment_power(struct segment *segment, unsigned number, bool on);
 
-/* ---- The master ------------------------------------------------------------------------------------------------------- */
+/* ---- The host ------------------------------------------------------------------------------------------------------- */
 
 /* Bytes that can be handed over now. */
 size_t segment_room(const struct segment *segment);
 
-/* The master hands over `length` <= segment_room() bytes at `tick` >= segment_now(); ticks must not decrease from call to
+/* The host hands over `length` <= segment_room() bytes at `tick` >= segment_now(); ticks must not decrease from call to
  * call. */
-void segment_take(struct segment *segment, const uint8_t *bytes, size_t length, uint64_t tick);
+void segment_queue_bytes(struct segment *segment, const uint8_t *bytes, size_t length, uint64_t tick);
 
 /* Forget the bytes handed over that have not set out at the present tick (purge of RFC 2217). Returns their number. */
 size_t segment_purge(struct segment *segment);
 
-/* The master holds the line at 0 from the present tick on, or lets it go (break). Without `timed` nothing comes
+/* The host holds the line at 0 from the present tick on, or lets it go (break). Without `timed` nothing comes
  * of it until bytes take time again. */
 void segment_break(struct segment *segment, bool on);
 
@@ -220,7 +220,7 @@ void segment_shift(struct segment *segment, uint64_t ticks);
  * memory is short: then `to` is as it was, or, if it was zero, fit for segment_end() alone. */
 bool segment_copy(struct segment *to, const struct segment *from);
 
-/* A tick before which no byte reaches anybody if the master hands over nothing more: advancing in one go up to it changes nothing
+/* A tick before which no byte reaches anybody if the host hands over nothing more: advancing in one go up to it changes nothing
  * that can be seen on the line. Mostly the tick of the next byte; DEVICE_NEVER: nothing is under way. May lie before
  * segment_now(): then there is something to do at once. */
 uint64_t segment_due(const struct segment *segment);
@@ -228,7 +228,7 @@ uint64_t segment_due(const struct segment *segment);
 /* The earliest tick at which a unit does something of itself (device_kind.next_event); DEVICE_NEVER if none ever does. */
 uint64_t segment_next_event(const struct segment *segment);
 
-/* Has the master left a frame unfinished: did the bytes passed so far end in the middle of one, as the units see it? */
+/* Has the host left a frame unfinished: did the bytes passed so far end in the middle of one, as the units see it? */
 bool segment_in_frame(const struct segment *segment);
 
 /* The same, without pulses that nobody sees (device_kind.next_report). */

@@ -58,7 +58,7 @@ void segment_shift(struct segment *segment, uint64_t ticks)
     segment->now += ticks;
     segment->asked += ticks;
     postpone(&segment->again, ticks);
-    segment->master_free += parts;
+    segment->host_free += parts;
     segment->more_start += parts;
     for (size_t i = 0; i < segment->count; i++)
         segment->queue[(segment->head + i) % SEGMENT_ROOM].start += parts;

@@ -30,7 +30,7 @@ enum wire_fate {
 struct wire_message {
     uint64_t start;       /* tick at which its first byte began */
     uint64_t end;         /* tick at which its last byte had passed; watch_event.tick, or before it if that was noticed later */
-    uint32_t senders;     /* bit 0: the master; bit n: unit n */
+    uint32_t senders;     /* bit 0: the host; bit n: unit n */
     uint32_t collided;    /* those who have sent at the same time as another one */
     unsigned lost;        /* bytes inside that nobody has got (framing errors); they are not in `raw` */
     enum wire_fate fate;

@@ -51,22 +51,22 @@ static void ignored_for_address(struct wire_text *out, const struct segment *seg
 }
 
 /* Why a whole request is obeyed by nobody. Nothing if somebody may obey it. */
-static void words_ignored(struct wire_text *out, const struct segment *segment, const struct wire_ear_monitor *ear)
+static void words_ignored(struct wire_text *out, const struct segment *segment, const struct wire_frame *frame)
 {
-    const struct rkm04_receiver *frame = &ear->receiver;
-    if (frame->snode >= 1 && frame->snode <= RKM04_NODE_MAX)
+    const struct rkm04_receiver *head = &frame->receiver;
+    if (head->snode >= 1 && head->snode <= RKM04_NODE_MAX)
         wire_text_string(out, "by its sender's address it is the answer of a unit (L1)");
-    else if (frame->dnode == 0 && ear->message[0] != 2 && ear->message[0] != 3)
+    else if (head->dnode == 0 && frame->message[0] != 2 && frame->message[0] != 3)
         wire_text_string(out, "a request to all units is not answered (P10)");
     else
-        ignored_for_address(out, segment, frame->dnode);
-    if (out->length == 0 && ear->overruns > 0)
+        ignored_for_address(out, segment, head->dnode);
+    if (out->length == 0 && frame->overruns > 0)
         wire_text_string(out, "bytes lost, a unit had a request waiting (P10)");
 }
 
 /* ---- Messages ------------------------------------------------------------------------------------------------------- */
 
-static const uint8_t *append(struct wire_message *message, size_t *used, const void *bytes, size_t length)
+static const uint8_t *append_bytes(struct wire_message *message, size_t *used, const void *bytes, size_t length)
 {
     uint8_t *place = message->bytes + *used;
     if (length > 0)
@@ -76,71 +76,71 @@ static const uint8_t *append(struct wire_message *message, size_t *used, const v
 }
 
 /* A message out of what stands in the ear. Returns NULL if out of memory. */
-static struct wire_message *make_message(const struct segment *segment, const struct wire_ear_monitor *ear,
+static struct wire_message *make_message(const struct segment *segment, const struct wire_frame *frame,
                                          enum wire_fate fate)
 {
-    size_t length = fate == WIRE_WHOLE ? ear->receiver.length : 0, used = 0;
+    size_t length = fate == WIRE_WHOLE ? frame->receiver.length : 0, used = 0;
     char reason[REASON_MAX];
     struct wire_text text = {.text = reason, .room = sizeof reason};
-    struct wire_message *message = malloc(sizeof *message + ear->raw_length + length + sizeof reason);
+    struct wire_message *message = malloc(sizeof *message + frame->raw_length + length + sizeof reason);
     if (!message)
         return NULL;
     *message = (struct wire_message){
-        .start = ear->start,
-        .end = ear->last,
-        .senders = ear->senders,
-        .collided = ear->collided,
-        .lost = ear->lost,
+        .start = frame->start,
+        .end = frame->last,
+        .senders = frame->senders,
+        .collided = frame->collided,
+        .lost = frame->lost,
         .fate = fate,
-        .answer = ear->answer,
+        .answer = frame->answer,
         .dropped = fates[fate],
-        .raw_total = ear->raw_total,
-        .raw_length = ear->raw_length,
+        .raw_total = frame->raw_total,
+        .raw_length = frame->raw_length,
         .length = length,
     };
-    message->raw = append(message, &used, ear->raw, ear->raw_length);
-    message->message = append(message, &used, ear->message, length);
+    message->raw = append_bytes(message, &used, frame->raw, frame->raw_length);
+    message->message = append_bytes(message, &used, frame->message, length);
     if (fate != WIRE_WHOLE)
         return message;
-    message->dnode = ear->receiver.dnode;
-    message->snode = ear->receiver.snode;
-    if (ear->answer)
+    message->dnode = frame->receiver.dnode;
+    message->snode = frame->receiver.snode;
+    if (frame->answer)
         wire_words_refusal(&text, message->message, length);
     else
-        words_ignored(&text, segment, ear);
+        words_ignored(&text, segment, frame);
     wire_text_end(&text);
     if (text.length == 0)
         return message;
-    const char *why = (const char *)append(message, &used, text.text, text.length + 1u);
-    if (ear->answer)
+    const char *why = (const char *)append_bytes(message, &used, text.text, text.length + 1u);
+    if (frame->answer)
         message->refused = why;
     else
         message->ignored = why;
     return message;
 }
 
-static void empty_ear(struct wire_ear_monitor *ear)
+static void empty_frame(struct wire_frame *frame)
 {
-    ear->raw_length = ear->raw_total = 0;
-    ear->senders = ear->collided = 0;
-    ear->lost = 0;
-    ear->overruns = 0;
+    frame->raw_length = frame->raw_total = 0;
+    frame->senders = frame->collided = 0;
+    frame->lost = 0;
+    frame->overruns = 0;
 }
 
 /* What stands in the ear has come to an end. */
-static void report(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, uint64_t tick, enum wire_fate fate)
+static void report(const struct wire_monitor *monitor, struct wire_frame *frame, uint64_t tick, enum wire_fate fate)
 {
     const struct wire_monitor_calls *calls = &monitor->calls;
-    if (ear->raw_total > 0 && calls->is_wanted && calls->is_wanted(calls->context))
-        calls->message(calls->context, tick, make_message(monitor->segment, ear, fate));
-    empty_ear(ear);
+    if (frame->raw_total > 0 && calls->is_wanted && calls->is_wanted(calls->context))
+        calls->message(calls->context, tick, make_message(monitor->segment, frame, fate));
+    empty_frame(frame);
 }
 
 /* A byte that nobody has got. */
 static void report_lost(const struct wire_monitor *monitor, const struct segment_byte *byte, bool answer)
 {
     uint8_t raw = byte->byte;
-    struct wire_ear_monitor ear = {
+    struct wire_frame frame = {
         .raw = &raw,
         .raw_length = 1,
         .raw_total = 1,
@@ -150,102 +150,103 @@ static void report_lost(const struct wire_monitor *monitor, const struct segment
         .collided = (byte->senders & (byte->senders - 1u)) != 0 ? byte->senders : 0,
         .answer = answer,
     };
-    report(monitor, &ear, byte->tick, raw == 0 && ear.collided == 0 ? WIRE_BREAK : WIRE_FRAMING_ERROR);
+    report(monitor, &frame, byte->tick, raw == 0 && frame.collided == 0 ? WIRE_BREAK : WIRE_FRAMING_ERROR);
 }
 
 /* ---- Framings ------------------------------------------------------------------------------------------------------- */
 
-static void keep_byte(struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void keep_byte(struct wire_frame *frame, const struct segment_byte *byte)
 {
-    if (ear->raw_total++ == 0)
-        ear->start = byte->start;
-    if (ear->raw_length < WIRE_RAW_MAX)
-        ear->raw[ear->raw_length++] = byte->byte;
-    ear->senders |= byte->senders;
+    if (frame->raw_total++ == 0)
+        frame->start = byte->start;
+    if (frame->raw_length < WIRE_RAW_MAX)
+        frame->raw[frame->raw_length++] = byte->byte;
+    frame->senders |= byte->senders;
     if ((byte->senders & (byte->senders - 1u)) != 0)
-        ear->collided |= byte->senders;
-    ear->last = byte->tick;
+        frame->collided |= byte->senders;
+    frame->last = byte->tick;
 }
 
 /* What the framing has to say about a byte; UNDECIDED: nothing yet. */
 enum verdict { UNDECIDED, GOOD, BAD_CHECK, MALFORMED, TOO_LONG };
 
-static enum verdict receive(const struct rkm04_framing *framing, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static enum verdict receive_frame_byte(const struct rkm04_framing *framing, struct wire_frame *frame,
+                                       const struct segment_byte *byte)
 {
-    uint32_t bad_check = ear->receiver.bad_check, malformed = ear->receiver.malformed, too_long = ear->receiver.too_long;
-    if (framing->receive(&ear->receiver, byte->byte, byte->tick, ear->message, ear->room))
+    uint32_t bad_check = frame->receiver.bad_check, malformed = frame->receiver.malformed, too_long = frame->receiver.too_long;
+    if (framing->receive(&frame->receiver, byte->byte, byte->tick, frame->message, frame->room))
         return GOOD;
-    if (ear->receiver.bad_check != bad_check)
+    if (frame->receiver.bad_check != bad_check)
         return BAD_CHECK;
-    if (ear->receiver.malformed != malformed)
+    if (frame->receiver.malformed != malformed)
         return MALFORMED;
-    return ear->receiver.too_long != too_long ? TOO_LONG : UNDECIDED;
+    return frame->receiver.too_long != too_long ? TOO_LONG : UNDECIDED;
 }
 
 /* A flag ends what goes before it, frames or what is none. What is astray is told of after a silence, too, so that a client that
  * never sends a flag is not passed over. */
-static void receive_hdlc(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void receive_hdlc(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
 {
     bool flag = byte->byte == HDLC_FLAG;
-    if (ear->astray != WIRE_WHOLE &&
-        (flag || byte->tick - ear->last >= SILENCE || (ear->astray == WIRE_OUTSIDE && ear->raw_total == ASTRAY_MAX))) {
-        report(monitor, ear, byte->tick, ear->astray);
-        ear->astray = flag ? WIRE_WHOLE : WIRE_OUTSIDE;
+    if (frame->astray != WIRE_WHOLE &&
+        (flag || byte->tick - frame->last >= SILENCE || (frame->astray == WIRE_OUTSIDE && frame->raw_total == ASTRAY_MAX))) {
+        report(monitor, frame, byte->tick, frame->astray);
+        frame->astray = flag ? WIRE_WHOLE : WIRE_OUTSIDE;
     }
-    if (flag && ear->raw_length == 1 && ear->raw[0] == HDLC_FLAG)
-        empty_ear(ear); /* an empty frame is nothing; this flag may begin one */
-    keep_byte(ear, byte);
-    switch (receive(&rkm04_hdlc, ear, byte)) {
+    if (flag && frame->raw_length == 1 && frame->raw[0] == HDLC_FLAG)
+        empty_frame(frame); /* an empty frame is nothing; this flag may begin one */
+    keep_byte(frame, byte);
+    switch (receive_frame_byte(&rkm04_hdlc, frame, byte)) {
     case UNDECIDED:
         break;
     case GOOD:
-        report(monitor, ear, byte->tick, WIRE_WHOLE);
+        report(monitor, frame, byte->tick, WIRE_WHOLE);
         break;
     case BAD_CHECK:
-        report(monitor, ear, byte->tick, WIRE_WRONG_CHECK);
+        report(monitor, frame, byte->tick, WIRE_WRONG_CHECK);
         break;
     case MALFORMED: {
-        bool aborted = ear->raw_length >= 2 && ear->raw[ear->raw_length - 2u] == HDLC_ESCAPE;
-        report(monitor, ear, byte->tick, aborted ? WIRE_ABORTED : WIRE_TOO_SHORT);
+        bool aborted = frame->raw_length >= 2 && frame->raw[frame->raw_length - 2u] == HDLC_ESCAPE;
+        report(monitor, frame, byte->tick, aborted ? WIRE_ABORTED : WIRE_TOO_SHORT);
         break;
     }
     case TOO_LONG:
-        ear->astray = WIRE_TOO_LONG;
+        frame->astray = WIRE_TOO_LONG;
         break;
     }
 }
 
 /* Bytes that cannot be an address are gathered until one comes that can. */
-static void receive_plain(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void receive_plain(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
 {
-    if (ear->raw_total > 0 && byte->tick - ear->last >= SILENCE) {
-        report(monitor, ear, byte->tick, ear->astray != WIRE_WHOLE ? ear->astray : WIRE_SILENT);
-        ear->receiver = (struct rkm04_receiver){.phase = 0};
-        ear->astray = WIRE_WHOLE;
+    if (frame->raw_total > 0 && byte->tick - frame->last >= SILENCE) {
+        report(monitor, frame, byte->tick, frame->astray != WIRE_WHOLE ? frame->astray : WIRE_SILENT);
+        frame->receiver = (struct rkm04_receiver){.phase = 0};
+        frame->astray = WIRE_WHOLE;
     }
-    bool first = ear->raw_total == 0 || ear->astray == WIRE_NO_ADDRESS;
-    enum verdict verdict = receive(&rkm04_plain, ear, byte);
-    if (ear->astray == WIRE_NO_ADDRESS && (verdict != MALFORMED || ear->raw_total == ASTRAY_MAX)) {
-        report(monitor, ear, byte->tick, WIRE_NO_ADDRESS);
-        ear->astray = WIRE_WHOLE;
+    bool first = frame->raw_total == 0 || frame->astray == WIRE_NO_ADDRESS;
+    enum verdict verdict = receive_frame_byte(&rkm04_plain, frame, byte);
+    if (frame->astray == WIRE_NO_ADDRESS && (verdict != MALFORMED || frame->raw_total == ASTRAY_MAX)) {
+        report(monitor, frame, byte->tick, WIRE_NO_ADDRESS);
+        frame->astray = WIRE_WHOLE;
     }
-    keep_byte(ear, byte);
+    keep_byte(frame, byte);
     if (verdict == GOOD) {
-        report(monitor, ear, byte->tick, WIRE_WHOLE);
+        report(monitor, frame, byte->tick, WIRE_WHOLE);
     } else if (verdict == MALFORMED && first) {
-        ear->astray = WIRE_NO_ADDRESS;
+        frame->astray = WIRE_NO_ADDRESS;
     } else if (verdict == MALFORMED) {
-        report(monitor, ear, byte->tick, WIRE_NO_LENGTH);
+        report(monitor, frame, byte->tick, WIRE_NO_LENGTH);
     } else if (verdict == TOO_LONG) {
-        ear->astray = WIRE_TOO_LONG;
-    } else if (ear->astray == WIRE_TOO_LONG && ear->receiver.left == 0) {
-        report(monitor, ear, byte->tick, WIRE_TOO_LONG);
-        ear->astray = WIRE_WHOLE;
+        frame->astray = WIRE_TOO_LONG;
+    } else if (frame->astray == WIRE_TOO_LONG && frame->receiver.left == 0) {
+        report(monitor, frame, byte->tick, WIRE_TOO_LONG);
+        frame->astray = WIRE_WHOLE;
     }
 }
 
 /* A framing of which nothing is known but its receiver. */
-static void receive_other(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void receive_other(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
 {
     static const enum wire_fate fate_of[] = {
         [GOOD] = WIRE_WHOLE,
@@ -253,40 +254,40 @@ static void receive_other(const struct wire_monitor *monitor, struct wire_ear_mo
         [MALFORMED] = WIRE_MALFORMED,
         [TOO_LONG] = WIRE_TOO_LONG,
     };
-    keep_byte(ear, byte);
-    enum verdict verdict = receive(monitor->framing, ear, byte);
+    keep_byte(frame, byte);
+    enum verdict verdict = receive_frame_byte(monitor->framing, frame, byte);
     if (verdict != UNDECIDED)
-        report(monitor, ear, byte->tick, fate_of[verdict]);
+        report(monitor, frame, byte->tick, fate_of[verdict]);
 }
 
 /* Is there anything in the ear that makes a message? */
-static bool holds_something(const struct wire_ear_monitor *ear)
+static bool holds_something(const struct wire_frame *frame)
 {
-    return ear->raw_total > 1 || (ear->raw_total == 1 && ear->raw[0] != HDLC_FLAG);
+    return frame->raw_total > 1 || (frame->raw_total == 1 && frame->raw[0] != HDLC_FLAG);
 }
 
-static void receive_byte(const struct wire_monitor *monitor, struct wire_ear_monitor *ear, const struct segment_byte *byte)
+static void receive_byte(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
 {
     if (byte->lost)
-        ear->lost += ear->raw_total > 0;
+        frame->lost += frame->raw_total > 0;
     else if (monitor->framing == &rkm04_hdlc)
-        receive_hdlc(monitor, ear, byte);
+        receive_hdlc(monitor, frame, byte);
     else if (monitor->framing == &rkm04_plain)
-        receive_plain(monitor, ear, byte);
+        receive_plain(monitor, frame, byte);
     else
-        receive_other(monitor, ear, byte);
+        receive_other(monitor, frame, byte);
 }
 
 /* ---- Public --------------------------------------------------------------------------------------------------------- */
 
-static bool begin_ear(struct wire_ear_monitor *ear, bool answer, size_t room, enum wire_fate astray)
+static bool begin_frame(struct wire_frame *frame, bool answer, size_t room, enum wire_fate astray)
 {
-    ear->message = malloc(room);
-    ear->raw = malloc(WIRE_RAW_MAX);
-    ear->room = room;
-    ear->answer = answer;
-    ear->astray = astray;
-    return ear->message && ear->raw;
+    frame->message = malloc(room);
+    frame->raw = malloc(WIRE_RAW_MAX);
+    frame->room = room;
+    frame->answer = answer;
+    frame->astray = astray;
+    return frame->message && frame->raw;
 }
 
 bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing *framing, const struct segment *segment,
@@ -294,24 +295,24 @@ bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing
 {
     *monitor = (struct wire_monitor){.framing = framing ? framing : &rkm04_hdlc, .segment = segment, .calls = calls};
     enum wire_fate astray = monitor->framing == &rkm04_hdlc ? WIRE_OUTSIDE : WIRE_WHOLE;
-    bool requests = begin_ear(&monitor->requests, false, RKM04_MESSAGE_MAX, astray);
-    return begin_ear(&monitor->answers, true, WIRE_ANSWER_MAX, astray) && requests;
+    bool requests = begin_frame(&monitor->requests, false, RKM04_MESSAGE_MAX, astray);
+    return begin_frame(&monitor->answers, true, WIRE_ANSWER_MAX, astray) && requests;
 }
 
-static void end_ear(struct wire_ear_monitor *ear)
+static void end_frame(struct wire_frame *frame)
 {
-    free(ear->message);
-    free(ear->raw);
-    ear->message = ear->raw = NULL;
+    free(frame->message);
+    free(frame->raw);
+    frame->message = frame->raw = NULL;
 }
 
 void wire_monitor_end(struct wire_monitor *monitor)
 {
-    end_ear(&monitor->requests);
-    end_ear(&monitor->answers);
+    end_frame(&monitor->requests);
+    end_frame(&monitor->answers);
 }
 
-static void copy_ear(struct wire_ear_monitor *to, const struct wire_ear_monitor *from, uint64_t later)
+static void copy_frame(struct wire_frame *to, const struct wire_frame *from, uint64_t later)
 {
     uint8_t *message = to->message, *raw = to->raw;
     memcpy(message, from->message, from->room);
@@ -326,21 +327,21 @@ static void copy_ear(struct wire_ear_monitor *to, const struct wire_ear_monitor 
 
 void wire_monitor_copy(struct wire_monitor *to, const struct wire_monitor *from, uint64_t later)
 {
-    copy_ear(&to->requests, &from->requests, later);
-    copy_ear(&to->answers, &from->answers, later);
+    copy_frame(&to->requests, &from->requests, later);
+    copy_frame(&to->answers, &from->answers, later);
     to->framing = from->framing;
     to->overruns = from->overruns;
 }
 
 void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_byte *byte)
 {
-    bool from_unit = (byte->senders & ~MASTER_BIT) != 0, from_master = !from_unit || (byte->senders & MASTER_BIT) != 0;
+    bool from_unit = (byte->senders & ~MASTER_BIT) != 0, from_host = !from_unit || (byte->senders & MASTER_BIT) != 0;
     uint64_t overruns = segment_counters(monitor->segment).overruns;
     monitor->requests.overruns += overruns - monitor->overruns;
     monitor->overruns = overruns;
     if (byte->lost)
-        report_lost(monitor, byte, !from_master);
-    if (from_master)
+        report_lost(monitor, byte, !from_host);
+    if (from_host)
         receive_byte(monitor, &monitor->requests, byte);
     if (from_unit)
         receive_byte(monitor, &monitor->answers, byte);
@@ -348,8 +349,8 @@ void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_by
 
 struct wire_message *wire_monitor_rest(const struct wire_monitor *monitor, bool answer)
 {
-    const struct wire_ear_monitor *ear = answer ? &monitor->answers : &monitor->requests;
-    if (!holds_something(ear))
+    const struct wire_frame *frame = answer ? &monitor->answers : &monitor->requests;
+    if (!holds_something(frame))
         return NULL;
-    return make_message(monitor->segment, ear, ear->astray != WIRE_WHOLE ? ear->astray : WIRE_UNFINISHED);
+    return make_message(monitor->segment, frame, frame->astray != WIRE_WHOLE ? frame->astray : WIRE_UNFINISHED);
 }

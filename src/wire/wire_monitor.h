@@ -16,7 +16,7 @@
 
 /* One for each direction, so that an answer in the middle of a request does not confuse either. A byte that belongs to a
  * collision of both counts in both. */
-struct wire_ear_monitor {
+struct wire_frame {
     struct rkm04_receiver receiver;
     uint8_t *message; /* `room` bytes */
     size_t room;
@@ -44,7 +44,7 @@ struct wire_monitor {
     const struct segment *segment; /* whose bytes these are */
     struct wire_monitor_calls calls;
     uint64_t overruns; /* of the segment, up to now */
-    struct wire_ear_monitor requests, answers;
+    struct wire_frame requests, answers;
 };
 
 /* Find messages in the bytes of `segment`, which may be NULL for a copy that gets none. Returns false if out of memory;

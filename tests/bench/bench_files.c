@@ -3,7 +3,7 @@
  *
  *     bench_files [SECONDS [FORMAT…]]
  *
- * The work: SECONDS (60) of virtual time of one unit whose four motors run at 16 000 steps/s while the master asks it for the
+ * The work: SECONDS (60) of virtual time of one unit whose four motors run at 16 000 steps/s while the host asks it for the
  * four positions without a pause, as fast as 19200 baud allow. FORMAT: none, log, pcapng, vcd, csv, jsonl; all of them if none
  * is given. Each is one JSON object a line: cpu_s, processor time of it all; times_real_time, how much faster than real time
  * that is; overhead, processor time of the file alone in parts of real time; mb, size of the file; messages and pulses in it
@@ -43,7 +43,7 @@ static void send(const char *message, size_t length)
     for (size_t i = 0; i < length; i++)
         at += rkm04_hdlc.put(&sender, (uint8_t)message[i], frame + at);
     at += rkm04_hdlc.end(&sender, frame + at);
-    sim_take(&sim, frame, at, sim_now(&sim));
+    sim_queue_bytes(&sim, frame, at, sim_now(&sim));
 }
 
 static void run(uint64_t end)

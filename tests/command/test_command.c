@@ -53,16 +53,16 @@ static void on_command(void *context, uint64_t now, const char *method, const js
 
 START_TEST(a_sim_obeys_the_methods_of_a_table_once_it_is_attached)
 {
-    ck_assert(!sim_command_known(&sim, "own.read"));
+    ck_assert(!sim_has_command(&sim, "own.read"));
     ck_assert(!is_obeyed("own.read", "{}"));
     ck_assert_int_eq(refusal.code, REFUSED_METHOD);
     ck_assert(command_attach(&sim, own));
-    ck_assert(sim_command_known(&sim, "own.read") && sim_command_known(&sim, "state"));
+    ck_assert(sim_has_command(&sim, "own.read") && sim_has_command(&sim, "state"));
     ck_assert(is_obeyed("own.read", "{}"));
     ck_assert(is_obeyed("state", "{}"));
     ck_assert(!is_obeyed("own.read", "{\"x\": 1}"));
     ck_assert_int_eq(refusal.code, REFUSED_PARAMS);
-    ck_assert(!sim_command_known(&sim, "own.other"));
+    ck_assert(!sim_has_command(&sim, "own.other"));
 }
 END_TEST
 

@@ -202,15 +202,15 @@ END_TEST
 START_TEST(a_message_can_be_waited_for_when_its_last_byte_has_passed)
 {
     static const uint8_t request[] = {0x7E, 3, 0, 4, '1', 0x79, 0x9E, 0x7E}, wrong[] = {0x7E, 3, 0, 4, '1', 0, 0, 0x7E};
-    sim_take(sim, request, sizeof request, 0);
+    sim_queue_bytes(sim, request, sizeof request, 0);
     expect_at("{\"message\": {\"number\": 4, \"motor\": 1, \"from\": \"master\"}}", (8 * 3125 + 5) / 6);
     wait_for("{\"message\": {\"number\": 5, \"from\": \"unit\"}}");
     ck_assert(!condition_run(condition, SECOND));
-    sim_take(sim, request, sizeof request, SECOND);
+    sim_queue_bytes(sim, request, sizeof request, SECOND);
     expect_at("{\"message\": {\"from\": \"3\"}}", SECOND + (8 * 3125 + 521 * 6 + 19 * 3125 + 5) / 6);
     wait_for("{\"message\": {\"from\": \"3\"}}");
     ck_assert(!condition_run(condition, 2 * SECOND)); /* it is over */
-    sim_take(sim, wrong, sizeof wrong, 2 * SECOND);
+    sim_queue_bytes(sim, wrong, sizeof wrong, 2 * SECOND);
     expect_at("{\"message\": {\"dropped\": true}}", 2 * SECOND + (8 * 3125 + 5) / 6);
 }
 END_TEST
@@ -235,7 +235,7 @@ END_TEST
 START_TEST(what_is_wanted_and_what_is_found_can_be_told_apart)
 {
     wait_for("{\"motor\": 1, \"position\": {\">=\": 1, \"<\": 9}, \"any\": [{\"do\": {\"01\": 1}}, {\"di\": {\"01\": 1}}]}");
-    char *wanted = condition_wanted(condition), *found = condition_found(condition);
+    char *wanted = condition_wanted_text(condition), *found = condition_found_text(condition);
     ck_assert_str_eq(wanted, "motor 1 position >= 1 and motor 1 position < 9 and (DO 01 == 1 or DI 01 == 1)");
     ck_assert_str_eq(found, "motor 1 position 0, DO 01 0, DI 01 0");
     free(wanted);

@@ -18,7 +18,7 @@ static struct seen {
     struct pulse pulse[RKM04_MOTORS][PULSES_MAX];
 } one, many;
 
-static void see(struct seen *seen, uint64_t tick, unsigned motor, int32_t position)
+static void on_event(struct seen *seen, uint64_t tick, unsigned motor, int32_t position)
 {
     unsigned *count = &seen->count[motor - 1];
     motion_check(*count < PULSES_MAX, "too many pulses; %s", motion_what());
@@ -27,7 +27,7 @@ static void see(struct seen *seen, uint64_t tick, unsigned motor, int32_t positi
 
 static void on_step(void *context, uint64_t tick, unsigned motor, int32_t position)
 {
-    see(context, tick, motor, position);
+    on_event(context, tick, motor, position);
 }
 
 static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward)
@@ -36,7 +36,7 @@ static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t
     motion_check(count > 0, "an empty block; %s", motion_what());
     seen->blocks++;
     for (size_t i = 0; i < count; i++) {
-        see(seen, tick[i], motor, position);
+        on_event(seen, tick[i], motor, position);
         position = (int32_t)(forward ? (uint32_t)position + 1 : (uint32_t)position - 1);
     }
 }

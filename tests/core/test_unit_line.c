@@ -106,7 +106,7 @@ START_TEST(L1_a_frame_from_node_1_to_16_is_another_units_answer_and_is_ignored)
     plug_in(&rkm04_hdlc, 3);
     for (uint8_t snode = 1; snode <= 16; snode++) {
         expect_silence(3, snode, "\x02" "1T01");
-        expect_silence(0, snode, "\x02" "1T01"); /* an answer to the master */
+        expect_silence(0, snode, "\x02" "1T01"); /* an answer to the host */
     }
     ck_assert_uint_eq(rig_motor(&rig, 1).commands, 0);
     ck_assert_uint_eq(rkm04_counters(&rig.unit).requests, 0);

@@ -10,7 +10,7 @@
 #include "fake_device.h"
 #include "record/record.h"
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct fake_rig *rig = context;
     if (event->kind == WATCH_BYTE || event->kind == WATCH_MESSAGE)
@@ -47,7 +47,7 @@ void fake_rig_begin(struct fake_rig *rig, const char *nodes, bool timed)
     open_text(rig);
     ck_assert(sim_begin(&rig->sim, &config));
     ck_assert(snapshots_attach(&rig->sim));
-    rig->watcher = (struct watcher){.kinds = WATCH_ALL, .see = see, .context = rig};
+    rig->watcher = (struct watcher){.kinds = WATCH_ALL, .on_event = on_event, .context = rig};
     sim_watch(&rig->sim, &rig->watcher);
 }
 
@@ -66,7 +66,7 @@ void fake_rig_ask(struct fake_rig *rig, unsigned address, const char *text)
     bytes[0] = (uint8_t)(0x80 + address);
     memcpy(bytes + 1, text, length);
     bytes[length + 1] = '\r';
-    sim_take(&rig->sim, bytes, length + 2, sim_now(&rig->sim));
+    sim_queue_bytes(&rig->sim, bytes, length + 2, sim_now(&rig->sim));
 }
 
 const char *fake_rig_seen(struct fake_rig *rig)

@@ -42,7 +42,7 @@ void session_to(uint64_t tick);
 /* From the present tick on the inputs are these; bit 0 is DI 01. */
 void session_inputs(uint8_t mask);
 
-/* A request comes in from the master. While an answer is going out the unit takes no more, so that is fetched first, as far as
+/* A request comes in from the host. While an answer is going out the unit takes no more, so that is fetched first, as far as
  * is needed. */
 void session_request(const void *message, size_t length);
 

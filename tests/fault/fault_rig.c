@@ -23,7 +23,7 @@ static void on_out(void *context, const uint8_t *bytes, size_t length)
 {
     (void)context;
     for (size_t i = 0; i < length; i++)
-        keep(&rig.master, bytes[i], sim_now(&rig.sim));
+        keep(&rig.host, bytes[i], sim_now(&rig.sim));
 }
 
 static void on_adapter(void *context, bool plugged)
@@ -34,7 +34,7 @@ static void on_adapter(void *context, bool plugged)
     rig.plug[rig.plugs++].plugged = plugged;
 }
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     (void)context;
     if (event->kind == WATCH_BYTE) {
@@ -64,7 +64,7 @@ void rig_begin_with(bool timed, unsigned units, uint64_t seed, const struct rkm0
     memset(&rig, 0, sizeof rig);
     ck_assert(sim_begin(&rig.sim, &config));
     ck_assert(snapshots_attach(&rig.sim));
-    rig.watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_INJECTED) | WATCH_BIT(WATCH_BYTE), .see = see};
+    rig.watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_INJECTED) | WATCH_BIT(WATCH_BYTE), .on_event = on_event};
     sim_watch(&rig.sim, &rig.watcher);
 }
 
@@ -92,7 +92,7 @@ static json_t *read_json(const char *text)
     return read;
 }
 
-json_t *obeyed(const char *method, const char *params)
+json_t *run_command(const char *method, const char *params)
 {
     struct refusal refusal = {0, ""};
     json_t *read = read_json(params), *result = sim_command(&rig.sim, method, read, &refusal);
@@ -118,7 +118,7 @@ uint32_t inject(const char *format, ...)
     va_start(list, format);
     vsnprintf(params, sizeof params, format, list);
     va_end(list);
-    json_t *result = obeyed("fault.inject", params);
+    json_t *result = run_command("fault.inject", params);
     uint32_t id = (uint32_t)json_integer_value(json_object_get(result, "id"));
     json_decref(result);
     ck_assert_uint_gt(id, 0);
@@ -139,7 +139,7 @@ size_t ask(uint8_t dnode, const void *message, size_t length)
     for (size_t i = 0; i < length; i++)
         n += framing()->put(&sender, bytes[i], frame + n);
     n += framing()->end(&sender, frame + n);
-    sim_take(&rig.sim, frame, n, sim_now(&rig.sim));
+    sim_queue_bytes(&rig.sim, frame, n, sim_now(&rig.sim));
     return n;
 }
 
@@ -160,7 +160,7 @@ void settle(void)
 
 void forget(void)
 {
-    rig.master.count = rig.line.count = rig.lost = rig.news = 0;
+    rig.host.count = rig.line.count = rig.lost = rig.news = 0;
 }
 
 static unsigned answers(void)
@@ -168,8 +168,8 @@ static unsigned answers(void)
     struct rkm04_receiver receiver = {0};
     uint8_t message[RKM04_MESSAGE_MAX];
     unsigned number = 0;
-    for (size_t i = 0; i < rig.master.count; i++) {
-        if (!framing()->receive(&receiver, rig.master.byte[i], rig.master.tick[i], message, sizeof message))
+    for (size_t i = 0; i < rig.host.count; i++) {
+        if (!framing()->receive(&receiver, rig.host.byte[i], rig.host.tick[i], message, sizeof message))
             continue;
         memcpy(last_answer, message, receiver.length);
         number++;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* fault_rig.h: a line with faults, and a master that keeps all it hears, for tests. */
+/* fault_rig.h: a line with faults, and a host that keeps all it hears, for tests. */
 #ifndef RKM04_TESTS_FAULT_RIG_H
 #define RKM04_TESTS_FAULT_RIG_H
 
@@ -22,7 +22,7 @@ struct heard {
 struct fault_rig {
     struct sim sim;
     struct watcher watcher;
-    struct heard master;  /* what has reached the master */
+    struct heard host;    /* what has reached the host */
     struct heard line;    /* what has passed on the line, with what was lost of it */
     size_t lost;          /* of these */
     size_t news;          /* WATCH_INJECTED */
@@ -50,7 +50,7 @@ void rig_end(void);
 uint32_t inject(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Any command, which must be obeyed. Returns the result, which is to be freed. */
-json_t *obeyed(const char *method, const char *params);
+json_t *run_command(const char *method, const char *params);
 
 /* Any command, which must be refused. Returns "CODE TEXT". */
 const char *refused(const char *method, const char *params);
@@ -64,7 +64,7 @@ size_t set(uint8_t dnode, const char *text);
 /* Let time pass until nothing is under way on the line. */
 void settle(void);
 
-/* ask(), settle(). Forgets what was heard before. Returns how many whole, well-checked answers the master has got. */
+/* ask(), settle(). Forgets what was heard before. Returns how many whole, well-checked answers the host has got. */
 unsigned answers_to(uint8_t dnode, const void *message, size_t length);
 
 void forget(void);

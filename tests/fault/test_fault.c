@@ -15,7 +15,7 @@ static void send_all(void)
     uint8_t bytes[BYTES];
     memset(bytes, 'A', sizeof bytes);
     for (unsigned i = 0; i < BYTES; i++) {
-        sim_take(&rig.sim, bytes + i, 1, i * UINT64_C(1000));
+        sim_queue_bytes(&rig.sim, bytes + i, 1, i * UINT64_C(1000));
         sim_advance(&rig.sim, (i + 1) * UINT64_C(1000));
     }
     ck_assert_uint_eq(rig.line.count, BYTES);
@@ -31,7 +31,7 @@ static unsigned acted_on(void)
 
 static json_t *listed(size_t at)
 {
-    json_t *result = obeyed("fault.list", "{}"), *fault = json_incref(json_array_get(json_object_get(result, "faults"), at));
+    json_t *result = run_command("fault.list", "{}"), *fault = json_incref(json_array_get(json_object_get(result, "faults"), at));
     json_decref(result);
     return fault;
 }
@@ -176,7 +176,7 @@ START_TEST(clearing_ends_what_is_in_force_at_once)
     inject("{'kind': 'unplugged'}");
     inject("{'kind': 'break', 'duration': '1s'}");
     inject("{'kind': 'no_answer'}");
-    json_t *result = obeyed("fault.clear", "{}");
+    json_t *result = run_command("fault.clear", "{}");
     ck_assert_int_eq((int)json_integer_value(json_object_get(result, "cleared")), 5);
     json_decref(result);
     ck_assert_uint_eq(rkm04_inputs(rkm04_of(sim_core(&rig.sim, 1))), 0);
@@ -226,10 +226,10 @@ START_TEST(a_snapshot_brings_faults_back_as_they_were)
     rig_begin(true, 1);
     inject("{'kind': 'no_answer', 'count': 1}");
     inject("{'kind': 'unplugged', 'after': '1s', 'for': '1s'}");
-    json_decref(obeyed("snapshot", "{'name': 'before'}"));
+    json_decref(run_command("snapshot", "{'name': 'before'}"));
     run(1500000);
     ck_assert_uint_eq(rig.plugs, 1);
-    json_decref(obeyed("restore", "{'name': 'before'}"));
+    json_decref(run_command("restore", "{'name': 'before'}"));
     ck_assert_uint_eq(rig.plugs, 2);
     ck_assert(rig.plug[1].plugged);
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 0);

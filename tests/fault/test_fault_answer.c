@@ -15,7 +15,7 @@ static void begin_with(bool timed, const char *fault)
 {
     rig_begin(timed, 2);
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 1);
-    clean = rig.master;
+    clean = rig.host;
     ck_assert_uint_eq(clean.count, ANSWER);
     rig_end();
     rig_begin(timed, 2);
@@ -24,15 +24,15 @@ static void begin_with(bool timed, const char *fault)
 
 static void assert_first(size_t count, uint64_t later)
 {
-    ck_assert_uint_eq(rig.master.count, count);
-    ck_assert_mem_eq(rig.master.byte, clean.byte, count);
+    ck_assert_uint_eq(rig.host.count, count);
+    ck_assert_mem_eq(rig.host.byte, clean.byte, count);
     for (size_t i = 0; i < count; i++)
-        ck_assert_uint_eq(rig.master.tick[i], clean.tick[i] + later);
+        ck_assert_uint_eq(rig.host.tick[i], clean.tick[i] + later);
 }
 
 static void clear(void)
 {
-    json_decref(obeyed("fault.clear", "{}"));
+    json_decref(run_command("fault.clear", "{}"));
 }
 
 /* ---- Late ----------------------------------------------------------------------------------------------------------- */
@@ -47,7 +47,7 @@ START_TEST(a_delayed_answer_comes_later_to_the_tick)
     clear();
     uint64_t asked = sim_now(&rig.sim);
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 1);
-    ck_assert_uint_lt(rig.master.tick[0] - asked, 10000);
+    ck_assert_uint_lt(rig.host.tick[0] - asked, 10000);
     rig_end();
 }
 END_TEST
@@ -72,7 +72,7 @@ START_TEST(P10_a_request_during_the_delay_is_answered_after_it)
     begin_with(_i, "{'kind': 'delay', 'delay': '100ms', 'count': 1}");
     ask(1, VERSION, 1);
     run(50000);
-    ck_assert_uint_eq(rig.master.count, 0);
+    ck_assert_uint_eq(rig.host.count, 0);
     ck_assert_uint_eq(answers_to(1, "\4" "1", 2), 2);
     ck_assert_uint_eq(counters(1).answers, 2);
     rig_end();
@@ -86,11 +86,11 @@ START_TEST(the_answers_of_others_are_not_late)
     run(20000);
     ask(2, VERSION, 1);
     run(20000);
-    ck_assert_uint_eq(rig.master.count, ANSWER);
-    ck_assert_uint_eq(rig.master.byte[2], 2);
+    ck_assert_uint_eq(rig.host.count, ANSWER);
+    ck_assert_uint_eq(rig.host.byte[2], 2);
     settle();
-    ck_assert_uint_eq(rig.master.count, 2 * ANSWER);
-    ck_assert_uint_eq(rig.master.byte[ANSWER + 2], 1);
+    ck_assert_uint_eq(rig.host.count, 2 * ANSWER);
+    ck_assert_uint_eq(rig.host.byte[ANSWER + 2], 1);
     rig_end();
 }
 END_TEST
@@ -112,7 +112,7 @@ START_TEST(without_an_answer_the_request_is_obeyed_all_the_same)
     forget();
     set(1, "=4711");
     settle();
-    ck_assert_uint_eq(rig.master.count, 0);
+    ck_assert_uint_eq(rig.host.count, 0);
     ck_assert_uint_eq(counters(1).answers, 1);
     assert_news(0, "1 no_answer: no answer");
     run(2000);
@@ -167,17 +167,17 @@ static struct rkm04_receiver judge(unsigned *whole)
     static uint8_t message[RKM04_MESSAGE_MAX];
     struct rkm04_receiver receiver = {0};
     *whole = 0;
-    for (size_t i = 0; i < rig.master.count; i++)
-        *whole += rkm04_hdlc.receive(&receiver, rig.master.byte[i], 0, message, sizeof message);
+    for (size_t i = 0; i < rig.host.count; i++)
+        *whole += rkm04_hdlc.receive(&receiver, rig.host.byte[i], 0, message, sizeof message);
     return receiver;
 }
 
 static unsigned differences(const struct heard *one)
 {
     unsigned number = 0;
-    ck_assert_uint_eq(one->count, rig.master.count);
+    ck_assert_uint_eq(one->count, rig.host.count);
     for (size_t i = 0; i < one->count; i++)
-        number += one->byte[i] != rig.master.byte[i];
+        number += one->byte[i] != rig.host.byte[i];
     return number;
 }
 
@@ -194,8 +194,8 @@ START_TEST(L1_a_wrong_check_value_is_all_that_is_wrong_with_the_answer)
         settle();
         run(2000);
         ck_assert_uint_eq(answers_to(1, "\4" "1", 2), 1);
-        clean = rig.master;
-        escaped += rig.master.count > 19;
+        clean = rig.host;
+        escaped += rig.host.count > 19;
         inject("{'kind': 'wrong_fcs', 'count': 1}");
         ck_assert_uint_eq(answers_to(1, "\4" "1", 2), 0);
         struct rkm04_receiver receiver = judge(&whole);
@@ -203,8 +203,8 @@ START_TEST(L1_a_wrong_check_value_is_all_that_is_wrong_with_the_answer)
         ck_assert_uint_eq(receiver.bad_check, 1);
         ck_assert_uint_eq(receiver.malformed, 0);
         ck_assert_uint_eq(differences(&clean), 1);
-        ck_assert_uint_eq(clean.byte[clean.count - 1], rig.master.byte[clean.count - 1]);
-        ck_assert_mem_eq(clean.byte, rig.master.byte, clean.count - 5);
+        ck_assert_uint_eq(clean.byte[clean.count - 1], rig.host.byte[clean.count - 1]);
+        ck_assert_mem_eq(clean.byte, rig.host.byte, clean.count - 5);
         if (i % 60 == 59)
             clear();
     }
@@ -222,7 +222,7 @@ START_TEST(the_check_value_of_a_long_answer_may_be_wrong_and_of_the_next_one_rig
     set(1, text);
     settle();
     ck_assert_uint_eq(answers_to(1, "\5" "1", 2), 1);
-    clean = rig.master;
+    clean = rig.host;
     inject("{'kind': 'wrong_fcs', 'count': 1}");
     ck_assert_uint_eq(answers_to(1, "\5" "1", 2), 0);
     ck_assert_uint_eq(differences(&clean), 1);
@@ -236,12 +236,12 @@ END_TEST
 START_TEST(units_that_answer_one_another_for_ever_are_cut_off)
 {
     rig_begin_with(false, 2, 1, &rkm04_plain);
-    json_decref(obeyed("switch", "{'unit': '2', 'node': 1, 'reset': true}"));
+    json_decref(run_command("switch", "{'unit': '2', 'node': 1, 'reset': true}"));
     inject("{'kind': 'delay', 'unit': '2', 'delay': 10, 'count': 1}");
     ask(1, VERSION, 1);
     for (unsigned i = 0; i < 10000; i++) {
         run(100);
-        if (rig.master.count > RIG_BYTES / 2)
+        if (rig.host.count > RIG_BYTES / 2)
             forget();
     }
     struct segment_counters line = segment_counters(&rig.sim.segment);
@@ -251,11 +251,11 @@ START_TEST(units_that_answer_one_another_for_ever_are_cut_off)
     ck_assert(segment_idle(&rig.sim.segment));
     ck_assert_uint_gt(counters(1).answers + counters(2).answers, SEGMENT_UNASKED_MAX);
     ck_assert_uint_le(counters(1).answers + counters(2).answers, SEGMENT_UNASKED_MAX + 16);
-    json_decref(obeyed("fault.clear", "{}"));
+    json_decref(run_command("fault.clear", "{}"));
     forget();
     ask(1, VERSION, 1);
     settle();
-    ck_assert_uint_gt(rig.master.count, 0);
+    ck_assert_uint_gt(rig.host.count, 0);
     rig_end();
 }
 END_TEST
@@ -266,7 +266,7 @@ START_TEST(L2_plain_frames_have_no_check_value_to_be_wrong)
     ck_assert_str_eq(refused("fault.inject", "{'kind': 'wrong_fcs'}"), "-32000 wrong_fcs: framing `plain' has no check value");
     inject("{'kind': 'cut', 'bytes': 3, 'count': 1}");
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 0);
-    ck_assert_uint_eq(rig.master.count, 3);
+    ck_assert_uint_eq(rig.host.count, 3);
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 1);
     rig_end();
 }

@@ -30,7 +30,7 @@ static bool has_program(const char *text)
 {
     ck_assert_uint_eq(answers_to(1, "\5" "1", 2), 1);
     return answer_byte(2) == (uint8_t)text[0] &&
-           (!text[0] || answer_byte(1 + strlen(text)) == (uint8_t)text[strlen(text) - 1]) && rig.master.count == 8 + strlen(text);
+           (!text[0] || answer_byte(1 + strlen(text)) == (uint8_t)text[strlen(text) - 1]) && rig.host.count == 8 + strlen(text);
 }
 
 /* What the flash holds after power-up. */
@@ -118,7 +118,7 @@ START_TEST(P6_power_lost_at_any_operation_leaves_the_old_program_or_the_new_one)
         unsigned answers = answers_to(1, STORE, 2);
         if (answers == 1)
             break; /* there is no n-th operation */
-        ck_assert_uint_eq(rig.master.count, 0);
+        ck_assert_uint_eq(rig.host.count, 0);
         ck_assert(!sim_powered(&rig.sim, 1));
         ck_assert(sim_powered(&rig.sim, 2));
         ck_assert_uint_eq(rig.news, 1);
@@ -199,8 +199,8 @@ START_TEST(P10_power_may_go_when_a_request_is_taken_that_waited)
     ck_assert(sim_powered(&rig.sim, 1));
     settle();
     ck_assert(!sim_powered(&rig.sim, 1));
-    ck_assert_uint_ge(rig.master.count, 23);
-    ck_assert_uint_le(rig.master.count, 24);
+    ck_assert_uint_ge(rig.host.count, 23);
+    ck_assert_uint_le(rig.host.count, 24);
     rig_end();
 }
 END_TEST
@@ -271,7 +271,7 @@ START_TEST(the_last_of_two_faults_of_an_input_holds_it)
     ck_assert_uint_eq(di(1), 0);
     run(1000);
     ck_assert_uint_eq(di(1), 2);
-    json_decref(obeyed("fault.clear", "{'id': 1}"));
+    json_decref(run_command("fault.clear", "{'id': 1}"));
     ck_assert_uint_eq(di(1), 0);
     rig_end();
 }

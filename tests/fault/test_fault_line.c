@@ -20,7 +20,7 @@ static void version_with(bool timed, const char *fault)
     rig_begin(timed, 2);
     run(BEGIN);
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 1);
-    clean = rig.master;
+    clean = rig.host;
     clean_line = rig.line;
     ck_assert_uint_eq(clean.count, ANSWER);
     ck_assert_uint_eq(clean_line.count, REQUEST + ANSWER);
@@ -51,19 +51,19 @@ static void assert_as(const struct heard *found, size_t at, const struct heard *
 static void assert_well(void)
 {
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 1);
-    ck_assert_uint_eq(rig.master.count, ANSWER);
+    ck_assert_uint_eq(rig.host.count, ANSWER);
     rig_end();
 }
 
-/* ---- Bytes to the master -------------------------------------------------------------------------------------------- */
+/* ---- Bytes to the host -------------------------------------------------------------------------------------------- */
 
-START_TEST(a_byte_dropped_to_the_master_is_missing_and_the_others_come_when_they_would)
+START_TEST(a_byte_dropped_to_the_host_is_missing_and_the_others_come_when_they_would)
 {
     for (unsigned k = 0; k < ANSWER; k++) {
         version_with(_i, text("{'kind': 'drop', 'direction': 'to_master', 'skip': %d, 'count': 1}", (int)k));
-        ck_assert_uint_eq(rig.master.count, ANSWER - 1);
-        assert_as(&rig.master, 0, &clean, 0, k);
-        assert_as(&rig.master, k, &clean, k + 1, ANSWER - 1 - k);
+        ck_assert_uint_eq(rig.host.count, ANSWER - 1);
+        assert_as(&rig.host, 0, &clean, 0, k);
+        assert_as(&rig.host, k, &clean, k + 1, ANSWER - 1 - k);
         ck_assert_uint_eq(rig.news, 1);
         ck_assert_uint_eq(rig.told[0].unit, 1);
         assert_well();
@@ -71,28 +71,28 @@ START_TEST(a_byte_dropped_to_the_master_is_missing_and_the_others_come_when_they
 }
 END_TEST
 
-START_TEST(a_flipped_byte_to_the_master_differs_in_the_bits_of_the_mask)
+START_TEST(a_flipped_byte_to_the_host_differs_in_the_bits_of_the_mask)
 {
     for (unsigned k = 0; k < ANSWER; k++) {
         version_with(_i, text("{'kind': 'flip', 'mask': 129, 'unit': 1, 'skip': %d, 'count': 1}", (int)k));
         clean.byte[k] ^= 129;
-        ck_assert_uint_eq(rig.master.count, ANSWER);
-        assert_as(&rig.master, 0, &clean, 0, ANSWER);
+        ck_assert_uint_eq(rig.host.count, ANSWER);
+        assert_as(&rig.host, 0, &clean, 0, ANSWER);
         assert_well();
     }
 }
 END_TEST
 
-START_TEST(a_byte_to_the_master_comes_twice_and_the_next_ones_later)
+START_TEST(a_byte_to_the_host_comes_twice_and_the_next_ones_later)
 {
     for (unsigned k = 0; k < ANSWER; k++) {
         version_with(true, text("{'kind': 'duplicate', 'direction': 'to_master', 'skip': %d, 'count': 1}", (int)k));
-        ck_assert_uint_eq(rig.master.count, ANSWER + 1);
-        assert_as(&rig.master, 0, &clean, 0, k + 1);
-        ck_assert_mem_eq(rig.master.byte + k + 1, clean.byte + k, ANSWER - k);
+        ck_assert_uint_eq(rig.host.count, ANSWER + 1);
+        assert_as(&rig.host, 0, &clean, 0, k + 1);
+        ck_assert_mem_eq(rig.host.byte + k + 1, clean.byte + k, ANSWER - k);
         for (unsigned i = k + 1; i < ANSWER; i++)
-            ck_assert_uint_eq(rig.master.tick[i], clean.tick[i]); /* when the byte behind it would have come */
-        ck_assert_uint_eq((rig.master.tick[ANSWER] * 12 - clean.tick[ANSWER - 1] * 12 + 12) / 6250, 1);
+            ck_assert_uint_eq(rig.host.tick[i], clean.tick[i]); /* when the byte behind it would have come */
+        ck_assert_uint_eq((rig.host.tick[ANSWER] * 12 - clean.tick[ANSWER - 1] * 12 + 12) / 6250, 1);
         assert_well();
     }
 }
@@ -102,11 +102,11 @@ START_TEST(a_byte_is_inserted_before_one_to_the_master)
 {
     for (unsigned k = 0; k < ANSWER; k++) {
         version_with(_i, text("{'kind': 'insert', 'byte': 85, 'direction': 'to_master', 'skip': %d, 'count': 1}", (int)k));
-        ck_assert_uint_eq(rig.master.count, ANSWER + 1);
-        assert_as(&rig.master, 0, &clean, 0, k);
-        ck_assert_uint_eq(rig.master.byte[k], 85);
-        ck_assert_uint_eq(rig.master.tick[k], clean.tick[k]);
-        ck_assert_mem_eq(rig.master.byte + k + 1, clean.byte + k, ANSWER - k);
+        ck_assert_uint_eq(rig.host.count, ANSWER + 1);
+        assert_as(&rig.host, 0, &clean, 0, k);
+        ck_assert_uint_eq(rig.host.byte[k], 85);
+        ck_assert_uint_eq(rig.host.tick[k], clean.tick[k]);
+        ck_assert_mem_eq(rig.host.byte + k + 1, clean.byte + k, ANSWER - k);
         assert_well();
     }
 }
@@ -121,9 +121,9 @@ START_TEST(all_that_can_happen_to_a_byte_can_happen_to_one)
     inject("{'kind': 'insert', 'byte': 1, 'unit': 1, 'count': 1}");
     ask(1, VERSION, 1);
     settle();
-    ck_assert_uint_eq(rig.master.count, ANSWER + 2);
-    ck_assert_mem_eq(rig.master.byte, "\1\x7c\x7c", 3);
-    ck_assert_mem_eq(rig.master.byte + 3, clean.byte + 1, ANSWER - 1);
+    ck_assert_uint_eq(rig.host.count, ANSWER + 2);
+    ck_assert_mem_eq(rig.host.byte, "\1\x7c\x7c", 3);
+    ck_assert_mem_eq(rig.host.byte + 3, clean.byte + 1, ANSWER - 1);
     ck_assert_uint_eq(rig.news, 3);
     assert_well();
 }
@@ -135,13 +135,13 @@ START_TEST(a_byte_dropped_to_the_units_leaves_a_gap_and_the_request_is_not_under
 {
     for (unsigned k = 0; k < REQUEST; k++) {
         version_with(_i, text("{'kind': 'drop', 'direction': 'to_units', 'skip': %d, 'count': 1}", (int)k));
-        ck_assert_uint_eq(rig.master.count, 0);
+        ck_assert_uint_eq(rig.host.count, 0);
         ck_assert_uint_eq(counters(1).requests, 0);
         ck_assert_uint_eq(rig.line.count, REQUEST - 1);
         assert_as(&rig.line, 0, &clean_line, 0, k);
         assert_as(&rig.line, k, &clean_line, k + 1, REQUEST - 1 - k);
         if (k == REQUEST - 1) {
-            sim_take(&rig.sim, (const uint8_t *)"\x7e", 1, sim_now(&rig.sim)); /* all that was missing */
+            sim_queue_bytes(&rig.sim, (const uint8_t *)"\x7e", 1, sim_now(&rig.sim)); /* all that was missing */
             settle();
             ck_assert_uint_eq(counters(1).requests, 1);
         }
@@ -154,7 +154,7 @@ START_TEST(a_flipped_byte_to_the_units_spoils_the_frame)
 {
     for (unsigned k = 1; k < REQUEST - 1; k++) {
         version_with(_i, text("{'kind': 'flip', 'direction': 'to_units', 'skip': %d, 'count': 1}", (int)k));
-        ck_assert_uint_eq(rig.master.count, 0);
+        ck_assert_uint_eq(rig.host.count, 0);
         ck_assert_uint_eq(counters(1).dropped, 1);
         ck_assert_uint_eq(counters(2).dropped, 1);
         ck_assert_uint_eq(rig.line.byte[k], clean_line.byte[k] ^ 1u);
@@ -167,7 +167,7 @@ END_TEST
 START_TEST(a_byte_to_the_units_comes_twice_and_those_behind_it_wait)
 {
     version_with(true, "{'kind': 'duplicate', 'direction': 'to_units', 'skip': 3, 'count': 1}");
-    ck_assert_uint_eq(rig.master.count, 0);
+    ck_assert_uint_eq(rig.host.count, 0);
     ck_assert_uint_eq(counters(1).dropped, 1);
     ck_assert_uint_eq(rig.line.count, REQUEST + 1);
     ck_assert_mem_eq(rig.line.byte, "\x7e\1\0\1\1", 5);
@@ -178,12 +178,12 @@ START_TEST(a_byte_to_the_units_comes_twice_and_those_behind_it_wait)
 }
 END_TEST
 
-START_TEST(bytes_of_the_master_behind_a_gap_are_not_moved_by_one_that_comes_twice)
+START_TEST(bytes_of_the_host_behind_a_gap_are_not_moved_by_one_that_comes_twice)
 {
     rig_begin(true, 1);
     inject("{'kind': 'insert', 'byte': 33, 'count': 1}");
-    sim_take(&rig.sim, (const uint8_t *)"ab", 2, 0);
-    sim_take(&rig.sim, (const uint8_t *)"c", 1, 10000);
+    sim_queue_bytes(&rig.sim, (const uint8_t *)"ab", 2, 0);
+    sim_queue_bytes(&rig.sim, (const uint8_t *)"c", 1, 10000);
     settle();
     ck_assert_uint_eq(rig.line.count, 4);
     ck_assert_mem_eq(rig.line.byte, "!abc", 4);
@@ -196,10 +196,10 @@ END_TEST
 START_TEST(a_flag_inserted_into_a_request_spoils_it_and_before_it_does_no_harm)
 {
     version_with(_i, "{'kind': 'insert', 'byte': 126, 'direction': 'to_units', 'skip': 3, 'count': 1}");
-    ck_assert_uint_eq(rig.master.count, 0);
+    ck_assert_uint_eq(rig.host.count, 0);
     rig_end();
     version_with(_i, "{'kind': 'insert', 'byte': 126, 'direction': 'to_units', 'count': 1}");
-    ck_assert_uint_eq(rig.master.count, ANSWER);
+    ck_assert_uint_eq(rig.host.count, ANSWER);
     assert_well();
 }
 END_TEST
@@ -210,20 +210,20 @@ START_TEST(the_answers_of_one_unit_suffer_alone)
     inject("{'kind': 'flip', 'unit': 2}");
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 1);
     ck_assert_uint_eq(answers_to(2, VERSION, 1), 0);
-    ck_assert_uint_eq(rig.master.count, ANSWER);
+    ck_assert_uint_eq(rig.host.count, ANSWER);
     rig_end();
 }
 END_TEST
 
 /* ---- Echo ----------------------------------------------------------------------------------------------------------- */
 
-START_TEST(with_local_echo_the_master_hears_its_request_before_the_answer)
+START_TEST(with_local_echo_the_host_hears_its_request_before_the_answer)
 {
     version_with(_i, "{'kind': 'echo'}");
-    ck_assert_uint_eq(rig.master.count, REQUEST + ANSWER);
-    assert_as(&rig.master, 0, &clean_line, 0, REQUEST);
-    assert_as(&rig.master, REQUEST, &clean, 0, ANSWER);
-    json_decref(obeyed("fault.clear", "{}"));
+    ck_assert_uint_eq(rig.host.count, REQUEST + ANSWER);
+    assert_as(&rig.host, 0, &clean_line, 0, REQUEST);
+    assert_as(&rig.host, REQUEST, &clean, 0, ANSWER);
+    json_decref(run_command("fault.clear", "{}"));
     assert_well();
 }
 END_TEST
@@ -231,8 +231,8 @@ END_TEST
 START_TEST(an_echo_may_end_after_some_bytes)
 {
     version_with(_i, "{'kind': 'echo', 'count': 3}");
-    ck_assert_uint_eq(rig.master.count, 3 + ANSWER);
-    assert_as(&rig.master, 0, &clean_line, 0, 3);
+    ck_assert_uint_eq(rig.host.count, 3 + ANSWER);
+    assert_as(&rig.host, 0, &clean_line, 0, 3);
     assert_well();
 }
 END_TEST
@@ -242,7 +242,7 @@ END_TEST
 START_TEST(a_break_spoils_the_request_under_way_and_is_one_framing_error)
 {
     version_with(true, "{'kind': 'break', 'after': 1000, 'duration': '20ms'}");
-    ck_assert_uint_eq(rig.master.count, 0);
+    ck_assert_uint_eq(rig.host.count, 0);
     ck_assert_uint_eq(counters(1).requests, 0);
     ck_assert_uint_eq(segment_counters(&rig.sim.segment).framing_errors, 1);
     ck_assert_uint_eq(rig.lost, 1);
@@ -259,9 +259,9 @@ END_TEST
 START_TEST(a_break_cuts_an_answer_short)
 {
     version_with(true, "{'kind': 'break', 'after': 9000, 'duration': '20ms'}");
-    ck_assert_uint_gt(rig.master.count, 0);
-    ck_assert_uint_lt(rig.master.count, ANSWER);
-    assert_as(&rig.master, 0, &clean, 0, rig.master.count - 1); /* the one that it began in may be anything */
+    ck_assert_uint_gt(rig.host.count, 0);
+    ck_assert_uint_lt(rig.host.count, ANSWER);
+    assert_as(&rig.host, 0, &clean, 0, rig.host.count - 1); /* the one that it began in may be anything */
     run(20000);
     assert_well();
 }
@@ -288,7 +288,7 @@ START_TEST(a_break_on_an_idle_line_harms_nobody)
     run(100000);
     ck_assert_uint_eq(rig.news, 6);
     ck_assert_uint_eq(rig.lost, 3);
-    ck_assert_uint_eq(rig.master.count, 0);
+    ck_assert_uint_eq(rig.host.count, 0);
     assert_well();
 }
 END_TEST
@@ -310,7 +310,7 @@ END_TEST
 START_TEST(with_the_cable_cut_there_is_silence_until_it_is_mended)
 {
     version_with(_i, "{'kind': 'cable', 'duration': '2s'}");
-    ck_assert_uint_eq(rig.master.count, 0);
+    ck_assert_uint_eq(rig.host.count, 0);
     ck_assert_uint_eq(counters(1).requests, 0);
     ck_assert_uint_eq(rig.plugs, 0);
     run(1900000);
@@ -320,14 +320,14 @@ START_TEST(with_the_cable_cut_there_is_silence_until_it_is_mended)
 }
 END_TEST
 
-START_TEST(a_cable_cut_during_an_answer_ends_it_at_the_master_and_not_at_the_unit)
+START_TEST(a_cable_cut_during_an_answer_ends_it_at_the_host_and_not_at_the_unit)
 {
     version_with(true, "{'kind': 'cable', 'after': 9000, 'duration': '1s'}");
-    ck_assert_uint_gt(rig.master.count, 0);
-    ck_assert_uint_lt(rig.master.count, ANSWER);
-    assert_as(&rig.master, 0, &clean, 0, rig.master.count);
-    ck_assert_uint_le(rig.master.tick[rig.master.count - 1], BEGIN + 9000);
-    ck_assert_uint_gt(clean.tick[rig.master.count], BEGIN + 9000);
+    ck_assert_uint_gt(rig.host.count, 0);
+    ck_assert_uint_lt(rig.host.count, ANSWER);
+    assert_as(&rig.host, 0, &clean, 0, rig.host.count);
+    ck_assert_uint_le(rig.host.tick[rig.host.count - 1], BEGIN + 9000);
+    ck_assert_uint_gt(clean.tick[rig.host.count], BEGIN + 9000);
     ck_assert_uint_eq(counters(1).answers, 1);
     ck_assert_uint_eq(counters(2).others, 2); /* the others hear it on their side of the cut */
     run(1000000);
@@ -369,7 +369,7 @@ END_TEST
 START_TEST(what_was_under_way_when_the_adapter_was_unplugged_is_lost)
 {
     version_with(true, "{'kind': 'unplugged', 'after': 1000, 'duration': '1s'}");
-    ck_assert_uint_eq(rig.master.count, 0);
+    ck_assert_uint_eq(rig.host.count, 0);
     ck_assert_uint_eq(rig.line.count, 2); /* the byte that was being sent is cut off from the units only */
     ck_assert_uint_eq(counters(1).requests, 0);
     run(1000000);
@@ -387,7 +387,7 @@ START_TEST(an_adapter_unplugged_twice_over_comes_back_when_both_faults_are_over)
     ck_assert_uint_eq(rig.plugs, 1);
     char params[40];
     snprintf(params, sizeof params, "{'id': %u}", (unsigned)first);
-    json_decref(obeyed("fault.clear", params));
+    json_decref(run_command("fault.clear", params));
     ck_assert_uint_eq(rig.plugs, 2);
     ck_assert(rig.plug[1].plugged);
     assert_well();
@@ -425,12 +425,12 @@ static void run_script(bool timed, uint64_t step)
 START_TEST(K3_faults_do_the_same_however_time_is_cut)
 {
     run_script(_i, 30000);
-    struct heard master = rig.master, line = rig.line;
+    struct heard host = rig.host, line = rig.line;
     size_t news = rig.news;
     ck_assert_uint_gt(news, 50);
     run_script(_i, 10);
     ck_assert_uint_eq(rig.news, news);
-    ck_assert_mem_eq(&rig.master, &master, sizeof master);
+    ck_assert_mem_eq(&rig.host, &host, sizeof host);
     ck_assert_mem_eq(&rig.line, &line, sizeof line);
 }
 END_TEST
@@ -440,18 +440,18 @@ int main(void)
     Suite *suite = suite_create("fault_line");
     TCase *bytes = tcase_create("bytes"), *line = tcase_create("line"), *adapter = tcase_create("adapter"),
           *time = tcase_create("time");
-    tcase_add_loop_test(bytes, a_byte_dropped_to_the_master_is_missing_and_the_others_come_when_they_would, 0, 2);
-    tcase_add_loop_test(bytes, a_flipped_byte_to_the_master_differs_in_the_bits_of_the_mask, 0, 2);
-    tcase_add_test(bytes, a_byte_to_the_master_comes_twice_and_the_next_ones_later);
+    tcase_add_loop_test(bytes, a_byte_dropped_to_the_host_is_missing_and_the_others_come_when_they_would, 0, 2);
+    tcase_add_loop_test(bytes, a_flipped_byte_to_the_host_differs_in_the_bits_of_the_mask, 0, 2);
+    tcase_add_test(bytes, a_byte_to_the_host_comes_twice_and_the_next_ones_later);
     tcase_add_loop_test(bytes, a_byte_is_inserted_before_one_to_the_master, 0, 2);
     tcase_add_test(bytes, all_that_can_happen_to_a_byte_can_happen_to_one);
     tcase_add_loop_test(bytes, a_byte_dropped_to_the_units_leaves_a_gap_and_the_request_is_not_understood, 0, 2);
     tcase_add_loop_test(bytes, a_flipped_byte_to_the_units_spoils_the_frame, 0, 2);
     tcase_add_test(bytes, a_byte_to_the_units_comes_twice_and_those_behind_it_wait);
-    tcase_add_test(bytes, bytes_of_the_master_behind_a_gap_are_not_moved_by_one_that_comes_twice);
+    tcase_add_test(bytes, bytes_of_the_host_behind_a_gap_are_not_moved_by_one_that_comes_twice);
     tcase_add_loop_test(bytes, a_flag_inserted_into_a_request_spoils_it_and_before_it_does_no_harm, 0, 2);
     tcase_add_loop_test(bytes, the_answers_of_one_unit_suffer_alone, 0, 2);
-    tcase_add_loop_test(line, with_local_echo_the_master_hears_its_request_before_the_answer, 0, 2);
+    tcase_add_loop_test(line, with_local_echo_the_host_hears_its_request_before_the_answer, 0, 2);
     tcase_add_loop_test(line, an_echo_may_end_after_some_bytes, 0, 2);
     tcase_add_test(line, a_break_spoils_the_request_under_way_and_is_one_framing_error);
     tcase_add_test(line, a_break_cuts_an_answer_short);
@@ -459,7 +459,7 @@ int main(void)
     tcase_add_test(line, a_break_on_an_idle_line_harms_nobody);
     tcase_add_test(line, a_break_stays_when_bytes_begin_to_take_time);
     tcase_add_loop_test(line, with_the_cable_cut_there_is_silence_until_it_is_mended, 0, 2);
-    tcase_add_test(line, a_cable_cut_during_an_answer_ends_it_at_the_master_and_not_at_the_unit);
+    tcase_add_test(line, a_cable_cut_during_an_answer_ends_it_at_the_host_and_not_at_the_unit);
     tcase_add_loop_test(line, the_cable_of_one_unit_cuts_off_that_one_alone, 0, 2);
     tcase_add_loop_test(adapter, an_unplugged_adapter_is_told_when_it_goes_and_when_it_comes_back, 0, 2);
     tcase_add_test(adapter, what_was_under_way_when_the_adapter_was_unplugged_is_lost);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_control.c: any lines as requests of the control socket to a line of units: each is refused with a code and a reason, or
- * obeyed with a result, and the answer is JSON on one line. A line "+N" lets N ms pass, "<HEX" are bytes of the master. Files
+ * obeyed with a result, and the answer is JSON on one line. A line "+N" lets N ms pass, "<HEX" are bytes of the host. Files
  * are left alone. First byte: how many units. */
 #include <string.h>
 
@@ -84,7 +84,7 @@ static void take(const uint8_t *hex, size_t length)
     for (; n < sizeof bytes && 2 * n + 1 < length; n++)
         bytes[n] = (uint8_t)(digit_of(hex[2 * n]) << 4 | (digit_of(hex[2 * n + 1]) & 15u));
     if (n <= sim_room(&sim))
-        sim_take(&sim, bytes, n, sim_now(&sim));
+        sim_queue_bytes(&sim, bytes, n, sim_now(&sim));
 }
 
 static void pass(const uint8_t *text, size_t length)

@@ -12,7 +12,7 @@
  *     *AN        it sends N thousand blanks and x
  *     #N         N more connections that say nothing
  *     +N         N ms pass; .  the loop takes a turn
- *     <HEX       bytes of the master on line 0, >HEX on the last one */
+ *     <HEX       bytes of the host on line 0, >HEX on the last one */
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
@@ -206,7 +206,7 @@ static bool settle(unsigned most)
     return true;
 }
 
-/* ---- What clients and the master do --------------------------------------------------------------------------------- */
+/* ---- What clients and the host do --------------------------------------------------------------------------------- */
 
 static struct client *client_named(uint8_t letter)
 {
@@ -283,7 +283,7 @@ static unsigned digit_of(uint8_t character)
 }
 
 /* As a port hands it over. */
-static void master_sends(struct bus *line, const uint8_t *hex, size_t length)
+static void host_sends(struct bus *line, const uint8_t *hex, size_t length)
 {
     uint8_t bytes[600];
     size_t n = 0;
@@ -307,7 +307,7 @@ static void act(uint8_t what, const uint8_t *text, size_t length)
 {
     struct client *named = length > 0 ? client_named(text[0]) : &client[0];
     if (what == '<' || what == '>')
-        master_sends(bus[what == '>' ? options.lines - 1u : 0], text, length);
+        host_sends(bus[what == '>' ? options.lines - 1u : 0], text, length);
     else if (what == '+')
         pass(number_of(text, length));
     else if (what == '-')

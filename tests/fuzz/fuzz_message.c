@@ -15,7 +15,7 @@
 static struct rkm04_unit unit;
 static uint8_t flash[RKM04_FLASH_BLOCKS][RKM04_FLASH_BLOCK_SIZE];
 static uint8_t answer[12000], frame[4 * MESSAGE_MAX], line[64], heard[12000];
-static struct rkm04_receiver master;
+static struct rkm04_receiver host;
 static unsigned operations, failing; /* of the flash; each failing-th fails, 0: none */
 
 static bool fails(void)
@@ -124,7 +124,7 @@ static void exchange(struct fuzz *fuzz)
         check_answer(message[0], length > 1 ? message[1] : '0', answer, answered);
 }
 
-/* What the unit sends has whole frames in it. The master knows no silence: the bytes may be fetched at any time. */
+/* What the unit sends has whole frames in it. The host knows no silence: the bytes may be fetched at any time. */
 static void drain(size_t bytes)
 {
     const struct rkm04_framing *framing = unit.config.framing;
@@ -134,9 +134,9 @@ static void drain(size_t bytes)
             FUZZ_CHECK(!rkm04_sending(&unit), "something to send, but no byte");
             return;
         }
-        if (framing->receive(&master, line[0], 0, heard, sizeof heard))
+        if (framing->receive(&host, line[0], 0, heard, sizeof heard))
             FUZZ_CHECK(heard[0] == 255 || (heard[0] >= 1 && heard[0] <= 7), "answer %u", heard[0]);
-        FUZZ_CHECK(master.bad_check + master.malformed + master.too_long == 0, "a damaged answer");
+        FUZZ_CHECK(host.bad_check + host.malformed + host.too_long == 0, "a damaged answer");
     }
 }
 
@@ -203,7 +203,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     failing = mode >> 2;
     operations = 0;
     memset(flash, 0xff, sizeof flash);
-    memset(&master, 0, sizeof master);
+    memset(&host, 0, sizeof host);
     rkm04_init(&unit, &config, &port, NULL);
     for (unsigned i = 0; i < 200 && fuzz.left > 0; i++)
         act(&fuzz);

@@ -221,7 +221,7 @@ static bool is_one_of(const json_t *kinds, const char *kind)
     return !kinds;
 }
 
-static void see(struct client *client, json_int_t number, uint64_t tick, const char *kind, const char *text)
+static void on_event(struct client *client, json_int_t number, uint64_t tick, const char *kind, const char *text)
 {
     FUZZ_CHECK(number > 0 && number < CLIENT_SUBSCRIPTIONS && watch_kind_named(kind) != WATCH_KINDS, "%s", text);
     const struct subscribed *subscribed = &client->subscription[number];
@@ -238,7 +238,7 @@ static void take_event(struct client *client, const json_t *event, const char *t
     const json_t *params = json_object_get(event, "params"), *number = json_object_get(params, "subscription");
     const char *kind = json_string_value(json_object_get(params, "kind"));
     FUZZ_CHECK(json_is_integer(number) && kind && json_object_get(params, "value"), "%s", text);
-    see(client, json_integer_value(number), tick_of(params, "t_us", text), kind, text);
+    on_event(client, json_integer_value(number), tick_of(params, "t_us", text), kind, text);
 }
 
 /* A step is read by its form alone: there may be very many. Returns false if it is something else, or due for a closer look. */
@@ -256,7 +256,7 @@ static bool take_step(struct client *client, const char *text, size_t length)
     if (used == 0 || text[sizeof head - 1 + (size_t)used] != '\0')
         return false;
     FUZZ_CHECK(motor >= 1 && motor <= 4, "%s", text);
-    see(client, number, tick, "step", text);
+    on_event(client, number, tick, "step", text);
     return true;
 }
 

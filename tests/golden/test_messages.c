@@ -13,7 +13,7 @@ struct bytes {
 
 #define BYTES(literal) {literal, sizeof(literal) - 1}
 
-/* The same exchange in three dresses; frames are from the master, node 0, to node 1. */
+/* The same exchange in three dresses; frames are from the host, node 0, to node 1. */
 struct example {
     struct bytes message, reply;
     struct {

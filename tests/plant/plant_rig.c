@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct plant_rig *rig = context;
     if (event->kind == WATCH_INPUTS) {
@@ -17,7 +17,7 @@ static void see(void *context, const struct watch_event *event)
         ck_assert_uint_lt(rig->news, RIG_NEWS);
         rig->report[rig->news].tick = event->tick;
         rig->report[rig->news].motor = event->motor;
-        rig->report[rig->news].what = (enum plant_news)event->value;
+        rig->report[rig->news].what = (enum plant_event)event->value;
         strcpy(rig->report[rig->news++].text, event->text);
     }
 }
@@ -42,7 +42,9 @@ bool plant_rig_begin(struct plant_rig *rig, const char *nodes, const char *plant
     memset(rig, 0, sizeof *rig);
     ck_assert(node_list_read(&config.nodes, nodes));
     ck_assert(sim_begin(&rig->sim, &config));
-    rig->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_PLANT), .see = see, .context = rig};
+    rig->watcher.kinds = WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_PLANT);
+    rig->watcher.on_event = on_event;
+    rig->watcher.context = rig;
     sim_watch(&rig->sim, &rig->watcher);
     return !plant || plant_rig_configure(rig, plant);
 }

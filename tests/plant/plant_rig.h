@@ -21,7 +21,7 @@ struct plant_rig {
     struct {
         uint64_t tick;
         unsigned motor;
-        enum plant_news what;
+        enum plant_event what;
         char text[PLANT_TEXT_SIZE];
     } report[RIG_NEWS];
 };

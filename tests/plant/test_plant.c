@@ -31,11 +31,11 @@ static void run(const char *program)
     plant_rig_run(&rig, 60 * SECOND);
 }
 
-static void assert_news(unsigned at, enum plant_news what, const char *text)
+static void assert_news(unsigned at, enum plant_event what, const char *text)
 {
     ck_assert_uint_lt(at, rig.news);
     ck_assert_str_eq(rig.report[at].text, text);
-    ck_assert_str_eq(plant_news_name(rig.report[at].what), plant_news_name(what));
+    ck_assert_str_eq(plant_event_name(rig.report[at].what), plant_event_name(what));
 }
 
 /* ---- Motors --------------------------------------------------------------------------------------------------------- */

@@ -32,7 +32,7 @@ const size_t session_kind_count = sizeof session_kinds / sizeof session_kinds[0]
 
 /* ---- What is seen --------------------------------------------------------------------------------------------------- */
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct session *session = context;
     fprintf(session->stream, "%" PRIu64 " unit %u motor %u %s %" PRId32, event->tick - session->zero, event->unit, event->motor,
@@ -145,7 +145,7 @@ static void take(struct session *session, const uint8_t *bytes, size_t length)
         return;
     if (session->taken < sim_now(&session->sim))
         session->taken = sim_now(&session->sim);
-    sim_take(&session->sim, bytes, length, session->taken);
+    sim_queue_bytes(&session->sim, bytes, length, session->taken);
 }
 
 void session_ask(struct session *session, uint8_t node, const void *message, size_t length)
@@ -295,7 +295,7 @@ void session_begin(struct session *session, const struct session_kind *kind)
     ck_assert(snapshots_attach(&session->sim));
     ck_assert(!kind->plant || sim_configure_plants(&session->sim, "plant", kind->plant, strlen(kind->plant), stderr));
     session_forget(session);
-    session->watcher = (struct watcher){.kinds = WATCH_ALL, .see = see, .context = session};
+    session->watcher = (struct watcher){.kinds = WATCH_ALL, .on_event = on_event, .context = session};
     sim_watch(&session->sim, &session->watcher);
 }
 

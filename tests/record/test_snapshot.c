@@ -34,7 +34,7 @@ static void live_on(uint64_t dice, char **seen, char **state)
 static void restore(const struct snapshot *snapshot)
 {
     ck_assert(snapshot_put(&here.sim, snapshot));
-    watch_hand_out(&here.sim.watch, sim_now(&here.sim) + 1u);
+    watch_deliver(&here.sim.watch, sim_now(&here.sim) + 1u);
 }
 
 static void compare_continuations(unsigned seed, const struct session_kind *kind)
@@ -328,7 +328,7 @@ static void compare_lines(unsigned seed, const struct session_kind *kind)
     session_live(&here, seed % 3 * 4 + 1, seed % 3 * 300000 + 1000, 0); /* shorter and longer than the other */
     uint64_t before = sim_now(&here.sim);
     session_command(&here, "restore", params);
-    watch_hand_out(&here.sim.watch, sim_now(&here.sim) + 1u);
+    watch_deliver(&here.sim.watch, sim_now(&here.sim) + 1u);
     ck_assert_uint_ge(sim_now(&here.sim), before);
     here.taken = sim_now(&here.sim) + taken; /* later than needed: the same distance does not matter when nothing is queued */
     here.taken = 0;
@@ -386,7 +386,7 @@ START_TEST(too_long_a_past_is_refused_until_it_is_shorter)
     ck_assert(snapshots_keep_journal(&here.sim));
     session_command(&here, "snapshot", "{\"name\": \"a\"}");
     for (unsigned i = 0; i < 2200; i++) {
-        sim_take(&here.sim, nothing, sizeof nothing, sim_now(&here.sim));
+        sim_queue_bytes(&here.sim, nothing, sizeof nothing, sim_now(&here.sim));
         sim_advance(&here.sim, sim_now(&here.sim));
         if (i % 50 == 0)
             session_forget(&here);

@@ -47,7 +47,7 @@ START_TEST(bytes_under_way_at_the_end_keep_nobody_waiting)
     ck_assert_uint_gt(sim_due(&session.sim), SIM_TIME_MAX);
     sim_set_timed(&session.sim, false);
     session_ask(&session, 1, "\1", 1);
-    sim_settle(&session.sim);
+    sim_finish_tick(&session.sim);
     sim_set_timed(&session.sim, true);
     session_command(&session, "power", "{\"on\": false}");
     session_command(&session, "power", "{\"on\": true}");

@@ -36,7 +36,7 @@ static void add(struct seen *seen, const char *format, ...)
     ck_assert_uint_lt(seen->length, LINES_MAX);
 }
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct seen *seen = context;
     seen->backwards = seen->backwards || event->tick < seen->last;
@@ -65,7 +65,7 @@ static struct seen *line(bool timed, unsigned units, uint32_t kinds)
         .context = seen,
     };
     ck_assert(sim_begin(&seen->sim, &config));
-    seen->watcher = (struct watcher){.kinds = kinds, .see = see, .context = seen};
+    seen->watcher = (struct watcher){.kinds = kinds, .on_event = on_event, .context = seen};
     sim_watch(&seen->sim, &seen->watcher);
     return seen;
 }
@@ -76,7 +76,7 @@ static void line_ends(struct seen *seen)
     free(seen);
 }
 
-/* A request from the master at the present tick. */
+/* A request from the host at the present tick. */
 static void ask(struct seen *seen, uint8_t node, const void *message, size_t length)
 {
     const struct rkm04_framing *framing = &rkm04_hdlc;
@@ -86,7 +86,7 @@ static void ask(struct seen *seen, uint8_t node, const void *message, size_t len
     for (size_t i = 0; i < length; i++)
         at += framing->put(&sender, ((const uint8_t *)message)[i], frame + at);
     at += framing->end(&sender, frame + at);
-    sim_take(&seen->sim, frame, at, sim_now(&seen->sim));
+    sim_queue_bytes(&seen->sim, frame, at, sim_now(&seen->sim));
 }
 
 static void set(struct seen *seen, uint8_t node, char motor, const char *text)
@@ -141,7 +141,7 @@ static struct seen *live(const struct story *story, bool timed, unsigned way)
             memcpy(message + 2, action->text, action->length);
             ask(seen, (uint8_t)(1 + i % 2), message, 2u + action->length);
         } else if (action->kind == ACT_FRAME) {
-            sim_take(&seen->sim, action->text, action->length, sim_now(&seen->sim));
+            sim_queue_bytes(&seen->sim, action->text, action->length, sim_now(&seen->sim));
         }
     }
     go_to(seen, story->end, way, &dice);
@@ -251,7 +251,7 @@ START_TEST(pulses_cost_nothing_while_nobody_wants_them)
     set(one, 1, '1', "S1000 V1000 F1000 R");
     sim_advance(&one->sim, 100000);
     ck_assert_ptr_null(one->sim.unit[0].port.steps);
-    struct watcher watcher = {.kinds = WATCH_BIT(WATCH_STEP), .see = see, .context = one};
+    struct watcher watcher = {.kinds = WATCH_BIT(WATCH_STEP), .on_event = on_event, .context = one};
     sim_watch(&one->sim, &watcher);
     sim_advance(&one->sim, 102000);
     sim_unwatch(&one->sim, &watcher);

@@ -116,7 +116,7 @@ static void act_line(struct soak *soak)
         for (size_t i = 0; i < length; i++)
             bytes[i] = dice_chance(&soak->dice, 10) ? 0x7E : (uint8_t)dice_roll(&soak->dice, 0, 255);
         if (sim_room(&soak->sim) >= length)
-            sim_take(&soak->sim, bytes, length, sim_now(&soak->sim));
+            sim_queue_bytes(&soak->sim, bytes, length, sim_now(&soak->sim));
         break;
     }
 }
@@ -136,10 +136,10 @@ static void act_request(struct soak *soak, bool flash)
         if (message[0] == 3 && !flash)
             message[0] = 4;
     }
-    size_t size = master_frame(node, 0, message, length, frame);
+    size_t size = host_frame(node, 0, message, length, frame);
     soak->requests++;
     if (sim_room(&soak->sim) >= size)
-        sim_take(&soak->sim, frame, size, sim_now(&soak->sim));
+        sim_queue_bytes(&soak->sim, frame, size, sim_now(&soak->sim));
 }
 
 static void act(struct soak *soak, bool flash)
@@ -169,7 +169,7 @@ static void look(void *context, const struct watch_event *event)
 
 static void everything_goes_wrong(struct soak *soak, bool flash)
 {
-    struct watcher watcher = {.kinds = (uint32_t)dice_roll(&soak->dice, 0, WATCH_ALL), .see = look};
+    struct watcher watcher = {.kinds = (uint32_t)dice_roll(&soak->dice, 0, WATCH_ALL), .on_event = look};
     bool watched = dice_chance(&soak->dice, 50);
     soak->exact = false;
     if (watched)
@@ -215,13 +215,13 @@ void soak_clear(struct soak *soak)
         sim_set_di(&soak->sim, unit + 1u, 0);
     }
     const uint8_t flag = 0x7E;
-    master_send(soak, &flag, 1); /* ends what was left half sent */
+    host_send(soak, &flag, 1);   /* ends what was left half sent */
     pass(soak, 10 * SECOND);     /* answers that were late */
-    master_tell_all(soak, clear, sizeof clear - 1);
+    host_send_all(soak, clear, sizeof clear - 1);
     pass(soak, SECOND);
-    master_tell_all(soak, quiet, sizeof quiet - 1);
+    host_send_all(soak, quiet, sizeof quiet - 1);
     pass(soak, SECOND);
-    master_tell_all(soak, empty, sizeof empty - 1);
+    host_send_all(soak, empty, sizeof empty - 1);
     memset(soak->unit, 0, sizeof soak->unit);
     counters_begin(soak);
 }
@@ -240,7 +240,7 @@ static void clear_up(struct soak *soak)
     soak->exact = true;
     soak->receiver = (struct rkm04_receiver){0};
     for (unsigned unit = 0; unit < UNITS; unit++) { /* what power-up would begin is not known otherwise */
-        size_t length = master_ask(soak, unit, "\3" "0", 2);
+        size_t length = host_ask(soak, unit, "\3" "0", 2);
         if (length != 3 || soak->answer[2] != 0)
             soak_fail(soak, "unit %u: Store Flash is answered with error %u", unit + 1u, soak->answer[2]);
     }

@@ -64,7 +64,7 @@ static void give_text(struct soak *soak, unsigned unit, char motor, const char *
                 length++;
         }
         strncat(piece, text, length);
-        master_set(soak, unit, motor, piece, 0, 0);
+        host_set(soak, unit, motor, piece, 0, 0);
         text += length;
         piece[0] = '\0';
     }
@@ -90,10 +90,10 @@ static void hold(struct soak *soak, unsigned unit)
 {
     unsigned motor = (unsigned)dice_roll(&soak->dice, 0, RKM04_MOTORS - 1);
     uint64_t begin = sim_now(&soak->sim);
-    master_set(soak, unit, (char)('1' + motor), "K", 0, 0);
+    host_set(soak, unit, (char)('1' + motor), "K", 0, 0);
     pass(soak, (uint64_t)dice_scale(&soak->dice, 1, 3 * SECOND));
-    master_poll(soak, unit);
-    master_set(soak, unit, (char)('1' + motor), "{ go on } C75", 0, 0);
+    host_poll(soak, unit);
+    host_set(soak, unit, (char)('1' + motor), "{ go on } C75", 0, 0);
     uint64_t ramp = 16000 * SECOND / 50; /* the longest */
     soak->unit[unit].motor[motor].done += sim_now(&soak->sim) - begin + ramp;
 }
@@ -101,7 +101,7 @@ static void hold(struct soak *soak, unsigned unit)
 static void store(struct soak *soak, unsigned unit)
 {
     unsigned motor = (unsigned)dice_roll(&soak->dice, 0, RKM04_MOTORS); /* 0: all */
-    size_t length = master_ask(soak, unit, (uint8_t[]){3, (uint8_t)('0' + motor)}, 2);
+    size_t length = host_ask(soak, unit, (uint8_t[]){3, (uint8_t)('0' + motor)}, 2);
     if (length != 3 || soak->answer[0] != 3 || soak->answer[1] != '0' + motor || soak->answer[2] != 0)
         soak_fail(soak, "unit %u: Store Flash %u is answered with error %u", unit + 1u, motor, soak->answer[2]);
     for (unsigned i = 0; i < RKM04_MOTORS; i++)
@@ -128,7 +128,7 @@ static void act(struct soak *soak, unsigned unit)
         give_job(soak, unit, (unsigned)dice_roll(&soak->dice, 0, RKM04_MOTORS - 1));
         break;
     default:
-        master_poll(soak, unit);
+        host_poll(soak, unit);
         break;
     }
 }
@@ -148,7 +148,7 @@ void round_jobs(struct soak *soak)
             struct soak_motor *motor = &soak->unit[i / RKM04_MOTORS].motor[i % RKM04_MOTORS];
             motor->pulses = motor->way.steps = 0;
         }
-        soak->steps = (struct watcher){.kinds = WATCH_BIT(WATCH_STEP), .see = count_pulse, .context = soak};
+        soak->steps = (struct watcher){.kinds = WATCH_BIT(WATCH_STEP), .on_event = count_pulse, .context = soak};
         sim_watch(&soak->sim, &soak->steps);
     }
     unsigned percent = (unsigned)dice_roll(&soak->dice, 1, 60);
@@ -187,7 +187,7 @@ static void check_unit(struct soak *soak, unsigned unit)
     if (rkm04_outputs(core) != outputs || rkm04_variables(core) != variables)
         soak_fail(soak, "unit %u: outputs %02X, variables %04X; expected %02X, %04X", unit + 1u, rkm04_outputs(core),
                   rkm04_variables(core), outputs, variables);
-    master_check_ends(soak, unit);
+    host_check_ends(soak, unit);
 }
 
 static bool busy(struct soak *soak, uint64_t *done)
@@ -243,7 +243,7 @@ void round_power(struct soak *soak)
         soak_powered_up(soak, unit);
         soak->resets++;
         for (int64_t polls = dice_roll(&soak->dice, 0, 8); polls > 0; polls--)
-            master_poll(soak, unit);
+            host_poll(soak, unit);
     }
 }
 
@@ -259,8 +259,8 @@ static void pass_by(struct soak *soak, const uint8_t *bytes, size_t length)
 {
     soak->heard = 0;
     soak->garbage++;
-    master_send(soak, bytes, length);
-    master_finish(soak);
+    host_send(soak, bytes, length);
+    host_finish(soak);
     pass(soak, 10000);
     if (soak->heard > 0)
         soak_fail(soak, "unit %u answers garbage", soak->receiver.snode);
@@ -286,7 +286,7 @@ static void noise(struct soak *soak)
 static void wrong_check(struct soak *soak)
 {
     uint8_t frame[64];
-    size_t length = master_frame((uint8_t)dice_roll(&soak->dice, 0, 16), 0, "\2" "0\\ F100 R", 11, frame);
+    size_t length = host_frame((uint8_t)dice_roll(&soak->dice, 0, 16), 0, "\2" "0\\ F100 R", 11, frame);
     frame[3 + dice_roll(&soak->dice, 0, 10)] ^= 1;
     all_drop(soak, 1);
     pass_by(soak, frame, length);
@@ -311,7 +311,7 @@ static void flood(struct soak *soak)
     uint8_t frame[64];
     for (int64_t count = dice_scale(&soak->dice, 10, 300); count > 0; count--) {
         size_t which = (size_t)dice_roll(&soak->dice, 0, sizeof idle / sizeof *idle - 1);
-        master_send(soak, frame, master_frame(0, 0, idle[which].message, idle[which].length, frame));
+        host_send(soak, frame, host_frame(0, 0, idle[which].message, idle[which].length, frame));
         for (unsigned i = 0; i < UNITS; i++)
             soak->unit[i].requests++;
         soak->requests++;
@@ -326,7 +326,7 @@ static void for_others(struct soak *soak)
     bool answer = dice_chance(&soak->dice, 50);
     uint8_t node = answer ? 0 : (uint8_t)dice_roll(&soak->dice, 17, 255);
     uint8_t snode = answer ? (uint8_t)dice_roll(&soak->dice, 1, 16) : 0;
-    size_t length = master_frame(node, snode, "\2" "0\\ F100 R", 11, frame);
+    size_t length = host_frame(node, snode, "\2" "0\\ F100 R", 11, frame);
     for (unsigned i = 0; i < UNITS; i++)
         soak->unit[i].others++;
     pass_by(soak, frame, length);
@@ -366,6 +366,6 @@ void round_garbage(struct soak *soak)
             break;
         }
         if (dice_chance(&soak->dice, 50))
-            master_poll(soak, (unsigned)dice_roll(&soak->dice, 0, UNITS - 1));
+            host_poll(soak, (unsigned)dice_roll(&soak->dice, 0, UNITS - 1));
     }
 }

@@ -82,7 +82,7 @@ static void begin(struct soak *soak)
         .timed = true,
         .turnaround = SEGMENT_TURNAROUND,
         .seed = options.seed,
-        .out = master_hear,
+        .out = host_receive,
         .context = soak,
     };
     soak->dice.state = options.seed;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* soak.h: sixteen units on a line in virtual time, a master that knows what every answer and every counter has to be, and
+/* soak.h: sixteen units on a line in virtual time, a host that knows what every answer and every counter has to be, and
  * everything around them that goes wrong. */
 #ifndef RKM04_TESTS_SOAK_SOAK_H
 #define RKM04_TESTS_SOAK_SOAK_H
@@ -42,9 +42,9 @@ struct soak {
     struct rkm04_receiver receiver;
     uint8_t answer[RKM04_MESSAGE_MAX];
     size_t heard;            /* length of the message in `answer`; 0: none yet */
-    uint64_t out, in;        /* bytes sent and heard by the master */
+    uint64_t out, in;        /* bytes sent and heard by the host */
     uint64_t line_begin;     /* bytes on the line when the round began, and the master's */
-    uint64_t master_begin;
+    uint64_t host_begin;
 
     uint64_t requests, answers, rounds, jobs, steps_done, stores, garbage, faults, snapshots, resets; /* in all */
     char what[100];          /* is being done: for messages */
@@ -53,33 +53,33 @@ struct soak {
 /* Say what is wrong, where and how to see it again; ends the program with status 1. */
 _Noreturn void soak_fail(const struct soak *soak, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* ---- The master (master.c): unit 0..15, motor '0'..'4' ------------------------------------------------------------------ */
+/* ---- The host (host.c): unit 0..15, motor '0'..'4' ------------------------------------------------------------------ */
 
-void master_hear(void *context, const uint8_t *bytes, size_t length);
+void host_receive(void *context, const uint8_t *bytes, size_t length);
 
 /* Bytes as they are, taken by the line as it has room, and time until they have passed. */
-void master_send(struct soak *soak, const uint8_t *bytes, size_t length);
+void host_send(struct soak *soak, const uint8_t *bytes, size_t length);
 
 /* Time until nothing moves on the line: answers have gone out to the end. */
-void master_finish(struct soak *soak);
+void host_finish(struct soak *soak);
 
 /* A frame with its check value. Returns its length. `frame` has room for twice the message and ten bytes. */
-size_t master_frame(uint8_t node, uint8_t snode, const void *message, size_t length, uint8_t *frame);
+size_t host_frame(uint8_t node, uint8_t snode, const void *message, size_t length, uint8_t *frame);
 
 /* A request that is answered; the answer is in soak->answer. Returns its length. */
-size_t master_ask(struct soak *soak, unsigned unit, const void *message, size_t length);
+size_t host_ask(struct soak *soak, unsigned unit, const void *message, size_t length);
 
 /* A request to all units, which nobody answers. */
-void master_tell_all(struct soak *soak, const void *message, size_t length);
+void host_send_all(struct soak *soak, const void *message, size_t length);
 
 /* Set Command: is answered with this flag and character. */
-void master_set(struct soak *soak, unsigned unit, char motor, const char *text, uint8_t flag, uint8_t character);
+void host_set(struct soak *soak, unsigned unit, char motor, const char *text, uint8_t flag, uint8_t character);
 
 /* Something is asked at random, and the answer judged as far as it is known. */
-void master_poll(struct soak *soak, unsigned unit);
+void host_poll(struct soak *soak, unsigned unit);
 
 /* Get Position of all motors: they stand where their jobs end. */
-void master_check_ends(struct soak *soak, unsigned unit);
+void host_check_ends(struct soak *soak, unsigned unit);
 
 /* Count from now on what units and line have to count; they have. */
 void counters_begin(struct soak *soak);

@@ -146,7 +146,7 @@ START_TEST(rows_wait_until_nothing_earlier_can_come)
     struct sim *sim = trace_rig_sim();
     happens(10, WATCH_PULSES, 1, WATCH_STEP, 1);
     happens(30, WATCH_PULSES, 1, WATCH_STEP, 3);
-    watch_hand_out(&sim->watch, 30);
+    watch_deliver(&sim->watch, 30);
     happens(30, WATCH_DELIVERED, 0, WATCH_INPUTS, 2);
     ck_assert_str_eq(trace_rig_so_far(), HEADER "10,m1,step,1\n");
     ck_assert_str_eq(trace_rig_text(), HEADER "10,m1,step,1\n30,unit,di,2\n30,m1,step,3\n");
@@ -241,7 +241,7 @@ START_TEST(a_device_that_is_full_is_told)
     struct trace_file *trace = trace_file_begin_on(trace_rig_sim(), full, (enum trace_format)_i);
     for (int i = 0; i < 100000; i++) {
         happens((uint64_t)i, WATCH_PULSES, 1, WATCH_STEP, i);
-        watch_hand_out(&trace_rig_sim()->watch, (uint64_t)i);
+        watch_deliver(&trace_rig_sim()->watch, (uint64_t)i);
     }
     ck_assert_int_eq(trace_file_failed(trace), ENOSPC);
     ck_assert_int_eq(trace_file_end(trace), ENOSPC);

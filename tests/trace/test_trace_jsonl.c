@@ -108,7 +108,7 @@ START_TEST(what_passes_on_the_wires_is_in_the_trace)
     static const uint8_t request[] = {0x7E, 0x01, 0x00, 0x04, 0x31, 0x0F, 0xA7, 0x7E};
     struct sim *sim = trace_rig_sim();
     sim_advance(sim, 700);
-    sim_take(sim, request, sizeof request, 700);
+    sim_queue_bytes(sim, request, sizeof request, 700);
     sim_advance(sim, 2000);
     json_t *list = lines();
     is(first_of(list, "byte"), "{\"t_us\":700,\"kind\":\"byte\",\"value\":126,\"from\":[\"master\"],\"lost\":false}");

@@ -72,7 +72,7 @@ const char *trace_rig_so_far(void)
 
 const char *trace_rig_text(void)
 {
-    watch_hand_out(&sim.watch, RKM04_NEVER);
+    watch_deliver(&sim.watch, RKM04_NEVER);
     ck_assert_int_eq(trace_file_end(trace), 0);
     trace = NULL;
     fclose(out);

@@ -65,7 +65,7 @@ static void send(uint8_t node, const char *message, size_t length)
     for (size_t i = 0; i < length; i++)
         at += rkm04_hdlc.put(&sender, (uint8_t)message[i], frame + at);
     at += rkm04_hdlc.end(&sender, frame + at);
-    segment_take(&line, frame, at, segment_now(&line));
+    segment_queue_bytes(&line, frame, at, segment_now(&line));
     load.bytes += at;
 }
 

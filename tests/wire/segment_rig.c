@@ -9,11 +9,11 @@ struct line_rig line_rig;
 static void keep(void *context, const uint8_t *bytes, size_t length)
 {
     struct line_rig *line = context;
-    struct line_bytes *master = &line->master;
+    struct line_bytes *host = &line->host;
     for (size_t i = 0; i < length; i++) {
-        ck_assert_uint_lt(master->count, LINE_BYTES_MAX);
-        master->byte[master->count] = bytes[i];
-        master->tick[master->count++] = segment_now(&line->segment);
+        ck_assert_uint_lt(host->count, LINE_BYTES_MAX);
+        host->byte[host->count] = bytes[i];
+        host->tick[host->count++] = segment_now(&line->segment);
     }
 }
 
@@ -38,7 +38,7 @@ void line_begin(const struct segment_config *config, const uint8_t *nodes, const
     mine.monitor = watch;
     mine.context = &line_rig;
     line_rig.framing = framing ? framing : &rkm04_hdlc;
-    line_rig.master.count = line_rig.monitored = 0;
+    line_rig.host.count = line_rig.monitored = 0;
     segment_end(&line_rig.segment);
     segment_begin(&line_rig.segment, &mine);
     for (unsigned number = 1; *nodes != 0; number++) {
@@ -64,7 +64,7 @@ size_t line_ask(uint8_t dnode, const void *message, size_t length, uint64_t tick
     size_t n = line_frame(dnode, message, length, bytes);
     segment_advance(&line_rig.segment, tick);
     ck_assert_uint_ge(segment_room(&line_rig.segment), n);
-    segment_take(&line_rig.segment, bytes, n, tick);
+    segment_queue_bytes(&line_rig.segment, bytes, n, tick);
     return n;
 }
 
@@ -96,9 +96,9 @@ static struct line_count look(uint8_t node, uint8_t number)
     static uint8_t buffer[RKM04_MESSAGE_MAX];
     struct rkm04_receiver receiver = {0};
     struct line_count count = {0};
-    const struct line_bytes *master = &line_rig.master;
-    for (size_t i = 0; i < master->count; i++) {
-        if (!line_rig.framing->receive(&receiver, master->byte[i], master->tick[i], buffer, sizeof buffer))
+    const struct line_bytes *host = &line_rig.host;
+    for (size_t i = 0; i < host->count; i++) {
+        if (!line_rig.framing->receive(&receiver, host->byte[i], host->tick[i], buffer, sizeof buffer))
             continue;
         uint8_t from = line_rig.framing->answer_names_sender ? receiver.snode : receiver.dnode;
         count.whole += (node == 0 || node == from) && (number == 0 || buffer[0] == number);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* segment_rig.h: one RS485 line with a master that keeps all it hears, for tests. */
+/* segment_rig.h: one RS485 line with a host that keeps all it hears, for tests. */
 #ifndef RKM04_TESTS_SEGMENT_RIG_H
 #define RKM04_TESTS_SEGMENT_RIG_H
 
@@ -9,7 +9,7 @@
 #define LINE_BYTES_MAX 60000
 #define REQUEST_MAX 64 /* bytes of a message of line_ask() */
 
-/* What has reached the master. */
+/* What has reached the host. */
 struct line_bytes {
     size_t count;
     uint8_t byte[LINE_BYTES_MAX];
@@ -18,8 +18,8 @@ struct line_bytes {
 
 struct line_rig {
     struct segment segment;
-    const struct rkm04_framing *framing; /* of all units and the master */
-    struct line_bytes master;
+    const struct rkm04_framing *framing; /* of all units and the host */
+    struct line_bytes host;
     struct segment_byte monitor[LINE_BYTES_MAX]; /* what passed on the line */
     size_t monitored;
 };
@@ -47,7 +47,7 @@ uint64_t line_settle(void);
 /* Tick at which `bytes` bytes without a gap have passed that began at `tick`. */
 uint64_t line_passed(uint64_t tick, size_t bytes);
 
-/* Whole, well-checked answers of unit address `node` with this message number that the master has got. hdlc. */
+/* Whole, well-checked answers of unit address `node` with this message number that the host has got. hdlc. */
 unsigned line_answers(uint8_t node, uint8_t number);
 
 /* All whole answers of whomever, and frames that were dropped. Any framing. */

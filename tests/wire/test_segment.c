@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_segment.c: a master and several units on one pair of wires (U4, U7, K4, P10, L1-L3). One case alone:
+/* test_segment.c: a host and several units on one pair of wires (U4, U7, K4, P10, L1-L3). One case alone:
  * CK_RUN_CASE=CASE ./test_segment */
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "segment_rig.h"
 
 #define line (&line_rig.segment)
-#define heard (&line_rig.master)
+#define heard (&line_rig.host)
 
 static const uint8_t one[] = {1, 0}, three[] = {1, 2, 7, 0}, twins[] = {5, 5, 0};
 static const uint8_t all[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 0};
@@ -52,7 +52,7 @@ START_TEST(U7_six_thousand_bytes_take_their_time_to_the_tick)
         segment_advance(line, i * 1000);
         while (segment_room(line) < sizeof noise)
             segment_advance(line, segment_due(line));
-        segment_take(line, noise, sizeof noise, segment_now(line));
+        segment_queue_bytes(line, noise, sizeof noise, segment_now(line));
     }
     ck_assert_uint_eq(line_settle(), 6000 / 12 * 6250);
 }
@@ -62,7 +62,7 @@ START_TEST(U7_bytes_handed_over_when_the_one_before_has_passed_follow_without_a_
 {
     begin(one);
     for (unsigned k = 0; k < 120; k++) {
-        segment_take(line, (const uint8_t *)"x", 1, segment_now(line));
+        segment_queue_bytes(line, (const uint8_t *)"x", 1, segment_now(line));
         line_settle();
     }
     ck_assert_uint_eq(segment_now(line), 120 / 12 * 6250);
@@ -75,7 +75,7 @@ START_TEST(U7_gaps_between_bytes_are_kept)
     static const uint64_t start[] = {100, 5000, 5520, 6041, 7003, 9001}; /* the third and fourth have to wait */
     begin(one);
     for (size_t i = 0; i < 6; i++)
-        segment_take(line, (const uint8_t *)"abcdef" + i, 1, tick[i]);
+        segment_queue_bytes(line, (const uint8_t *)"abcdef" + i, 1, tick[i]);
     line_settle();
     ck_assert_uint_eq(line_rig.monitored, 6);
     for (size_t i = 0; i < 6; i++) {
@@ -363,7 +363,7 @@ START_TEST(next_events_count_in_the_time_of_the_line)
 }
 END_TEST
 
-START_TEST(with_an_echo_the_master_hears_itself)
+START_TEST(with_an_echo_the_host_hears_itself)
 {
     struct segment_config config = line_timed();
     config.echo = true;
@@ -371,7 +371,7 @@ START_TEST(with_an_echo_the_master_hears_itself)
     line_begin(&config, one, NULL);
     uint8_t request[64];
     size_t length = line_frame(1, VERSION, 1, request);
-    segment_take(line, request, length, 0);
+    segment_queue_bytes(line, request, length, 0);
     line_settle();
     ck_assert_uint_eq(heard->count, length + ANSWER_BYTES);
     ck_assert_mem_eq(heard->byte, request, length);
@@ -422,7 +422,7 @@ START_TEST(a_break_that_begins_while_bytes_take_no_time_is_there_when_they_do)
 }
 END_TEST
 
-START_TEST(a_break_is_no_byte_for_the_master_either)
+START_TEST(a_break_is_no_byte_for_the_host_either)
 {
     struct segment_config config = line_timed();
     config.echo = true;
@@ -460,10 +460,10 @@ START_TEST(a_frame_is_open_until_its_last_byte)
     line_begin(&config, three, NULL);
     ck_assert(!segment_in_frame(line));
     size_t length = line_frame(2, VERSION, 1, bytes);
-    segment_take(line, bytes, length - 1, 0);
+    segment_queue_bytes(line, bytes, length - 1, 0);
     line_settle();
     ck_assert(segment_in_frame(line));
-    segment_take(line, bytes + length - 1, 1, segment_now(line));
+    segment_queue_bytes(line, bytes + length - 1, 1, segment_now(line));
     line_settle();
     ck_assert(!segment_in_frame(line));
 }
@@ -534,13 +534,13 @@ int main(void)
     tcase_add_test(power, a_unit_that_loses_power_during_the_turnaround_does_not_answer);
     tcase_add_test(power, U8_power_up_begins_anew_with_a_time_of_its_own);
     tcase_add_test(power, next_events_count_in_the_time_of_the_line);
-    TCase *master = add_case(suite, "master");
-    tcase_add_loop_test(master, with_an_echo_the_master_hears_itself, 0, 2);
-    tcase_add_test(master, a_break_spoils_what_is_sent_meanwhile);
-    tcase_add_test(master, a_break_that_ends_while_bytes_take_no_time_is_over);
-    tcase_add_test(master, a_break_that_begins_while_bytes_take_no_time_is_there_when_they_do);
-    tcase_add_test(master, a_break_is_no_byte_for_the_master_either);
-    tcase_add_test(master, bytes_that_are_purged_never_set_out);
+    TCase *host = add_case(suite, "master");
+    tcase_add_loop_test(host, with_an_echo_the_host_hears_itself, 0, 2);
+    tcase_add_test(host, a_break_spoils_what_is_sent_meanwhile);
+    tcase_add_test(host, a_break_that_ends_while_bytes_take_no_time_is_over);
+    tcase_add_test(host, a_break_that_begins_while_bytes_take_no_time_is_there_when_they_do);
+    tcase_add_test(host, a_break_is_no_byte_for_the_host_either);
+    tcase_add_test(host, bytes_that_are_purged_never_set_out);
     TCase *state = add_case(suite, "state");
     tcase_add_loop_test(state, a_frame_is_open_until_its_last_byte, 0, 2);
     tcase_add_test(state, a_line_is_idle_before_the_first_byte_and_after_the_last_one);

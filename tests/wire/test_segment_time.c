@@ -8,7 +8,7 @@
 #include "segment_rig.h"
 
 #define line (&line_rig.segment)
-#define heard (&line_rig.master)
+#define heard (&line_rig.host)
 #define VERSION "\1"
 
 static const uint8_t three[] = {1, 2, 7, 0}, twins[] = {5, 5, 0};
@@ -74,7 +74,7 @@ START_TEST(without_time_every_byte_is_taken_and_none_is_lost)
     static uint8_t noise[SEGMENT_ROOM];
     memset(noise, 0x7E, sizeof noise);
     line_begin(&untimed, three, NULL);
-    segment_take(line, noise, sizeof noise, 10);
+    segment_queue_bytes(line, noise, sizeof noise, 10);
     ck_assert_uint_eq(segment_room(line), 0);
     segment_advance(line, 10);
     ck_assert_uint_eq(segment_room(line), SEGMENT_ROOM);
@@ -126,10 +126,10 @@ START_TEST(L2_units_that_take_answers_for_requests_do_not_stop_the_time)
     line_begin(&untimed, twins, &rkm04_plain);
     size_t length = line_frame(5, "\377", 1, request);
     segment_power(line, 2, false);
-    segment_take(line, request, length - 1, 0);
+    segment_queue_bytes(line, request, length - 1, 0);
     segment_advance(line, 0);
     segment_power(line, 2, true); /* misses the request, and takes the answer for one */
-    segment_take(line, request + length - 1, 1, 0);
+    segment_queue_bytes(line, request + length - 1, 1, 0);
     segment_advance(line, 0);
     ck_assert_uint_eq(line_count().whole, 1);
     ck_assert_uint_eq(segment_due(line), 1);
@@ -179,7 +179,7 @@ static void act(uint64_t tick)
     uint8_t dnode = node[any(5)];
     switch (any(8)) {
     case 0:
-        segment_take(line, noise, 1 + any(3), tick);
+        segment_queue_bytes(line, noise, 1 + any(3), tick);
         break;
     case 1:
         line_set(dnode, '1', any(2) ? "F50 R" : "\\B7 R W1", tick);
@@ -231,9 +231,9 @@ START_TEST(K3_how_the_time_is_cut_makes_no_difference)
             memset(line_rig.segment.unit, 0, sizeof line_rig.segment.unit);
             continue;
         }
-        ck_assert_uint_eq(heard->count, first.master.count);
-        ck_assert_mem_eq(heard->byte, first.master.byte, heard->count);
-        ck_assert_mem_eq(heard->tick, first.master.tick, heard->count * sizeof heard->tick[0]);
+        ck_assert_uint_eq(heard->count, first.host.count);
+        ck_assert_mem_eq(heard->byte, first.host.byte, heard->count);
+        ck_assert_mem_eq(heard->tick, first.host.tick, heard->count * sizeof heard->tick[0]);
         ck_assert_uint_eq(line_rig.monitored, first.monitored);
         for (size_t i = 0; i < line_rig.monitored; i++) {
             ck_assert_uint_eq(line_rig.monitor[i].start, first.monitor[i].start);
@@ -295,7 +295,7 @@ static void poll(uint8_t node, unsigned motor)
     uint8_t bytes[32], message[2] = {4, (uint8_t)('0' + motor)};
     load.asked = segment_now(&load.segment);
     load.request = line_frame(node, message, 2, bytes);
-    segment_take(&load.segment, bytes, load.request, load.asked);
+    segment_queue_bytes(&load.segment, bytes, load.request, load.asked);
     load.whole = false;
     load.polls++;
     while (!load.whole) {
@@ -327,7 +327,7 @@ START_TEST(U3_sixteen_units_at_full_speed_are_polled_for_a_minute_without_loss)
     static const char go[] = "\0020S2000 A60000 V16000 G+";
     uint8_t bytes[80];
     size_t length = line_frame(0, go, sizeof go - 1, bytes);
-    segment_take(&load.segment, bytes, length, 0);
+    segment_queue_bytes(&load.segment, bytes, length, 0);
     segment_advance(&load.segment, line_passed(0, length));
     rkm04_advance(&alone, line_passed(0, length));
     rkm04_receive(&alone, bytes, length);

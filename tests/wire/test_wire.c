@@ -11,13 +11,13 @@
 #define BYTE WIRE_BYTE
 
 static struct wire wire;
-static struct wire_byte heard[HEARD_MAX];
+static struct wire_byte received[HEARD_MAX];
 static size_t count;
 
 /* Hear all there is by `until`. */
 static void hear(uint64_t until)
 {
-    while (count < HEARD_MAX && wire_hear(&wire, until, &heard[count]))
+    while (count < HEARD_MAX && wire_receive(&wire, until, &received[count]))
         count++;
 }
 
@@ -30,26 +30,26 @@ static void begin(unsigned units)
 }
 
 /* The n-th (0..) byte that an ear has heard, lost ones included; NULL if there are fewer. */
-static const struct wire_byte *at(unsigned ear, size_t n)
+static const struct wire_byte *at(unsigned receiver, size_t n)
 {
     for (size_t i = 0; i < count; i++)
-        if (heard[i].ear == ear && n-- == 0)
-            return &heard[i];
+        if (received[i].receiver == receiver && n-- == 0)
+            return &received[i];
     return NULL;
 }
 
-static size_t number(unsigned ear)
+static size_t number(unsigned receiver)
 {
     size_t n = 0;
-    while (at(ear, n))
+    while (at(receiver, n))
         n++;
     return n;
 }
 
-static void expect(unsigned ear, size_t n, uint64_t start, uint8_t byte, uint32_t senders)
+static void expect(unsigned receiver, size_t n, uint64_t start, uint8_t byte, uint32_t senders)
 {
-    const struct wire_byte *found = at(ear, n);
-    ck_assert_msg(found != NULL, "ear %u has heard %zu bytes only", ear, number(ear));
+    const struct wire_byte *found = at(receiver, n);
+    ck_assert_msg(found != NULL, "ear %u has heard %zu bytes only", receiver, number(receiver));
     ck_assert_uint_eq(found->start, start);
     ck_assert_uint_eq(found->end, start + BYTE);
     ck_assert_uint_eq(found->byte, byte);
@@ -68,7 +68,7 @@ START_TEST(U7_every_byte_is_heard_as_it_was_sent_by_all_but_the_sender)
     ck_assert_uint_eq(count, 0);
     hear(1000 + BYTE);
     ck_assert_uint_eq(count, 3);
-    expect(WIRE_MASTER, 0, 1000, (uint8_t)_i, 1u << 1);
+    expect(WIRE_HOST, 0, 1000, (uint8_t)_i, 1u << 1);
     expect(2, 0, 1000, (uint8_t)_i, 1u << 1);
     expect(WIRE_MONITOR, 0, 1000, (uint8_t)_i, 1u << 1);
     ck_assert_uint_eq(wire_due(&wire), RKM04_NEVER);
@@ -81,13 +81,13 @@ START_TEST(U7_bytes_without_a_gap_are_heard_one_after_the_other)
     begin(1);
     for (unsigned k = 0; k < 600; k++) {
         hear(77 + k * (uint64_t)BYTE);
-        wire_send(&wire, WIRE_MASTER, (uint8_t)(k * 37), 77 + k * (uint64_t)BYTE);
+        wire_send(&wire, WIRE_HOST, (uint8_t)(k * 37), 77 + k * (uint64_t)BYTE);
     }
     hear(RKM04_NEVER);
     for (unsigned k = 0; k < 600; k++)
-        expect(1, k, 77 + k * (uint64_t)BYTE, (uint8_t)(k * 37), 1u << WIRE_MASTER);
+        expect(1, k, 77 + k * (uint64_t)BYTE, (uint8_t)(k * 37), 1u << WIRE_HOST);
     ck_assert_uint_eq(number(1), 600);
-    ck_assert_uint_eq(number(WIRE_MASTER), 0);
+    ck_assert_uint_eq(number(WIRE_HOST), 0);
     ck_assert_uint_eq(wire.sent, 600);
 }
 END_TEST
@@ -99,7 +99,7 @@ START_TEST(a_station_that_is_not_there_hears_nothing)
     wire_send(&wire, 1, 0x55, 0);
     hear(RKM04_NEVER);
     ck_assert_uint_eq(number(2), 0);
-    ck_assert_uint_eq(number(WIRE_MASTER), 1);
+    ck_assert_uint_eq(number(WIRE_HOST), 1);
 }
 END_TEST
 
@@ -111,7 +111,7 @@ START_TEST(the_same_byte_sent_twice_at_once_is_heard_as_it_is)
     wire_send(&wire, 1, 0xA5, 0);
     wire_send(&wire, 2, 0xA5, 0);
     hear(RKM04_NEVER);
-    expect(WIRE_MASTER, 0, 0, 0xA5, 1u << 1 | 1u << 2);
+    expect(WIRE_HOST, 0, 0, 0xA5, 1u << 1 | 1u << 2);
     expect(3, 0, 0, 0xA5, 1u << 1 | 1u << 2);
     ck_assert_uint_eq(number(1), 0);
     ck_assert_uint_eq(number(2), 0);
@@ -125,7 +125,7 @@ START_TEST(of_two_bytes_at_once_a_0_wins_in_every_bit)
     wire_send(&wire, 1, 0xF6, 0);
     wire_send(&wire, 2, 0x5F, 0);
     hear(RKM04_NEVER);
-    expect(WIRE_MASTER, 0, 0, 0xF6 & 0x5F, 1u << 1 | 1u << 2);
+    expect(WIRE_HOST, 0, 0, 0xF6 & 0x5F, 1u << 1 | 1u << 2);
 }
 END_TEST
 
@@ -135,9 +135,9 @@ START_TEST(a_byte_that_comes_three_bits_late_is_heard_as_part_of_the_first)
     wire_send(&wire, 1, 0xFF, 0);          /* 0 1111 1111 1 */
     wire_send(&wire, 2, 0xB9, 3 * BIT);    /*    0 1001 1101 1, so 0 11 0 1001 1 | 101 1 */
     hear(RKM04_NEVER);
-    expect(WIRE_MASTER, 0, 0, 0xCB, 1u << 1 | 1u << 2); /* 1 1 0 1 0 0 1 1 upwards, then 1 for the stop bit */
-    ck_assert_ptr_nonnull(at(WIRE_MASTER, 1)); /* and the 0 behind it passes for one more start bit */
-    ck_assert_uint_eq(at(WIRE_MASTER, 1)->start, 10 * BIT);
+    expect(WIRE_HOST, 0, 0, 0xCB, 1u << 1 | 1u << 2); /* 1 1 0 1 0 0 1 1 upwards, then 1 for the stop bit */
+    ck_assert_ptr_nonnull(at(WIRE_HOST, 1));          /* and the 0 behind it passes for one more start bit */
+    ck_assert_uint_eq(at(WIRE_HOST, 1)->start, 10 * BIT);
     ck_assert_uint_eq(wire.collisions, 2);
 }
 END_TEST
@@ -148,14 +148,14 @@ START_TEST(a_wrong_stop_bit_loses_the_byte)
     wire_send(&wire, 1, 0x00, 0);
     wire_send(&wire, 2, 0x00, 5 * BIT); /* 0 from the start of the one to the stop bit of the other */
     hear(RKM04_NEVER);
-    ck_assert_uint_eq(number(WIRE_MASTER), 0);
-    ck_assert_uint_eq(wire.ear[WIRE_MASTER].framing_errors, 1);
+    ck_assert_uint_eq(number(WIRE_HOST), 0);
+    ck_assert_uint_eq(wire.receiver[WIRE_HOST].framing_errors, 1);
     ck_assert_uint_eq(number(WIRE_MONITOR), 1);
     ck_assert(at(WIRE_MONITOR, 0)->lost);
     uint64_t later = 20 * BIT;
     wire_send(&wire, 1, 0x42, later);
     hear(RKM04_NEVER);
-    expect(WIRE_MASTER, 0, later, 0x42, 1u << 1);
+    expect(WIRE_HOST, 0, later, 0x42, 1u << 1);
 }
 END_TEST
 
@@ -165,8 +165,8 @@ START_TEST(a_small_shift_does_no_harm)
     wire_send(&wire, 1, 0x3C, 0);
     wire_send(&wire, 2, 0x3C, BIT / 3);
     hear(RKM04_NEVER);
-    expect(WIRE_MASTER, 0, 0, 0x3C, 1u << 1 | 1u << 2);
-    ck_assert_uint_eq(number(WIRE_MASTER), 1);
+    expect(WIRE_HOST, 0, 0, 0x3C, 1u << 1 | 1u << 2);
+    ck_assert_uint_eq(number(WIRE_HOST), 1);
 }
 END_TEST
 
@@ -177,8 +177,8 @@ START_TEST(bytes_that_touch_do_not_collide)
     hear(BYTE);
     wire_send(&wire, 2, 0x00, BYTE);
     hear(RKM04_NEVER);
-    expect(WIRE_MASTER, 0, 0, 0x00, 1u << 1);
-    expect(WIRE_MASTER, 1, BYTE, 0x00, 1u << 2);
+    expect(WIRE_HOST, 0, 0, 0x00, 1u << 1);
+    expect(WIRE_HOST, 1, BYTE, 0x00, 1u << 2);
     ck_assert_uint_eq(wire.collisions, 0);
 }
 END_TEST
@@ -193,7 +193,7 @@ START_TEST(who_begins_to_send_within_a_byte_does_not_hear_it)
     hear(RKM04_NEVER);
     ck_assert_uint_eq(number(2), 0);
     ck_assert_uint_eq(number(1), 0); /* the rest of what 2 sends is a 1 */
-    ck_assert_uint_eq(wire.ear[2].framing_errors, 0);
+    ck_assert_uint_eq(wire.receiver[2].framing_errors, 0);
 }
 END_TEST
 
@@ -218,7 +218,7 @@ START_TEST(a_start_bit_that_is_gone_in_its_middle_was_none)
     ck_assert_uint_eq(count, 0);
     wire_send(&wire, 2, 0x17, BIT);
     hear(RKM04_NEVER);
-    expect(WIRE_MASTER, 0, BIT, 0x17, 1u << 2);
+    expect(WIRE_HOST, 0, BIT, 0x17, 1u << 2);
 }
 END_TEST
 
@@ -228,14 +228,14 @@ START_TEST(a_sender_without_power_leaves_the_line_at_1)
     wire_send(&wire, 1, 0x00, 0);
     wire_leave(&wire, 1, 5 * BIT);
     hear(RKM04_NEVER);
-    expect(WIRE_MASTER, 0, 0, 0xF0, 1u << 1);
+    expect(WIRE_HOST, 0, 0, 0xF0, 1u << 1);
 }
 END_TEST
 
 START_TEST(who_joins_within_a_byte_waits_for_the_line_to_fall)
 {
     begin(1);
-    wire_send(&wire, WIRE_MASTER, 0xC0, 0); /* 0 000000 11 1 */
+    wire_send(&wire, WIRE_HOST, 0xC0, 0); /* 0 000000 11 1 */
     hear(3 * BIT);
     wire_join(&wire, 2, 3 * BIT);
     hear(RKM04_NEVER);
@@ -247,29 +247,29 @@ END_TEST
 START_TEST(a_break_is_one_lost_byte_and_then_silence)
 {
     begin(1);
-    wire_hold(&wire, WIRE_MASTER, true, 0);
-    wire_hold(&wire, WIRE_MASTER, true, 10);
+    wire_hold(&wire, WIRE_HOST, true, 0);
+    wire_hold(&wire, WIRE_HOST, true, 10);
     hear(100 * BYTE);
-    ck_assert_uint_eq(wire.ear[1].framing_errors, 1);
-    ck_assert_uint_eq(wire.ear[WIRE_MASTER].framing_errors, 0);
-    wire_hold(&wire, WIRE_MASTER, false, 100 * BYTE);
-    wire_send(&wire, WIRE_MASTER, 0x99, 101 * BYTE);
+    ck_assert_uint_eq(wire.receiver[1].framing_errors, 1);
+    ck_assert_uint_eq(wire.receiver[WIRE_HOST].framing_errors, 0);
+    wire_hold(&wire, WIRE_HOST, false, 100 * BYTE);
+    wire_send(&wire, WIRE_HOST, 0x99, 101 * BYTE);
     hear(RKM04_NEVER);
-    expect(1, 0, 101 * BYTE, 0x99, 1u << WIRE_MASTER);
-    ck_assert_uint_eq(wire.ear[1].framing_errors, 1);
+    expect(1, 0, 101 * BYTE, 0x99, 1u << WIRE_HOST);
+    ck_assert_uint_eq(wire.receiver[1].framing_errors, 1);
 }
 END_TEST
 
 START_TEST(what_is_sent_during_a_break_is_not_heard)
 {
     begin(2);
-    wire_hold(&wire, WIRE_MASTER, true, 0);
+    wire_hold(&wire, WIRE_HOST, true, 0);
     wire_send(&wire, 1, 0x55, 4 * BIT);
     hear(20 * BYTE);
     ck_assert_uint_eq(number(2), 0);
-    ck_assert_uint_eq(number(WIRE_MASTER), 0);
+    ck_assert_uint_eq(number(WIRE_HOST), 0);
     ck_assert_uint_eq(wire.collisions, 1);
-    wire_send(&wire, WIRE_MASTER, 0x55, 30 * BYTE); /* nobody collides with himself */
+    wire_send(&wire, WIRE_HOST, 0x55, 30 * BYTE); /* nobody collides with himself */
     ck_assert_uint_eq(wire.collisions, 1);
 }
 END_TEST
@@ -278,14 +278,14 @@ START_TEST(any_number_of_short_breaks_is_survived)
 {
     begin(1);
     for (uint64_t i = 0; i < 1000; i++) {
-        wire_hold(&wire, WIRE_MASTER, true, i * 24);
-        wire_hold(&wire, WIRE_MASTER, false, i * 24 + 12);
+        wire_hold(&wire, WIRE_HOST, true, i * 24);
+        wire_hold(&wire, WIRE_HOST, false, i * 24 + 12);
         hear(i * 24 + 12);
     }
     hear(30000);
-    wire_send(&wire, WIRE_MASTER, 0x5A, 40000);
+    wire_send(&wire, WIRE_HOST, 0x5A, 40000);
     hear(RKM04_NEVER);
-    expect(1, number(1) - 1, 40000, 0x5A, 1u << WIRE_MASTER);
+    expect(1, number(1) - 1, 40000, 0x5A, 1u << WIRE_HOST);
 }
 END_TEST
 
@@ -346,7 +346,7 @@ static size_t draw(struct send *sends, uint64_t off, int round)
 }
 
 /* Step a UART through the line and compare all it hears with what the ear has heard. */
-static void compare(unsigned ear, int round)
+static void compare(unsigned receiver, int round)
 {
     bool within = false, before = true;
     uint64_t fall = 0;
@@ -356,18 +356,18 @@ static void compare(unsigned ear, int round)
     for (uint64_t time = 0; time < LENGTH; time++) {
         bool high = true;
         for (unsigned station = 0; station < STATIONS; station++)
-            high = high && (station == ear || !low[station][time]);
+            high = high && (station == receiver || !low[station][time]);
         uint64_t into = time - fall;
-        if (ear < STATIONS && busy[ear][time]) {
+        if (receiver < STATIONS && busy[receiver][time]) {
             within = false;
             before = true;
         } else if (within && into == 9 * BIT + BIT / 2) {
             within = false;
             before = high;
-            if (high || ear == WIRE_MONITOR) {
-                const struct wire_byte *found = at(ear, n++);
+            if (high || receiver == WIRE_MONITOR) {
+                const struct wire_byte *found = at(receiver, n++);
                 ck_assert_msg(found && found->start == fall && found->byte == bits && found->lost == !high,
-                              "round %d, ear %u: byte %zu should be %02x from %llu on", round, ear, n, bits,
+                              "round %d, ear %u: byte %zu should be %02x from %llu on", round, receiver, n, bits,
                               (unsigned long long)fall);
             }
             lost += !high;
@@ -383,8 +383,8 @@ static void compare(unsigned ear, int round)
             bits |= (unsigned)high << (into / BIT - 1);
         }
     }
-    ck_assert_uint_eq(number(ear), n);
-    ck_assert_uint_eq(wire.ear[ear].framing_errors, lost);
+    ck_assert_uint_eq(number(receiver), n);
+    ck_assert_uint_eq(wire.receiver[receiver].framing_errors, lost);
 }
 
 START_TEST(whatever_is_sent_is_heard_as_a_UART_hears_it)
@@ -407,8 +407,8 @@ START_TEST(whatever_is_sent_is_heard_as_a_UART_hears_it)
     if (off < LENGTH)
         wire_leave(&wire, STATIONS - 1, off);
     hear(RKM04_NEVER);
-    for (unsigned ear = 0; ear < STATIONS - ((wire.stations >> (STATIONS - 1) & 1) == 0); ear++)
-        compare(ear, _i);
+    for (unsigned receiver = 0; receiver < STATIONS - ((wire.stations >> (STATIONS - 1) & 1) == 0); receiver++)
+        compare(receiver, _i);
     compare(WIRE_MONITOR, _i);
 }
 END_TEST

@@ -136,8 +136,8 @@ START_TEST(L1_empty_frames_are_nothing_and_one_flag_ends_a_frame_and_begins_the_
     uint8_t frame[64];
     size_t length = wire_rig_frame(0, 0, "\3" "1", 2, frame);
     wire_rig_bytes("7E 7E 7E");
-    sim_take(sim, frame, length, 0);
-    sim_take(sim, frame + 1, length - 1, 0);
+    sim_queue_bytes(sim, frame, length, 0);
+    sim_queue_bytes(sim, frame + 1, length - 1, 0);
     wire_rig_settle();
     wire_rig_says("master > all: 3 Store Flash m1");
     wire_rig_says("master > all: 3 Store Flash m1");
@@ -289,7 +289,7 @@ START_TEST(L3_a_request_that_no_unit_obeys_is_told_with_the_reason)
     sim_power(sim, 1, false);
     wire_rig_ask(3, "\1", 1);
     wire_rig_says("master > 3: 1 Version; ignored: no power at unit 3");
-    sim_take(sim, frame, wire_rig_frame(5, 4, "\1", 1, frame), sim_now(sim));
+    sim_queue_bytes(sim, frame, wire_rig_frame(5, 4, "\1", 1, frame), sim_now(sim));
     wire_rig_settle();
     wire_rig_says("master as 4 > 5: 1 Version; ignored: by its sender's address it is the answer of a unit (L1)");
     wire_rig_ask(0, "\2" "1F1", 4);
@@ -406,7 +406,7 @@ START_TEST(noise_is_told_as_often_as_the_unit_drops_it)
         for (unsigned i = 0; i < 20000; i++) {
             random = random * 1664525u + 1013904223u;
             uint8_t byte = random >> 24 < 40 ? 0x7E : random >> 24 < 80 ? 0x7D : (uint8_t)(random >> 16);
-            sim_take(sim, &byte, 1, sim_now(sim));
+            sim_queue_bytes(sim, &byte, 1, sim_now(sim));
             wire_rig_settle();
         }
     }

@@ -11,7 +11,7 @@ struct wire_rig wire_rig;
 
 static unsigned looked_at; /* lines */
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct wire_rig *rig = context;
     ck_assert_uint_lt(rig->lines, WIRE_RIG_LINES);
@@ -33,7 +33,7 @@ static void begin(const char *nodes, const struct rkm04_framing *framing, bool t
     wire_rig_end();
     ck_assert(node_list_read(&config.nodes, nodes));
     ck_assert(sim_begin(&wire_rig.sim, &config));
-    wire_rig.watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_MESSAGE), .see = see, .context = &wire_rig};
+    wire_rig.watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_MESSAGE), .on_event = on_event, .context = &wire_rig};
     sim_watch(&wire_rig.sim, &wire_rig.watcher);
 }
 
@@ -65,7 +65,7 @@ void wire_rig_bytes(const char *hex)
     for (char *end; *hex; hex = end + (*end == ' ')) {
         uint8_t byte = (uint8_t)strtoul(hex, &end, 16);
         ck_assert_ptr_ne(hex, end);
-        sim_take(&wire_rig.sim, &byte, 1, sim_now(&wire_rig.sim));
+        sim_queue_bytes(&wire_rig.sim, &byte, 1, sim_now(&wire_rig.sim));
     }
 }
 
@@ -87,7 +87,7 @@ void wire_rig_send(uint8_t dnode, const void *message, size_t length)
         while (sim_room(&wire_rig.sim) == 0)
             sim_advance(&wire_rig.sim, sim_due(&wire_rig.sim));
         some = size - at < sim_room(&wire_rig.sim) ? size - at : sim_room(&wire_rig.sim);
-        sim_take(&wire_rig.sim, frame + at, some, sim_now(&wire_rig.sim));
+        sim_queue_bytes(&wire_rig.sim, frame + at, some, sim_now(&wire_rig.sim));
     }
 }
 

@@ -28,13 +28,13 @@ void wire_rig_end(void);
 void wire_rig_begin_untimed(const char *nodes, const struct rkm04_framing *framing);
 void wire_rig_begin_slow(const char *nodes, const struct rkm04_framing *framing, uint32_t turnaround);
 
-/* The master sends bytes at the present tick, "7E 03 00". */
+/* The host sends bytes at the present tick, "7E 03 00". */
 void wire_rig_bytes(const char *hex);
 
 /* The frame of a message. Returns its length. */
 size_t wire_rig_frame(uint8_t dnode, uint8_t snode, const void *message, size_t length, uint8_t *out);
 
-/* The master sends a whole frame from node 0 at the present tick. */
+/* The host sends a whole frame from node 0 at the present tick. */
 void wire_rig_send(uint8_t dnode, const void *message, size_t length);
 
 /* The same, then the line comes to rest. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the master of a scenario sends, and what it makes of the answers. */
+/* What the host of a scenario sends, and what it makes of the answers. */
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,25 +16,25 @@ static const struct rkm04_framing *framing_of(const struct running *running)
 void running_hear(void *context, const uint8_t *bytes, size_t length)
 {
     struct running *running = context;
-    struct master *master = &running->master;
-    for (size_t i = 0; i < length && !master->answered; i++) {
-        if (!framing_of(running)->receive(&master->receiver, bytes[i], sim_now(running->sim), master->buffer,
-                                          sizeof master->buffer))
+    struct host *host = &running->host;
+    for (size_t i = 0; i < length && !host->answered; i++) {
+        if (!framing_of(running)->receive(&host->receiver, bytes[i], sim_now(running->sim), host->buffer,
+                                          sizeof host->buffer))
             continue;
-        if (!master->listening)
+        if (!host->listening)
             continue;
-        master->answered = true;
-        master->dnode = master->receiver.dnode;
-        master->snode = master->receiver.snode;
-        master->length = master->receiver.length;
+        host->answered = true;
+        host->dnode = host->receiver.dnode;
+        host->snode = host->receiver.snode;
+        host->length = host->receiver.length;
     }
 }
 
-static void listen(struct master *master)
+static void listen(struct host *host)
 {
-    master->receiver = (struct rkm04_receiver){0};
-    master->listening = true;
-    master->answered = false;
+    host->receiver = (struct rkm04_receiver){0};
+    host->listening = true;
+    host->answered = false;
 }
 
 /* ---- Sending -------------------------------------------------------------------------------------------------------- */
@@ -74,16 +74,16 @@ static bool send_bytes(struct running *running, const uint8_t *bytes, size_t len
     while (handed < length) {
         size_t room = sim_room(sim), part = length - handed < room ? length - handed : room;
         if (part > 0) {
-            sim_take(sim, bytes + handed, part, sim_now(sim));
+            sim_queue_bytes(sim, bytes + handed, part, sim_now(sim));
             if (sim->segment.config.timed)
-                *passed = (sim->segment.master_free + WIRE_TICK - 1) / WIRE_TICK;
+                *passed = (sim->segment.host_free + WIRE_TICK - 1) / WIRE_TICK;
             handed += part;
             sim_advance(sim, sim_now(sim));
         } else if (!running_turn(running, sim_now(sim) + RKM04_SLOT_TICKS, NULL)) {
             return false;
         }
     }
-    while (!running->over && !running->master.answered && sim_now(sim) < *passed)
+    while (!running->over && !running->host.answered && sim_now(sim) < *passed)
         running_turn(running, *passed, NULL);
     return !running->over;
 }
@@ -128,7 +128,7 @@ static char *wanted_text(const struct scenario_step *step)
 /* Why there is none. */
 static char *silence_text(const struct running *running, uint64_t since)
 {
-    const struct rkm04_receiver *receiver = &running->master.receiver;
+    const struct rkm04_receiver *receiver = &running->host.receiver;
     uint64_t ticks = sim_now(running->sim) - since;
     unsigned dropped = receiver->bad_check + receiver->malformed + receiver->too_long;
     char why[80] = "";
@@ -159,9 +159,9 @@ static char *flag_text(const uint8_t *answer, const char *wrong)
 
 static bool judge_program(struct running *running, const struct scenario_step *step)
 {
-    const struct master *master = &running->master;
-    struct scenario_bytes answer = {.length = master->length, .byte = running->master.buffer};
-    if (master->length != 4 || answer.byte[0] != 2 || answer.byte[1] != step->bytes.byte[1])
+    const struct host *host = &running->host;
+    struct scenario_bytes answer = {.length = host->length, .byte = running->host.buffer};
+    if (host->length != 4 || answer.byte[0] != 2 || answer.byte[1] != step->bytes.byte[1])
         return running_failed(running, step, sim_now(running->sim), wanted_text(step), text_with(&answer, "the answer %s"));
     if (answer.byte[2] != step->flag)
         return running_failed(running, step, sim_now(running->sim), wanted_text(step), flag_text(answer.byte, step->wrong));
@@ -170,9 +170,9 @@ static bool judge_program(struct running *running, const struct scenario_step *s
 
 static bool judge(struct running *running, const struct scenario_step *step)
 {
-    const struct master *master = &running->master;
-    struct scenario_bytes answer = {.length = master->length, .byte = running->master.buffer};
-    unsigned from = framing_of(running)->answer_names_sender ? master->snode : master->dnode;
+    const struct host *host = &running->host;
+    struct scenario_bytes answer = {.length = host->length, .byte = running->host.buffer};
+    unsigned from = framing_of(running)->answer_names_sender ? host->snode : host->dnode;
     uint64_t now = sim_now(running->sim);
     if (step->answer == ANSWER_NONE)
         return running_failed(running, step, now, wanted_text(step), text_with(&answer, "the answer %s"));
@@ -193,17 +193,17 @@ bool running_send(struct running *running, const struct scenario_step *step)
     if (bytes == NULL)
         return running_no_memory(running);
     if (step->answer != ANSWER_UNASKED)
-        listen(&running->master);
+        listen(&running->host);
     bool well = send_bytes(running, bytes, length, &passed);
     free(bytes);
     if (step->answer == ANSWER_UNASKED || !well)
         return well;
-    while (!running->over && !running->master.answered && sim_now(running->sim) < passed + step->within)
+    while (!running->over && !running->host.answered && sim_now(running->sim) < passed + step->within)
         running_turn(running, passed + step->within, NULL);
-    running->master.listening = false;
+    running->host.listening = false;
     if (running->over)
         return false;
-    if (running->master.answered)
+    if (running->host.answered)
         return judge(running, step);
     return step->answer == ANSWER_NONE ||
            running_failed(running, step, sim_now(running->sim), wanted_text(step), silence_text(running, passed));

@@ -13,7 +13,7 @@ static const char error_text[] = "ERROR COMMAND! ";
 
 /* ---- Bytes ---------------------------------------------------------------------------------------------------------- */
 
-void master_hear(void *context, const uint8_t *bytes, size_t length)
+void host_receive(void *context, const uint8_t *bytes, size_t length)
 {
     struct soak *soak = context;
     soak->in += length;
@@ -25,11 +25,11 @@ void master_hear(void *context, const uint8_t *bytes, size_t length)
         }
 }
 
-void master_send(struct soak *soak, const uint8_t *bytes, size_t length)
+void host_send(struct soak *soak, const uint8_t *bytes, size_t length)
 {
     while (length > 0) {
         size_t room = sim_room(&soak->sim), piece = room < length ? room : length;
-        sim_take(&soak->sim, bytes, piece, sim_now(&soak->sim));
+        sim_queue_bytes(&soak->sim, bytes, piece, sim_now(&soak->sim));
         soak->out += piece;
         bytes += piece;
         length -= piece;
@@ -38,7 +38,7 @@ void master_send(struct soak *soak, const uint8_t *bytes, size_t length)
     }
 }
 
-size_t master_frame(uint8_t node, uint8_t snode, const void *message, size_t length, uint8_t *frame)
+size_t host_frame(uint8_t node, uint8_t snode, const void *message, size_t length, uint8_t *frame)
 {
     struct rkm04_sender sender = {0};
     size_t at = rkm04_hdlc.begin(&sender, node, snode, length, false, frame);
@@ -47,7 +47,7 @@ size_t master_frame(uint8_t node, uint8_t snode, const void *message, size_t len
     return at + rkm04_hdlc.end(&sender, frame + at);
 }
 
-void master_finish(struct soak *soak)
+void host_finish(struct soak *soak)
 {
     uint64_t end = sim_now(&soak->sim) + PATIENCE;
     while (!segment_idle(&soak->sim.segment) && sim_now(&soak->sim) < end) {
@@ -65,11 +65,11 @@ static void send_request(struct soak *soak, uint8_t node, const void *message, s
     uint8_t frame[2 * JOB_TEXT];
     soak->heard = 0;
     soak->requests++;
-    master_send(soak, frame, master_frame(node, 0, message, length, frame));
-    master_finish(soak);
+    host_send(soak, frame, host_frame(node, 0, message, length, frame));
+    host_finish(soak);
 }
 
-size_t master_ask(struct soak *soak, unsigned unit, const void *message, size_t length)
+size_t host_ask(struct soak *soak, unsigned unit, const void *message, size_t length)
 {
     uint8_t node = (uint8_t)(unit + 1u);
     send_request(soak, node, message, length);
@@ -87,7 +87,7 @@ size_t master_ask(struct soak *soak, unsigned unit, const void *message, size_t 
     return soak->heard;
 }
 
-void master_tell_all(struct soak *soak, const void *message, size_t length)
+void host_send_all(struct soak *soak, const void *message, size_t length)
 {
     send_request(soak, 0, message, length);
     for (unsigned i = 0; i < UNITS; i++)
@@ -114,12 +114,12 @@ static void expect(struct soak *soak, unsigned unit, const void *wanted, size_t 
     soak_fail(soak, "unit %u answers '%s', expected '%s'", unit + 1u, got, want);
 }
 
-void master_set(struct soak *soak, unsigned unit, char motor, const char *text, uint8_t flag, uint8_t character)
+void host_set(struct soak *soak, unsigned unit, char motor, const char *text, uint8_t flag, uint8_t character)
 {
     uint8_t message[JOB_TEXT + 8] = {2, (uint8_t)motor};
     size_t length = strlen(text);
     memcpy(message + 2, text, length);
-    master_ask(soak, unit, message, length + 2u);
+    host_ask(soak, unit, message, length + 2u);
     if (soak->exact)
         expect(soak, unit, (uint8_t[]){2, (uint8_t)motor, flag, character}, 4);
 }
@@ -152,7 +152,7 @@ static void ask_position(struct soak *soak, unsigned unit, unsigned motor, bool 
 {
     int64_t position = 0;
     size_t at = 2;
-    master_ask(soak, unit, (uint8_t[]){4, (uint8_t)('0' + motor)}, 2);
+    host_ask(soak, unit, (uint8_t[]){4, (uint8_t)('0' + motor)}, 2);
     for (unsigned i = motor > 0 ? motor : 1; i <= (motor > 0 ? motor : RKM04_MOTORS) && at > 0; i++) {
         at = read_field(soak, at, &position);
         if (at > 0)
@@ -162,7 +162,7 @@ static void ask_position(struct soak *soak, unsigned unit, unsigned motor, bool 
         soak_fail(soak, "unit %u: no answer to Get Position", unit + 1u);
 }
 
-void master_check_ends(struct soak *soak, unsigned unit)
+void host_check_ends(struct soak *soak, unsigned unit)
 {
     ask_position(soak, unit, 0, true);
 }
@@ -172,7 +172,7 @@ static void ask_command(struct soak *soak, unsigned unit, unsigned motor)
     uint8_t wanted[JOB_TEXT + 2] = {5, (uint8_t)('0' + motor)};
     const char *text = soak->unit[unit].motor[motor - 1u].job.text;
     memcpy(wanted + 2, text, strlen(text));
-    master_ask(soak, unit, wanted, 2);
+    host_ask(soak, unit, wanted, 2);
     expect(soak, unit, wanted, 2 + strlen(text));
 }
 
@@ -189,7 +189,7 @@ static void ask_profile(struct soak *soak, unsigned unit, unsigned motor)
 {
     unsigned points = 0, counted = 0;
     int end = 0;
-    master_ask(soak, unit, (uint8_t[]){6, (uint8_t)('0' + motor)}, 2);
+    host_ask(soak, unit, (uint8_t[]){6, (uint8_t)('0' + motor)}, 2);
     const char *text = answer_text(soak, 6, motor), *close = strchr(text, ']');
     for (const char *at = text; (at = strchr(at, '(')) != NULL; at++)
         counted++;
@@ -202,7 +202,7 @@ static void ask_place(struct soak *soak, unsigned unit, unsigned motor)
     const struct soak_motor *m = &soak->unit[unit].motor[motor - 1u];
     unsigned steps = 0, index = 0;
     int end = 0;
-    master_ask(soak, unit, (uint8_t[]){7, (uint8_t)('0' + motor)}, 2);
+    host_ask(soak, unit, (uint8_t[]){7, (uint8_t)('0' + motor)}, 2);
     const char *text = answer_text(soak, 7, motor);
     if (sscanf(text, " %u; %u%n", &steps, &index, &end) != 2 || text[end] != '\0' || index > m->job.count || steps > m->way.steps)
         soak_fail(soak, "unit %u, motor %u: at place '%s' of %u commands", unit + 1u, motor, text, m->job.count);
@@ -212,7 +212,7 @@ static void ask_version(struct soak *soak, unsigned unit)
 {
     uint8_t wanted[64] = {1, sizeof VERSION_TEXT - 1};
     memcpy(wanted + 2, VERSION_TEXT, sizeof VERSION_TEXT - 1);
-    master_ask(soak, unit, wanted, 1);
+    host_ask(soak, unit, wanted, 1);
     expect(soak, unit, wanted, sizeof VERSION_TEXT + 1);
 }
 
@@ -222,10 +222,10 @@ static void ask_wrongly(struct soak *soak, unsigned unit)
     uint8_t wanted[32] = {(uint8_t)dice_roll(&soak->dice, 5, 7), '0'}, unknown = (uint8_t)dice_roll(&soak->dice, 8, 255);
     memcpy(wanted + 2, error_text, sizeof error_text - 1);
     if (dice_chance(&soak->dice, 50)) {
-        master_ask(soak, unit, wanted, 2);
+        host_ask(soak, unit, wanted, 2);
         expect(soak, unit, wanted, sizeof error_text + 1);
     } else {
-        master_ask(soak, unit, &unknown, 1);
+        host_ask(soak, unit, &unknown, 1);
         expect(soak, unit, (uint8_t[]){255, unknown, 0, 0}, 4);
     }
 }
@@ -242,10 +242,10 @@ static void set_wrongly(struct soak *soak, unsigned unit, unsigned motor)
         {"T09", 1, 'T'}, {"=+5", 1, '='}, {"F5000000000 R", 1, 'F'}, {"7", 2, '7'}, {"\\ @81", 1, '@'},
     };
     size_t which = (size_t)dice_roll(&soak->dice, 0, sizeof wrong / sizeof *wrong - 1);
-    master_set(soak, unit, (char)('0' + motor), wrong[which].text, wrong[which].flag, (uint8_t)wrong[which].character);
+    host_set(soak, unit, (char)('0' + motor), wrong[which].text, wrong[which].flag, (uint8_t)wrong[which].character);
 }
 
-void master_poll(struct soak *soak, unsigned unit)
+void host_poll(struct soak *soak, unsigned unit)
 {
     unsigned motor = (unsigned)dice_roll(&soak->dice, 1, RKM04_MOTORS);
     switch (dice_roll(&soak->dice, 0, 9)) {
@@ -286,7 +286,7 @@ void counters_begin(struct soak *soak)
         unit->requests = unit->answers = unit->others = unit->dropped = 0;
     }
     soak->line_begin = segment_counters(&soak->sim.segment).bytes;
-    soak->master_begin = soak->in + soak->out;
+    soak->host_begin = soak->in + soak->out;
 }
 
 static void check_counter(struct soak *soak, unsigned unit, const char *name, uint32_t got, uint32_t wanted)
@@ -297,7 +297,7 @@ static void check_counter(struct soak *soak, unsigned unit, const char *name, ui
 
 void counters_check(struct soak *soak)
 {
-    master_finish(soak);
+    host_finish(soak);
     for (unsigned i = 0; i < UNITS; i++) {
         const struct soak_unit *unit = &soak->unit[i];
         struct rkm04_counters now = rkm04_counters(rkm04_of(sim_core(&soak->sim, i + 1u)));
@@ -307,7 +307,7 @@ void counters_check(struct soak *soak)
         check_counter(soak, i, "dropped frames", now.dropped - unit->begin.dropped, unit->dropped);
     }
     uint64_t line = segment_counters(&soak->sim.segment).bytes - soak->line_begin;
-    uint64_t master = soak->in + soak->out - soak->master_begin;
-    if (line != master)
-        soak_fail(soak, "%" PRIu64 " bytes on the line, but the master sent and heard %" PRIu64, line, master);
+    uint64_t host = soak->in + soak->out - soak->host_begin;
+    if (line != host)
+        soak_fail(soak, "%" PRIu64 " bytes on the line, but the master sent and heard %" PRIu64, line, host);
 }
