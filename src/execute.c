@@ -25,7 +25,7 @@ void execute_dwell(const struct rkm04_unit *unit, struct rkm04_motor *motor, uin
 #define COMMAND(name) static void do_##name(struct rkm04_unit *unit, struct rkm04_motor *motor, uint32_t n)
 #define UNUSED(x) (void)(x)
 
-static bool bit_is_high(const struct rkm04_unit *unit, uint32_t bit)
+static bool is_bit_high(const struct rkm04_unit *unit, uint32_t bit)
 {
     if (bit >= RKM04_FIRST_VARIABLE)
         return unit->variables >> (bit - RKM04_FIRST_VARIABLE) & 1;
@@ -45,7 +45,7 @@ static bool find_label(struct rkm04_motor *motor)
 }
 
 /* J, I, ': go to the label, or wait until it has arrived (C7). */
-static void go_to(struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void jump_to_label(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (find_label(motor))
         return;
@@ -155,7 +155,7 @@ COMMAND(write_position)
 }
 
 /* Steps and direction from the counter to a place; 64 bits, as the difference may need 33 (U3). */
-static uint32_t way_to(const struct rkm04_motor *motor, int64_t place, bool *forward)
+static uint32_t distance_to(const struct rkm04_motor *motor, int64_t place, bool *forward)
 {
     int64_t way = place - motor->position;
     if (way != 0)
@@ -169,7 +169,7 @@ COMMAND(absolute)
         motion_begin_endless(unit, motor, n == RKM04_G_FORWARD);
         return;
     }
-    motor->count = way_to(motor, n, &motor->forward);
+    motor->count = distance_to(motor, n, &motor->forward);
     motion_begin_steps(unit, motor, motor->count, motor->forward);
 }
 
@@ -177,7 +177,7 @@ COMMAND(home)
 {
     UNUSED(n);
     bool forward = motor->forward;
-    uint32_t steps = way_to(motor, 0, &forward);
+    uint32_t steps = distance_to(motor, 0, &forward);
     motion_begin_steps(unit, motor, steps, forward);
 }
 
@@ -257,17 +257,17 @@ COMMAND(label)
 COMMAND(jump)
 {
     UNUSED(n);
-    go_to(unit, motor);
+    jump_to_label(unit, motor);
 }
 
 COMMAND(jump_if)
 {
-    if (bit_is_high(unit, n & 0xff) == (n >> 8 & 1))
-        go_to(unit, motor);
+    if (is_bit_high(unit, n & 0xff) == (n >> 8 & 1))
+        jump_to_label(unit, motor);
 }
 
 /* The innermost loop opened in the present call level. */
-static struct rkm04_loop *innermost(struct rkm04_motor *motor)
+static struct rkm04_loop *innermost_loop(struct rkm04_motor *motor)
 {
     if (motor->loops == 0 || motor->loop[motor->loops - 1].level != motor->calls)
         return NULL;
@@ -291,7 +291,7 @@ COMMAND(loop_begin)
 COMMAND(loop_end)
 {
     UNUSED(n);
-    struct rkm04_loop *loop = innermost(motor);
+    struct rkm04_loop *loop = innermost_loop(motor);
     if (!loop) {
         stop_with_fault(unit, motor, RKM04_FAULT_NO_LOOP);
     } else if (loop->start < program_oldest(&motor->program)) {
@@ -309,7 +309,7 @@ COMMAND(call)
     if (motor->calls == RKM04_CALL_LEVELS)
         stop_with_fault(unit, motor, RKM04_FAULT_CALL_LEVELS);
     else
-        go_to(unit, motor);
+        jump_to_label(unit, motor);
 }
 
 COMMAND(call_return)
@@ -324,7 +324,7 @@ COMMAND(call_return)
         stop_with_fault(unit, motor, RKM04_FAULT_OVERWRITTEN);
         return;
     }
-    while (innermost(motor))
+    while (innermost_loop(motor))
         motor->loops--;
     motor->calls--;
     motor->next = back;
@@ -339,9 +339,9 @@ bool execute_wait_is_over(const struct rkm04_unit *unit, struct rkm04_motor *mot
 {
     switch (motor->command.op) {
     case 'O':
-        return bit_is_high(unit, motor->command.argument);
+        return is_bit_high(unit, motor->command.argument);
     case 'Z':
-        return !bit_is_high(unit, motor->command.argument);
+        return !is_bit_high(unit, motor->command.argument);
     case '[':
         return program_closed_after(&motor->program, motor->number);
     default: /* J, I, ' */
@@ -349,7 +349,7 @@ bool execute_wait_is_over(const struct rkm04_unit *unit, struct rkm04_motor *mot
     }
 }
 
-static void wait_in(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_state state)
+static void begin_wait(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_state state)
 {
     if (!execute_wait_is_over(unit, motor))
         motor->state = (uint8_t)state;
@@ -358,19 +358,19 @@ static void wait_in(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm
 COMMAND(wait_high)
 {
     UNUSED(n);
-    wait_in(unit, motor, RKM04_WAIT);
+    begin_wait(unit, motor, RKM04_WAIT);
 }
 
 COMMAND(wait_low)
 {
     UNUSED(n);
-    wait_in(unit, motor, RKM04_WAIT);
+    begin_wait(unit, motor, RKM04_WAIT);
 }
 
 COMMAND(block_begin)
 {
     UNUSED(n);
-    wait_in(unit, motor, RKM04_BLOCK);
+    begin_wait(unit, motor, RKM04_BLOCK);
 }
 
 COMMAND(block_end)

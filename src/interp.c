@@ -22,7 +22,7 @@ static uint64_t later(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-static bool stands_still(const struct rkm04_motor *motor)
+static bool is_at_rest(const struct rkm04_motor *motor)
 {
     return motor->state == RKM04_HELD || motor->state == RKM04_ENDED || motor->state == RKM04_FAULTY;
 }
@@ -30,7 +30,7 @@ static bool stands_still(const struct rkm04_motor *motor)
 unsigned interp_index(const struct rkm04_motor *motor)
 {
     uint64_t number = motor->number, oldest = program_oldest(&motor->program);
-    if (stands_still(motor) && motor->fresh != RKM04_NEVER)
+    if (is_at_rest(motor) && motor->fresh != RKM04_NEVER)
         number = later(motor->fresh, oldest);
     else if (motor->state == RKM04_IDLE || motor->state == RKM04_ENDED)
         return 0;
@@ -80,7 +80,7 @@ void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
 }
 
 /* The next command to be executed is this one; it is shown until its slot (P9). */
-static void begin_at(struct rkm04_motor *motor, uint64_t number)
+static void begin_at_command(struct rkm04_motor *motor, uint64_t number)
 {
     motor->next = number;
     motor->number = later(number, program_oldest(&motor->program));
@@ -105,7 +105,7 @@ static bool has_work(const struct rkm04_motor *motor)
 }
 
 /* Will the motor stand still, with new commands as one way out? */
-static bool ends_with_fresh(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
+static bool is_started_by_new(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
     bool moving = motor->state == RKM04_MOVING;
     if (motor->state == RKM04_ENDED || (moving && motor->after == RKM04_AFTER_END))
@@ -119,17 +119,17 @@ static bool ends_with_fresh(const struct rkm04_unit *unit, const struct rkm04_mo
     return !motor->resume && (motor->state == RKM04_HELD || (moving && motor->after != RKM04_AFTER_GO_ON));
 }
 
-void interp_stored(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
+void interp_note_stored(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
 {
     if (motor->fresh != RKM04_NEVER) { /* those before run first */
         if (READING(unit, hold_exit) == RKM04_HOLD_EXIT_NEW)
             motor->hold_fresh = false;
-    } else if (ends_with_fresh(unit, motor)) {
+    } else if (is_started_by_new(unit, motor)) {
         motor->fresh = first;
         motor->hold_fresh = false;
     }
     if (motor->state == RKM04_IDLE) {
-        begin_at(motor, first);
+        begin_at_command(motor, first);
         motor->due = motion_free_from(unit, motor);
     }
 }
@@ -167,7 +167,7 @@ bool interp_change_speed(const struct rkm04_unit *unit, struct rkm04_motor *moto
 
 /* ---- X (C6) --------------------------------------------------------------------------------------------------- */
 
-static void look_at_total_stop(struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void apply_total_stop(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (motor->guard_x == 0 || !input_is_high(unit, motor->guard_x) || !has_work(motor))
         return;
@@ -188,7 +188,7 @@ static void look_at_total_stop(struct rkm04_unit *unit, struct rkm04_motor *moto
 
 /* ---- K, C75, V (C3, C4) ------------------------------------------------------------------------------------------------- */
 
-static void act_on_halt(struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void apply_halt(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     motor->resume = false;
     switch ((enum rkm04_state)motor->state) {
@@ -212,7 +212,7 @@ static void act_on_halt(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->state = RKM04_HELD;
 }
 
-static void act_on_change(struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void apply_speed_change(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (motor->change_speed == 0 || motor->change_due > unit->now)
         return;
@@ -228,12 +228,12 @@ static bool is_to_hold(const struct rkm04_motor *motor)
            (motor->state == RKM04_MOVING && (motor->after == RKM04_AFTER_HOLD_REST || motor->after == RKM04_AFTER_HOLD_NEXT));
 }
 
-static void act_on_requests(struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void apply_requests(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
-    act_on_change(unit, motor); /* came before them */
+    apply_speed_change(unit, motor); /* came before them */
     for (unsigned i = 0; i < motor->pendings; i++) {
         if (motor->pending[i] == 'K')
-            act_on_halt(unit, motor);
+            apply_halt(unit, motor);
         else if (is_to_hold(motor))
             motor->resume = true;
     }
@@ -242,9 +242,9 @@ static void act_on_requests(struct rkm04_unit *unit, struct rkm04_motor *motor)
 
 /* Execution goes on at the commands stored since K, X or a fault, or is held before them; the rest of what was before is dropped
  * (C3). */
-static void look_at_fresh(struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void start_new_commands(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
-    if (!stands_still(motor) || motor->fresh == RKM04_NEVER ||
+    if (!is_at_rest(motor) || motor->fresh == RKM04_NEVER ||
         (!motor->hold_fresh && motion_free_from(unit, motor) > unit->now))
         return;
     clear_stacks(motor);
@@ -255,12 +255,12 @@ static void look_at_fresh(struct rkm04_unit *unit, struct rkm04_motor *motor)
         motor->held = RKM04_READY;
         return;
     }
-    begin_at(motor, motor->fresh);
+    begin_at_command(motor, motor->fresh);
     motor->fresh = RKM04_NEVER;
 }
 
 /* After C75 a held motor goes on with what it was doing. */
-static void look_at_resume(struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void resume_from_hold(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (motor->state != RKM04_HELD || !motor->resume || motion_free_from(unit, motor) > unit->now)
         return;
@@ -321,7 +321,7 @@ static void run_program(struct rkm04_unit *unit, struct rkm04_motor *motor)
 }
 
 /* The slot in which the next turn is needed if nothing comes in from outside. */
-static uint64_t next_turn(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
+static uint64_t next_turn_slot(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
     uint64_t quiet;
     switch ((enum rkm04_state)motor->state) {
@@ -346,13 +346,13 @@ static uint64_t next_turn(const struct rkm04_unit *unit, const struct rkm04_moto
 
 void interp_turn(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
-    act_on_requests(unit, motor);
-    look_at_fresh(unit, motor);
-    look_at_total_stop(unit, motor);
-    motion_look_at_inputs(unit, motor);
-    look_at_fresh(unit, motor); /* an input may have ended the last steps before it */
-    look_at_resume(unit, motor);
+    apply_requests(unit, motor);
+    start_new_commands(unit, motor);
+    apply_total_stop(unit, motor);
+    motion_check_inputs(unit, motor);
+    start_new_commands(unit, motor); /* an input may have ended the last steps before it */
+    resume_from_hold(unit, motor);
     if (unit->busy == 0)
         run_program(unit, motor);
-    motor->wake = next_turn(unit, motor);
+    motor->wake = next_turn_slot(unit, motor);
 }

@@ -11,7 +11,7 @@ void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor);
 /* What arrives: the caller sees to it that the next slot has a turn (unit->touched). */
 
 /* Commands from number `first` on have been appended to the program: go there, or end a hold with them (C2, C3). */
-void interp_stored(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first);
+void interp_note_stored(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first);
 
 /* K ('K') or C75 ('C') has arrived; it acts in the next slot (C3). */
 void interp_request(struct rkm04_motor *motor, char request);

@@ -61,7 +61,7 @@ void motion_abort(struct rkm04_unit *unit, struct rkm04_motor *motor)
 
 /* Use up the guards whose condition holds. Returns whether there was one. Before a motion begins there may be none yet (reading
  * `guard-start`). */
-static bool take_guards(const struct rkm04_unit *unit, struct rkm04_motor *motor)
+static bool use_guards(const struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (READING(unit, guard_start) == RKM04_GUARD_START_STEP && !motor->motion.moving)
         return false;
@@ -74,10 +74,10 @@ static bool take_guards(const struct rkm04_unit *unit, struct rkm04_motor *motor
     return m || n;
 }
 
-void motion_look_at_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor)
+void motion_check_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     struct rkm04_motion *motion = &motor->motion;
-    if (motion->moving && !motion->stopping && take_guards(unit, motor))
+    if (motion->moving && !motion->stopping && use_guards(unit, motor))
         motion_stop(unit, motor, RKM04_AFTER_GO_ON);
     /* Also on the way to the last step of a stop: no pulse after the slot that saw the input (R5), and no rest of the move. */
     if (motion->moving && motion->kind == RKM04_MOTION_LIMIT && input_is_high(unit, motion->input)) {
@@ -90,7 +90,7 @@ void motion_look_at_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor)
 /* ---- Begin ------------------------------------------------------------------------------------------------------------ */
 
 /* From here on the outputs move: direction, LED, pulse generator. */
-static void set_off(struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void start_outputs(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     struct rkm04_motion *motion = &motor->motion;
     if (motor->pin_forward != motion->forward) {
@@ -111,10 +111,10 @@ static void set_off(struct rkm04_unit *unit, struct rkm04_motor *motor)
 }
 
 /* Prepare a motion of one segment with the present parameters. Returns false if a guard ends it before its first step. */
-static bool prepare(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_motion_kind kind, bool forward)
+static bool prepare_motion(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_motion_kind kind, bool forward)
 {
     struct rkm04_motion *motion = &motor->motion;
-    if (take_guards(unit, motor))
+    if (use_guards(unit, motor))
         return false;
     motion->kind = (uint8_t)kind;
     motion->forward = forward;
@@ -132,26 +132,26 @@ static bool prepare(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm
 
 void motion_begin_steps(struct rkm04_unit *unit, struct rkm04_motor *motor, uint32_t steps, bool forward)
 {
-    if (steps == 0 || !prepare(unit, motor, RKM04_MOTION_STEPS, forward))
+    if (steps == 0 || !prepare_motion(unit, motor, RKM04_MOTION_STEPS, forward))
         return;
     motor->motion.segment[0].steps = steps;
     motor->motion.total = steps;
-    set_off(unit, motor);
+    start_outputs(unit, motor);
 }
 
 void motion_begin_endless(struct rkm04_unit *unit, struct rkm04_motor *motor, bool forward)
 {
-    if (prepare(unit, motor, RKM04_MOTION_ENDLESS, forward))
-        set_off(unit, motor);
+    if (prepare_motion(unit, motor, RKM04_MOTION_ENDLESS, forward))
+        start_outputs(unit, motor);
 }
 
 void motion_begin_limit(struct rkm04_unit *unit, struct rkm04_motor *motor, bool forward, unsigned input)
 {
-    if (input_is_high(unit, input) || !prepare(unit, motor, RKM04_MOTION_LIMIT, forward))
+    if (input_is_high(unit, input) || !prepare_motion(unit, motor, RKM04_MOTION_LIMIT, forward))
         return;
     motor->motion.input = (uint8_t)input;
     motor->motion.segment[0].speed = motor->start_speed;
-    set_off(unit, motor);
+    start_outputs(unit, motor);
 }
 
 bool motion_compound_possible(const struct rkm04_motor *motor)
@@ -169,7 +169,7 @@ void motion_begin_compound(struct rkm04_unit *unit, struct rkm04_motor *motor)
     struct rkm04_motion *motion = &motor->motion;
     unsigned segments = motor->segments;
     motor->segments = 0;
-    if (!prepare(unit, motor, RKM04_MOTION_STEPS, motor->segments_forward))
+    if (!prepare_motion(unit, motor, RKM04_MOTION_STEPS, motor->segments_forward))
         return;
     motion->segments = (uint8_t)segments;
     motion->marks = motor->segments_marks & motor->functions;
@@ -182,7 +182,7 @@ void motion_begin_compound(struct rkm04_unit *unit, struct rkm04_motor *motor)
         write_outputs(unit, unit->now, unit->outputs | motion->marks);
     if (motion->marks == 0)
         motion->mark = 0;
-    set_off(unit, motor);
+    start_outputs(unit, motor);
 }
 
 /* ---- Stop, hold, rest ------------------------------------------------------------------------------------------------- */
@@ -200,8 +200,8 @@ void motion_resume(struct rkm04_unit *unit, struct rkm04_motor *motor)
     struct rkm04_motion *motion = &motor->motion;
     bool over = motion->kind == RKM04_MOTION_STEPS && motion->done == motion->total;
     bool at_limit = motion->kind == RKM04_MOTION_LIMIT && input_is_high(unit, motion->input);
-    if (!over && !at_limit && !take_guards(unit, motor)) {
-        set_off(unit, motor);
+    if (!over && !at_limit && !use_guards(unit, motor)) {
+        start_outputs(unit, motor);
         return;
     }
     motion->kind = RKM04_MOTION_NONE;

@@ -32,7 +32,7 @@ void motion_pass_mark(struct rkm04_unit *unit, struct rkm04_motor *motor);
 void motion_stop(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_after after);
 
 /* Look at M, N and the input of a limit move in this slot (C5). */
-void motion_look_at_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor);
+void motion_check_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
 /* Go on with the rest of a held motion (C3). */
 void motion_resume(struct rkm04_unit *unit, struct rkm04_motor *motor);

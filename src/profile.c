@@ -77,7 +77,7 @@ static struct rkm04_place behind(struct rkm04_place place, uint64_t q, uint16_t 
     return place_of(wide_difference(wide_difference(wide_of(place), way), (struct wide){0, inexact}));
 }
 
-static bool before(struct rkm04_place a, struct rkm04_place b)
+static bool is_before(struct rkm04_place a, struct rkm04_place b)
 {
     return wide_less(wide_of(a), wide_of(b));
 }
@@ -97,9 +97,9 @@ static uint64_t energy(uint16_t acceleration, struct rkm04_place from, struct rk
 #define ROUNDING 64u /* differences of q up to this are none; those that a plan means are millions of times as large */
 
 /* Is there a way between two places? */
-static bool stretches(uint16_t acceleration, struct rkm04_place from, struct rkm04_place to)
+static bool has_length(uint16_t acceleration, struct rkm04_place from, struct rkm04_place to)
 {
-    return before(from, to) && energy(acceleration, from, to) > ROUNDING;
+    return is_before(from, to) && energy(acceleration, from, to) > ROUNDING;
 }
 
 /* ---- The table of break points -------------------------------------------------------------------------------------- */
@@ -150,7 +150,7 @@ static struct rkm04_place end_of(const struct rkm04_motion *motion, unsigned seg
 static unsigned segment_at(const struct rkm04_motion *motion, struct rkm04_place at)
 {
     unsigned segment = 0;
-    while (segment + 1 < motion->segments && !before(at, end_of(motion, segment)))
+    while (segment + 1 < motion->segments && !is_before(at, end_of(motion, segment)))
         segment++;
     return segment;
 }
@@ -174,7 +174,7 @@ static void reach_limit(struct rkm04_motion *motion, struct state *state, struct
     struct rkm04_place down = ahead(state->at, state->q - floor, deceleration);
     if (floor < state->q)
         add_break(profile, state->at, state->q, -(int32_t)deceleration);
-    if (before(end, down)) {
+    if (is_before(end, down)) {
         state->q = lowered(state->q, energy(deceleration, state->at, end));
         state->at = end;
         return;
@@ -213,7 +213,7 @@ static void plan_segment(struct rkm04_motion *motion, const struct state *state,
     }
     struct rkm04_place fall = peak > leave ? behind(end, peak - leave, segment->deceleration) : end;
     /* At the limit: below it the two are the same place. */
-    bool level = stretches(slower(segment->acceleration, segment->deceleration), top, fall);
+    bool level = has_length(slower(segment->acceleration, segment->deceleration), top, fall);
     if (level)
         add_break(profile, top, peak, 0);
     if (peak > leave)
@@ -305,17 +305,17 @@ static struct wide square_of(struct rkm04_fixed w)
 }
 
 /* w at `tick`, and y counted from the last whole step instead of the next one: from 0 to RAMP_STEP. */
-static void look_behind_step(const struct rkm04_motion *motion, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
+static void state_since_step(const struct rkm04_motion *motion, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
 {
-    ramp_look(&motion->ramp, tick, y, w);
+    ramp_state_at(&motion->ramp, tick, y, w);
     y->whole += motion->ramp.step;
 }
 
 /* The place and speed at `tick`, from the pulse generator. */
-static struct state present(const struct rkm04_motion *motion, uint64_t tick)
+static struct state present_state(const struct rkm04_motion *motion, uint64_t tick)
 {
     struct rkm04_fixed y, w;
-    look_behind_step(motion, tick, &y, &w);
+    state_since_step(motion, tick, &y, &w);
     uint64_t rest;
     /* y / RAMP_STEP, which may be 1, with 127 places. */
     uint64_t high = wide_divide((struct wide){(uint64_t)y.whole, y.part}, 2 * (uint64_t)motion->ramp.step, &rest);
@@ -340,7 +340,7 @@ static bool on_final_ramp(const struct rkm04_motion *motion)
 }
 
 /* Keep the points that were passed; the next one added is where the motion is now. */
-static void mark_present(struct rkm04_profile *profile)
+static void mark_present_place(struct rkm04_profile *profile)
 {
     profile->leg++;
     profile->count = profile->leg;
@@ -350,12 +350,12 @@ void profile_change_speed(struct rkm04_motion *motion, uint64_t tick, uint16_t s
 {
     if (on_final_ramp(motion))
         return;
-    struct state state = present(motion, tick);
+    struct state state = present_state(motion, tick);
     motion->segment[state.segment].speed = speed;
     motion->changed = true;
-    mark_present(&motion->profile);
+    mark_present_place(&motion->profile);
     plan_from(motion, state);
-    ramp_go_on(&motion->ramp, &motion->profile, tick);
+    ramp_continue(&motion->ramp, &motion->profile, tick);
 }
 
 /* Where a stop ends, in exact arithmetic (R5). In units of 1/(8e12 * a) step the way from a whole step is a whole number:
@@ -438,7 +438,7 @@ static struct stop stop_at(const struct rkm04_motion *motion, uint64_t tick, str
     const uint64_t w_end = (uint64_t)ramp_speed_unit(&motion->ramp) * motion->start_speed;
     struct stop stop = {.step = motion->done};
     struct rkm04_fixed w;
-    look_behind_step(motion, tick, y, &w);
+    state_since_step(motion, tick, y, &w);
     struct wide square = square_of(w), square_end = wide_product(w_end, w_end);
     if (wide_less(square_end, square))
         stop.energy = wide_difference(square, square_end);
@@ -455,13 +455,13 @@ static bool stop_from(struct rkm04_motion *motion, uint64_t tick, struct state s
     uint32_t last = plan_stop(motion, &state, stop, y);
     uint16_t deceleration = motion->segment[state.segment].deceleration;
     struct rkm04_place slow = ahead(state.at, lowered(state.q, q_end), deceleration);
-    if (stretches(deceleration, slow, place_at(last)))
+    if (has_length(deceleration, slow, place_at(last)))
         add_break(profile, slow, q_end, 0);
     profile->endless = false;
     add_end(profile, place_at(last), q_end);
     if (last == motion->done)
         return false;
-    ramp_go_on(&motion->ramp, profile, tick);
+    ramp_continue(&motion->ramp, profile, tick);
     return true;
 }
 
@@ -469,8 +469,8 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
 {
     if (on_final_ramp(motion))
         return true;
-    struct state state = present(motion, tick);
-    mark_present(&motion->profile);
+    struct state state = present_state(motion, tick);
+    mark_present_place(&motion->profile);
     return stop_from(motion, tick, state);
 }
 
@@ -492,8 +492,8 @@ static void set_goal(struct rkm04_motion *motion, const struct profile_goal *goa
     motion->profile.count = motion->profile.leg = 0;
 }
 
-static enum profile_answer go_from_rest(struct rkm04_motion *motion, uint64_t tick, uint32_t rate,
-                                        const struct profile_goal *goal)
+static enum profile_answer start_from_rest(struct rkm04_motion *motion, uint64_t tick, uint32_t rate,
+                                           const struct profile_goal *goal)
 {
     motion->moving = false;
     if (goal->kind == PROFILE_TO_STOP || (goal->kind == PROFILE_TO_PLACE && goal->way == 0))
@@ -511,8 +511,8 @@ static enum profile_answer go_from_rest(struct rkm04_motion *motion, uint64_t ti
 enum profile_answer profile_go(struct rkm04_motion *motion, uint64_t tick, uint32_t rate, const struct profile_goal *goal)
 {
     if (!motion->moving)
-        return go_from_rest(motion, tick, rate, goal);
-    struct state state = present(motion, tick);
+        return start_from_rest(motion, tick, rate, goal);
+    struct state state = present_state(motion, tick);
     struct rkm04_fixed y;
     state.at.high -= (uint64_t)motion->done << 32; /* anew from the pulse sent last: no motion runs out of places */
     state.segment = 0;
@@ -531,10 +531,10 @@ enum profile_answer profile_go(struct rkm04_motion *motion, uint64_t tick, uint3
         motion->moving = stop_from(motion, tick, state);
         if (motion->moving)
             return goal->kind == PROFILE_TO_STOP ? PROFILE_MOVES : PROFILE_TURNS;
-        return go_from_rest(motion, tick, rate, goal);
+        return start_from_rest(motion, tick, rate, goal);
     }
     plan_from(motion, state);
-    ramp_go_on(&motion->ramp, &motion->profile, tick);
+    ramp_continue(&motion->ramp, &motion->profile, tick);
     return PROFILE_MOVES;
 }
 

@@ -99,12 +99,12 @@ static enum flag store_text(struct rkm04_unit *unit, uint8_t motors, struct rkm0
     }
     for (unsigned i = 0; i < RKM04_MOTORS; i++)
         if (unit->motor[i].program.written != first[i])
-            interp_stored(unit, &unit->motor[i], first[i]);
+            interp_note_stored(unit, &unit->motor[i], first[i]);
     return flag;
 }
 
 /* Obey a text for one motor, which decides for itself (P3). Returns false if there is nothing to be stored. */
-static bool obey_text(struct rkm04_unit *unit, struct rkm04_motor *motor, const struct text *text)
+static bool execute_text(struct rkm04_unit *unit, struct rkm04_motor *motor, const struct text *text)
 {
     if (text->commands == 1 && is_request(text->sole)) {
         interp_request(motor, (char)text->sole.op);
@@ -138,7 +138,7 @@ int prt_set_command(struct rkm04_unit *unit, uint8_t motor, const uint8_t *bytes
     unit->touched = true;
     uint8_t storing = 0;
     for (unsigned i = 0; i < RKM04_MOTORS; i++)
-        if ((motor == '0' || motor == '1' + i) && obey_text(unit, &unit->motor[i], &text))
+        if ((motor == '0' || motor == '1' + i) && execute_text(unit, &unit->motor[i], &text))
             storing = (uint8_t)(storing | 1u << i);
     return (int)store_text(unit, storing, text.program);
 }
@@ -190,7 +190,7 @@ static void put_position(struct rkm04_answer *answer, int32_t position)
 }
 
 /* The break points as they stand now, so that the answer does not change while it goes out (P7). */
-static void take_table(const struct rkm04_motor *motor, struct rkm04_answer *answer)
+static void store_table(const struct rkm04_motor *motor, struct rkm04_answer *answer)
 {
     struct profile_point point;
     answer->points = 0;
@@ -226,7 +226,7 @@ static void answer_about_motor(const struct rkm04_unit *unit, struct rkm04_answe
         answer->kind = ANSWER_PROGRAM;
     } else if (message == MESSAGE_GET_TABLE) {
         answer->kind = ANSWER_TABLE;
-        take_table(of, answer);
+        store_table(of, answer);
         put(answer, ' ');
         put_number(answer, answer->points);
         put_text(answer, ";[");
@@ -259,7 +259,7 @@ static uint8_t store_flash(struct rkm04_unit *unit, uint8_t motor)
     return error;
 }
 
-void prt_take(struct rkm04_unit *unit, const uint8_t *message, size_t length, uint8_t from, bool broadcast)
+void prt_handle(struct rkm04_unit *unit, const uint8_t *message, size_t length, uint8_t from, bool broadcast)
 {
     struct rkm04_answer *answer = &unit->answer;
     if (length == 0)

@@ -6,7 +6,7 @@
 #include <rkm04/unit.h>
 
 /* Obey one message and, unless it was a broadcast, prepare the answer in unit->answer for the asker `from`. */
-void prt_take(struct rkm04_unit *unit, const uint8_t *message, size_t length, uint8_t from, bool broadcast);
+void prt_handle(struct rkm04_unit *unit, const uint8_t *message, size_t length, uint8_t from, bool broadcast);
 
 /* Set Command for motors '0'..'4' (P1 to P4). Returns the flag; *character is 0 unless the flag is 1 or 2. */
 int prt_set_command(struct rkm04_unit *unit, uint8_t motor, const uint8_t *text, size_t length, uint8_t *character);

@@ -87,20 +87,21 @@ static struct rkm04_fixed y_of_part(const struct rkm04_ramp *ramp, struct rkm04_
     return fixed_sum(scaled((uint64_t)ramp->step, places), ROUND_UP);
 }
 
-static bool leg_is_open(const struct rkm04_profile *profile)
+static bool is_leg_open(const struct rkm04_profile *profile)
 {
     return profile->endless && profile->leg + 1 == profile->count;
 }
 
 /* No pulse is left behind the present leg. */
-static bool nothing_behind(const struct rkm04_profile *profile)
+static bool is_last_leg(const struct rkm04_profile *profile)
 {
     return !profile->endless &&
            ramp_step_of(profile->point[profile->leg + 1].at) == ramp_step_of(profile->point[profile->count - 1].at);
 }
 
 /* y and w at ramp->at for a leg that began at `start` at `place` with speed w. */
-static void reckon_from_start(struct rkm04_ramp *ramp, struct rkm04_instant start, struct rkm04_place place, struct rkm04_fixed w)
+static void compute_from_start(struct rkm04_ramp *ramp, struct rkm04_instant start, struct rkm04_place place,
+                               struct rkm04_fixed w)
 {
     struct rkm04_fixed y = y_of_part(ramp, place);
     y.whole -= ramp->step;
@@ -118,7 +119,7 @@ static void reckon_from_start(struct rkm04_ramp *ramp, struct rkm04_instant star
 }
 
 /* The same for a falling leg that ends at ramp->end, or up to a tick before ramp->at, at `place` with speed w. */
-static void reckon_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, struct rkm04_fixed w)
+static void compute_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, struct rkm04_fixed w)
 {
     const uint64_t fall = (uint32_t)-ramp->slope;
     const struct wide places = {ramp->end.high, ramp->end.low};
@@ -135,7 +136,7 @@ static void begin_pulses(struct rkm04_ramp *ramp, const struct rkm04_profile *pr
     if (ramp->left > 0)
         ramp_find_first(ramp);
     else
-        ramp->next = nothing_behind(profile) ? RKM04_NEVER : tick_from(ramp->end);
+        ramp->next = is_last_leg(profile) ? RKM04_NEVER : tick_from(ramp->end);
 }
 
 /* How the leg's pulses are worked out. */
@@ -150,7 +151,7 @@ static void set_slope(struct rkm04_ramp *ramp, int32_t slope, struct rkm04_fixed
 /* w at the end of a leg that begins with w. */
 static struct rkm04_fixed w_at_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_fixed w)
 {
-    return leg_is_open(profile) ? w : w_of(ramp, profile->point[profile->leg + 1].speed2);
+    return is_leg_open(profile) ? w : w_of(ramp, profile->point[profile->leg + 1].speed2);
 }
 
 /* How long the leg takes from `start`, with speed w there and w_end at its end. */
@@ -158,7 +159,7 @@ static void set_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile
                     struct rkm04_fixed w, struct rkm04_fixed w_end)
 {
     const struct rkm04_break *from = &profile->point[profile->leg], *to = from + 1;
-    if (leg_is_open(profile)) {
+    if (is_leg_open(profile)) {
         ramp->end.tick = RKM04_NEVER;
         ramp->left = UINT32_MAX;
         return;
@@ -181,9 +182,9 @@ static void begin_leg(struct rkm04_ramp *ramp, const struct rkm04_profile *profi
     struct rkm04_fixed w_end = w_at_end(ramp, profile, w);
     set_end(ramp, profile, start, w, w_end);
     if (from->slope < 0)
-        reckon_from_end(ramp, from[1].at, w_end);
+        compute_from_end(ramp, from[1].at, w_end);
     else
-        reckon_from_start(ramp, start, from->at, w);
+        compute_from_start(ramp, start, from->at, w);
     begin_pulses(ramp, profile);
 }
 
@@ -200,7 +201,7 @@ struct motion_state ramp_moved(const struct rkm04_ramp *ramp, int64_t d)
     return motion_moved(ramp->y, ramp->w, ramp->slope, d);
 }
 
-void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
+void ramp_state_at(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w)
 {
     struct motion_state then = ramp_moved(ramp, (int64_t)(tick - ramp->at));
     *y = then.y;
@@ -208,10 +209,10 @@ void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed 
     *w = then.w;
 }
 
-void ramp_go_on(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick)
+void ramp_continue(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick)
 {
     struct rkm04_fixed y, w;
-    ramp_look(ramp, tick, &y, &w);
+    ramp_state_at(ramp, tick, &y, &w);
     ramp->y = y;
     ramp->w = w;
     ramp->at = tick;
@@ -262,7 +263,7 @@ size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint6
         }
         size_t n = ramp_leg_pulses(ramp, limit, tick, room);
         if (ramp->left == 0) {
-            if (leg_is_open(profile))
+            if (is_leg_open(profile))
                 ramp->left = UINT32_MAX;
             begin_pulses(ramp, profile);
         }

@@ -34,7 +34,7 @@ static inline uint32_t ramp_step_of(struct rkm04_place place)
 void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick, uint32_t rate);
 
 /* Go on from the present position and speed at `tick` along a profile planned anew: point[leg] is the present place. */
-void ramp_go_on(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick);
+void ramp_continue(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick);
 
 /* Put the ticks of the next pulses due up to and including `limit` into `tick`, at most `room`, of one leg. Moves profile->leg
  * on. Returns their number; there are more while ramp->next <= limit. */
@@ -46,7 +46,7 @@ size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint6
 uint32_t ramp_skip(struct rkm04_ramp *ramp, uint64_t limit, uint32_t most);
 
 /* y and w at `tick`; the tick must lie within the present leg. */
-void ramp_look(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w);
+void ramp_state_at(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fixed *y, struct rkm04_fixed *w);
 
 /* A tick, not before ramp->next, before which the present leg does not end and at most `most` of its pulses are due; UINT32_MAX:
  * any number of them. */

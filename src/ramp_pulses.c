@@ -27,7 +27,7 @@ static int64_t guess_ticks(int64_t y, int64_t w, int64_t slope)
 }
 
 /* Settle on the first tick with y >= 0. Returns how many ticks on. */
-static int64_t settle(struct motion_state *state, int64_t slope)
+static int64_t advance_to_pulse(struct motion_state *state, int64_t slope)
 {
     int64_t d = 0;
     while (state->y.whole < 0 && state->w.whole + slope > 0) {
@@ -56,7 +56,7 @@ void ramp_find_first(struct rkm04_ramp *ramp)
     if (ramp->y.whole < 0) {
         int64_t d = guess_ticks(ramp->y.whole, ramp->w.whole, ramp->slope);
         struct motion_state first = ramp_moved(ramp, d);
-        d += settle(&first, ramp->slope);
+        d += advance_to_pulse(&first, ramp->slope);
         ramp->y = first.y;
         ramp->w = first.w;
         ramp->at += (uint64_t)d;
@@ -104,13 +104,13 @@ static size_t level_block(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tic
 /* ---- Slopes, pulse by pulse --------------------------------------------------------------------------------------- */
 
 /* `next`, *d ticks after `now`, is not where the next pulse is due: find it. */
-static struct motion_state settled(struct motion_state now, struct motion_state next, int64_t slope, int64_t *d)
+static struct motion_state find_pulse_near(struct motion_state now, struct motion_state next, int64_t slope, int64_t *d)
 {
     if (next.y.whole > 8 * next.w.whole || next.y.whole < -8 * next.w.whole) {
         *d = guess_ticks(now.y.whole, now.w.whole, slope);
         next = motion_moved(now.y, now.w, slope, *d);
     }
-    *d += settle(&next, slope);
+    *d += advance_to_pulse(&next, slope);
     return next;
 }
 
@@ -134,7 +134,7 @@ static size_t single_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *t
             next.w.whole += 2 * slope;
             ticks++;
         } else if (next.y.whole < 0 || next.y.whole >= next.w.whole - slope) {
-            next = settled(now, next, slope, &ticks);
+            next = find_pulse_near(now, next, slope, &ticks);
         }
         change = ticks - interval;
         interval = ticks;
@@ -192,7 +192,7 @@ static inline int64_t scaled_down(int64_t a, unsigned places)
 }
 
 /* a * b / 2^40, b signed. */
-static inline int64_t share(uint64_t a, int64_t b)
+static inline int64_t scaled_product(uint64_t a, int64_t b)
 {
     uint64_t high = wide_high(a, size_of(b) << 24);
     return b < 0 ? -(int64_t)high : (int64_t)high;
@@ -206,7 +206,7 @@ static inline uint64_t quotient(uint64_t a, uint64_t inverse)
 }
 
 /* steep * a / w with 40 places, for an `a` with 32 of them. */
-static inline int64_t bend(uint32_t steep, uint64_t a, uint64_t inverse)
+static inline int64_t curve_term(uint32_t steep, uint64_t a, uint64_t inverse)
 {
     struct wide product = wide_product(a, inverse), low = wide_product(product.low, steep);
     return (int64_t)((product.high * steep + low.high) << 9 | low.low >> 55);
@@ -223,14 +223,14 @@ static void set_cubic(struct rkm04_ramp *ramp, int64_t middle)
     const uint64_t c = quotient((uint64_t)ramp->step, inverse); /* ticks from pulse to pulse there */
     const int64_t z = (int64_t)(c - quotient((uint64_t)there.y.whole, inverse));
     const uint64_t size = size_of(z);
-    const int64_t bend_z = bend(steep, size, inverse), bend_c = bend(steep, c, inverse);
+    const int64_t bend_z = curve_term(steep, size, inverse), bend_c = curve_term(steep, c, inverse);
     const int64_t x = (z < 0) == down ? bend_z : -bend_z, u = down ? -bend_c : bend_c;
     const int64_t x30 = scaled_down(x, 10), u30 = scaled_down(u, 10), x2 = x30 * x30, xu = x30 * u30, u2 = u30 * u30;
-    const int64_t bent = share(size, scaled_down(x2, 19) - x);
+    const int64_t bent = scaled_product(size, scaled_down(x2, 19) - x);
     ramp->due = ((uint64_t)middle << 32) + (uint64_t)(z < 0 ? z - bent : z + bent) + RAMP_NEAR;
-    ramp->due1 = c + (uint64_t)share(c, scaled_down(3 * (x2 + xu) + u2, 19) - 2 * x - u);
-    ramp->due2 = (uint64_t)share(c, scaled_down(12 * (xu + u2), 20) - 2 * u);
-    ramp->due3 = (uint64_t)share(c, scaled_down(12 * u2, 20));
+    ramp->due1 = c + (uint64_t)scaled_product(c, scaled_down(3 * (x2 + xu) + u2, 19) - 2 * x - u);
+    ramp->due2 = (uint64_t)scaled_product(c, scaled_down(12 * (xu + u2), 20) - 2 * u);
+    ramp->due3 = (uint64_t)scaled_product(c, scaled_down(12 * u2, 20));
 }
 
 bool ramp_begin_block(struct rkm04_ramp *ramp)

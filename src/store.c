@@ -111,7 +111,7 @@ static unsigned block_of(const struct slot *slot, int half)
 }
 
 /* Could this command stand in a memory? `\`, K and C75 are obeyed at once and never stored. */
-static bool storable(struct rkm04_command command)
+static bool is_storable(struct rkm04_command command)
 {
     return rkm04_command_valid(command) && command.op != '\\' && command.op != 'K' &&
            !(command.op == 'C' && command.argument == 75);
@@ -142,7 +142,7 @@ static enum content read_commands(const struct slot *slot, unsigned block, unsig
         for (unsigned i = 0; i < now; i++) {
             const uint8_t *at = bytes + i * COMMAND_SIZE;
             struct rkm04_command command = {at[0], get32(at + 1)};
-            if (!storable(command))
+            if (!is_storable(command))
                 return CONTENT_BROKEN;
             if (program)
                 program_append(program, command);
@@ -169,7 +169,7 @@ static enum content read_record(const struct slot *slot, unsigned block, struct 
 }
 
 /* Is generation a newer than b? They count on through 0. */
-static bool newer(uint32_t a, uint32_t b)
+static bool is_newer(uint32_t a, uint32_t b)
 {
     uint32_t ahead = a - b;
     return ahead != 0 && ahead < UINT32_C(0x80000000);
@@ -182,7 +182,7 @@ static void survey_slot(const struct slot *slot, struct survey *survey)
         survey->content[half] = read_record(slot, block_of(slot, half), &survey->header[half], NULL);
         if (survey->content[half] != CONTENT_RECORD)
             continue;
-        if (survey->newest < 0 || newer(survey->header[half].generation, survey->header[survey->newest].generation))
+        if (survey->newest < 0 || is_newer(survey->header[half].generation, survey->header[survey->newest].generation))
             survey->newest = half;
     }
 }

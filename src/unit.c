@@ -33,7 +33,7 @@ void rkm04_init(struct rkm04_unit *unit, const struct rkm04_config *config, cons
         interp_reset(unit, motor);
         motor->slot = (uint8_t)store_load(port, context, i + 1, &motor->program);
         if (motor->program.written > 0) {
-            interp_stored(unit, motor, 0);
+            interp_note_stored(unit, motor, 0);
             unit->touched = true;
         }
     }
@@ -150,11 +150,11 @@ static bool is_for(const struct rkm04_unit *unit)
     return receiver->dnode == 0 || receiver->dnode == unit->config.node;
 }
 
-static void take_message(struct rkm04_unit *unit)
+static void handle_message(struct rkm04_unit *unit)
 {
     unit->waiting = false;
     unit->counters.requests++;
-    prt_take(unit, unit->message, unit->receiver.length, unit->receiver.snode, unit->receiver.dnode == 0);
+    prt_handle(unit, unit->message, unit->receiver.length, unit->receiver.snode, unit->receiver.dnode == 0);
 }
 
 size_t rkm04_receive(struct rkm04_unit *unit, const uint8_t *bytes, size_t length)
@@ -170,7 +170,7 @@ size_t rkm04_receive(struct rkm04_unit *unit, const uint8_t *bytes, size_t lengt
         else if (unit->answer.kind != 0)
             unit->waiting = true;
         else
-            take_message(unit);
+            handle_message(unit);
     }
     return length;
 }
@@ -202,7 +202,7 @@ static void encode(struct rkm04_unit *unit)
 }
 
 /* Have something in answer->out, unless the answer is out; then the request that waited has its turn (P10). */
-static void refill(struct rkm04_unit *unit)
+static void fill_answer(struct rkm04_unit *unit)
 {
     struct rkm04_answer *answer = &unit->answer;
     while (answer->kind != 0 && answer->out_at == answer->out_length)
@@ -219,11 +219,11 @@ size_t rkm04_send(struct rkm04_unit *unit, uint8_t *bytes, size_t room)
     struct rkm04_answer *answer = &unit->answer;
     size_t n = 0;
     for (;;) {
-        refill(unit);
+        fill_answer(unit);
         if (answer->kind == 0) {
             if (!unit->waiting)
                 break;
-            take_message(unit);
+            handle_message(unit);
             continue;
         }
         if (n == room || unit->busy > 0)
@@ -245,7 +245,7 @@ size_t rkm04_exchange(struct rkm04_unit *unit, const uint8_t *message, size_t le
 {
     size_t n = 0;
     uint8_t byte;
-    prt_take(unit, message, length, 0, false);
+    prt_handle(unit, message, length, 0, false);
     if (length == 0)
         return 0;
     while (prt_answer_byte(unit, &unit->answer, &byte)) {
@@ -288,7 +288,7 @@ bool rkm04_motor_state(const struct rkm04_unit *unit, unsigned number, struct rk
     };
     if (motion->moving) {
         struct rkm04_fixed y, w;
-        ramp_look(&motion->ramp, unit->now, &y, &w);
+        ramp_state_at(&motion->ramp, unit->now, &y, &w);
         state->speed = (uint32_t)(w.whole / ramp_speed_unit(&motion->ramp));
     }
     return true;

@@ -17,7 +17,7 @@ enum { HEAD = 2 /* message number and motor, or length */, TEXT_MAX = 16384 };
 /* ---- Parts of messages -------------------------------------------------------------------------------------------- */
 
 /* The answer is not what the manual says. */
-static enum exit_status strange(const struct client_answer *answer)
+static enum exit_status report_malformed(const struct client_answer *answer)
 {
     fprintf(stderr, "%s: the unit's answer is malformed:", program_invocation_short_name);
     for (size_t i = 0; i < answer->length && i < 32; i++)
@@ -96,7 +96,7 @@ enum exit_status client_print_json(json_t *object)
 enum exit_status client_show_version(const struct client_answer *answer)
 {
     if (answer->length < HEAD || answer->length != (size_t)HEAD + answer->bytes[1])
-        return strange(answer);
+        return report_malformed(answer);
     if (answer->json)
         return client_print_json(json_pack("{s:o}", "version", client_json_text(answer->bytes + HEAD, answer->length - HEAD)));
     print_text(answer->bytes + HEAD, answer->length - HEAD);
@@ -115,7 +115,7 @@ void client_print_motor(char motor)
 enum exit_status client_show_store(const struct client_answer *answer)
 {
     if (answer->length != HEAD + 1)
-        return strange(answer);
+        return report_malformed(answer);
     int error = answer->bytes[HEAD];
     enum exit_status status = error == 0 ? STATUS_SUCCESS : STATUS_FAILURE;
     if (answer->json) {
@@ -139,11 +139,11 @@ enum exit_status client_show_position(const struct client_answer *answer)
     for (int i = 0; i < count; i++) {
         size_t field = at <= answer->length ? read_position(answer->bytes + at, answer->length - at, &position[i]) : 0;
         if (field == 0)
-            return strange(answer);
+            return report_malformed(answer);
         at += field;
     }
     if (at != answer->length)
-        return strange(answer);
+        return report_malformed(answer);
     int first = all ? 1 : answer->motor - '0';
     if (answer->json && !all)
         return client_print_json(json_pack("{s:i,s:I}", "motor", first, "position", (json_int_t)position[0]));
@@ -160,7 +160,7 @@ enum exit_status client_show_position(const struct client_answer *answer)
 enum exit_status client_show_command(const struct client_answer *answer)
 {
     if (answer->length < HEAD)
-        return strange(answer);
+        return report_malformed(answer);
     const uint8_t *text = answer->bytes + HEAD;
     size_t length = answer->length - HEAD;
     if (answer->json)
@@ -177,18 +177,18 @@ static json_t *read_points(const char *text)
     int used = 0;
     json_t *points = json_array();
     if (sscanf(text, " %19lu;[%n", &announced, &used) != 1 || used == 0)
-        goto strange;
+        goto report_malformed;
     for (text += used; *text == '('; text += *text == ',') {
         unsigned long step, speed;
         used = 0;
         if (sscanf(text, "(%19lu;%19lu)%n", &step, &speed, &used) != 2 || used == 0)
-            goto strange;
+            goto report_malformed;
         json_array_append_new(points, json_pack("{s:I,s:I}", "step", (json_int_t)step, "speed", (json_int_t)speed));
         text += used;
     }
     if (strcmp(text, "]") == 0 && json_array_size(points) == announced)
         return points;
-strange:
+report_malformed:
     json_decref(points);
     return NULL;
 }
@@ -198,7 +198,7 @@ enum exit_status client_show_table(const struct client_answer *answer)
     char text[TEXT_MAX];
     json_t *points = copy_text(answer, text) ? read_points(text) : NULL;
     if (points == NULL)
-        return strange(answer);
+        return report_malformed(answer);
     if (answer->json)
         return client_print_json(json_pack("{s:i,s:o}", "motor", answer->motor - '0', "points", points));
     json_decref(points);
@@ -213,7 +213,7 @@ enum exit_status client_show_progress(const struct client_answer *answer)
     unsigned long steps, place;
     int used = 0;
     if (!copy_text(answer, text) || sscanf(text, " %19lu; %19lu%n", &steps, &place, &used) != 2 || text[used] != '\0')
-        return strange(answer);
+        return report_malformed(answer);
     if (answer->json)
         return client_print_json(json_pack("{s:i,s:I,s:I}", "motor", answer->motor - '0', "steps", (json_int_t)steps, "index",
                                            (json_int_t)place));

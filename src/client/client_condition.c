@@ -31,10 +31,10 @@ struct term {
     char value[VALUE_MAX_LENGTH];
 };
 
-static json_t *expected(const struct reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static json_t *report_expected(const struct reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Say what was expected. Always returns NULL. */
-static json_t *expected(const struct reader *reader, const char *format, ...)
+static json_t *report_expected(const struct reader *reader, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -69,7 +69,7 @@ static void skip_blanks(struct reader *reader)
 }
 
 /* Take the connective `word` or `sign` if it is next. */
-static bool take(struct reader *reader, const char *word, const char *sign)
+static bool accept_word(struct reader *reader, const char *word, const char *sign)
 {
     skip_blanks(reader);
     size_t length = strlen(word);
@@ -83,7 +83,7 @@ static bool take(struct reader *reader, const char *word, const char *sign)
 }
 
 /* Take characters of `set`, at most room - 1. Returns false if there are none, or more. */
-static bool take_span(struct reader *reader, const char *set, char *text, size_t room)
+static bool accept_span(struct reader *reader, const char *set, char *text, size_t room)
 {
     size_t length = strspn(reader->at, set);
     if (length == 0 || length >= room)
@@ -94,7 +94,7 @@ static bool take_span(struct reader *reader, const char *set, char *text, size_t
     return true;
 }
 
-static bool take_comparison(struct reader *reader, char compare[3])
+static bool accept_comparison(struct reader *reader, char compare[3])
 {
     static const char *const signs[] = {">=", "<=", "!=", "==", ">", "<", "="};
     for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
@@ -107,22 +107,22 @@ static bool take_comparison(struct reader *reader, char compare[3])
     return false;
 }
 
-static bool take_term(struct reader *reader, struct term *term)
+static bool scan_term(struct reader *reader, struct term *term)
 {
     skip_blanks(reader);
     const char *from = reader->at;
-    if (!take_span(reader, NAME_CHARACTERS, term->name, sizeof term->name)) {
-        expected(reader, "a condition such as m1.position>=5000, do3=1 or idle, found '%.40s'", from);
+    if (!accept_span(reader, NAME_CHARACTERS, term->name, sizeof term->name)) {
+        report_expected(reader, "a condition such as m1.position>=5000, do3=1 or idle, found '%.40s'", from);
         return false;
     }
     skip_blanks(reader);
     term->compare[0] = term->value[0] = '\0';
-    if (!take_comparison(reader, term->compare))
+    if (!accept_comparison(reader, term->compare))
         return true;
     skip_blanks(reader);
-    if (take_span(reader, NAME_CHARACTERS "+", term->value, sizeof term->value))
+    if (accept_span(reader, NAME_CHARACTERS "+", term->value, sizeof term->value))
         return true;
-    expected(reader, "a value behind %s%s, found '%.40s'", term->name, term->compare, reader->at);
+    report_expected(reader, "a value behind %s%s, found '%.40s'", term->name, term->compare, reader->at);
     return false;
 }
 
@@ -145,7 +145,7 @@ static int number_behind(const char *name, const char *word, int low, int high)
 }
 
 /* The value as it is, or {">=": value}. Takes the reference. */
-static json_t *compared(const struct term *term, json_t *value)
+static json_t *make_comparison(const struct term *term, json_t *value)
 {
     return strcmp(term->compare, "=") == 0 ? value : json_pack("{s:o}", term->compare, value);
 }
@@ -154,10 +154,10 @@ static json_t *read_integer(const struct reader *reader, const struct term *term
 {
     int64_t number;
     if (term->compare[0] == '\0')
-        return expected(reader, "a comparison behind %s, as in %s>=5000", term->name, term->name);
+        return report_expected(reader, "a comparison behind %s, as in %s>=5000", term->name, term->name);
     if (!read_number(term->value, &number))
-        return expected(reader, "a whole number behind %s%s, found '%s'", term->name, term->compare, term->value);
-    return no_memory(reader, compared(term, json_integer(number)));
+        return report_expected(reader, "a whole number behind %s%s, found '%s'", term->name, term->compare, term->value);
+    return no_memory(reader, make_comparison(term, json_integer(number)));
 }
 
 static const char *name_of(const char *key, unsigned value)
@@ -175,7 +175,7 @@ static json_t *word_term(const struct reader *reader, const struct term *term, c
     const char *name;
     bool known = false, equal = strcmp(term->compare, "=") == 0;
     if (!equal && strcmp(term->compare, "!=") != 0)
-        return expected(reader, "= or != and a word behind %s, found '%s%s'", term->name, term->compare, term->value);
+        return report_expected(reader, "= or != and a word behind %s, found '%s%s'", term->name, term->compare, term->value);
     json_t *any = json_array();
     for (unsigned i = 0; (name = name_of(key, i)) != NULL; i++) {
         bool same = strcmp(name, term->value) == 0;
@@ -198,8 +198,9 @@ static json_t *read_time(const struct reader *reader, const struct term *term)
 {
     int64_t number;
     if (term->compare[0] == '\0')
-        return expected(reader, "t>= and a time, as in t>=2.5s");
-    return no_memory(reader, compared(term, read_number(term->value, &number) ? json_integer(number) : json_string(term->value)));
+        return report_expected(reader, "t>= and a time, as in t>=2.5s");
+    json_t *value = read_number(term->value, &number) ? json_integer(number) : json_string(term->value);
+    return no_memory(reader, make_comparison(term, value));
 }
 
 /* 0 or 1, or for what may stand without value nothing (1). Returns -1 if it is none of them: said. */
@@ -211,7 +212,7 @@ static int read_bit(const struct reader *reader, const struct term *term, bool b
     bool equal = strcmp(term->compare, "=") == 0;
     if (right && (equal || strcmp(term->compare, "!=") == 0))
         return (term->value[0] == '1') == equal;
-    expected(reader, "%s=0 or %s=1, found '%s%s%s'", term->name, term->name, term->name, term->compare, term->value);
+    report_expected(reader, "%s=0 or %s=1, found '%s%s%s'", term->name, term->name, term->name, term->compare, term->value);
     return -1;
 }
 
@@ -236,8 +237,8 @@ static json_t *motor_term(const struct reader *reader, const struct term *term, 
         json_t *value = read_integer(reader, term);
         return value == NULL ? NULL : no_memory(reader, json_pack("{s:i, s:o}", "motor", motor, numbers[i].key, value));
     }
-    return expected(reader, "m%d.position, true, steps, index, commands, state, led, fault or idle, found '%s'", motor,
-                    term->name);
+    return report_expected(reader, "m%d.position, true, steps, index, commands, state, led, fault or idle, found '%s'", motor,
+                           term->name);
 }
 
 static json_t *bits_term(const struct reader *reader, const struct term *term, const char *key, int number)
@@ -258,7 +259,7 @@ static json_t *message_term(const struct reader *reader, const struct term *term
     if (term->compare[0] != '\0') {
         if (strcmp(term->compare, "=") != 0 || !read_number(term->value, &number) || number < 0 || number > 255) {
             json_decref(message);
-            return expected(reader, "message=0 to message=255, found '%s%s%s'", term->name, term->compare, term->value);
+            return report_expected(reader, "message=0 to message=255, found '%s%s%s'", term->name, term->compare, term->value);
         }
         json_object_set_new(message, "number", json_integer(number));
     }
@@ -270,7 +271,7 @@ static json_t *message_term(const struct reader *reader, const struct term *term
 static json_t *dropped_term(const struct reader *reader, const struct term *term)
 {
     if (term->compare[0] != '\0')
-        return expected(reader, "%s alone, found '%s%s%s'", term->name, term->name, term->compare, term->value);
+        return report_expected(reader, "%s alone, found '%s%s%s'", term->name, term->name, term->compare, term->value);
     return no_memory(reader, json_pack("{s:{s:b}}", "message", "dropped", 1));
 }
 
@@ -316,12 +317,12 @@ static json_t *unit_term(const struct reader *reader, const struct term *term, c
             continue;
         int number = number_behind(name, bits[i].name, bits[i].low, bits[i].high);
         return number > 0 ? bits_term(reader, term, bits[i].name, number)
-                          : expected(reader, "%s%d to %s%d, found '%s'", bits[i].name, bits[i].low, bits[i].name, bits[i].high,
-                                     term->name);
+                          : report_expected(reader, "%s%d to %s%d, found '%s'", bits[i].name, bits[i].low, bits[i].name,
+                                            bits[i].high, term->name);
     }
     if (strcmp(name, "idle") == 0 || strcmp(name, "powered") == 0)
         return flag_term(reader, term, name);
-    return expected(reader, EXPECTED_NAME ", found '%s'", term->name);
+    return report_expected(reader, EXPECTED_NAME ", found '%s'", term->name);
 }
 
 /* The name of the unit in front of a name, "u3." or "u3-2."; returns what is behind it, or the whole if there is none. */
@@ -339,7 +340,7 @@ static const char *unit_of(const char *name, char unit[NAME_MAX_LENGTH])
 }
 
 /* Say of which unit: also in those that stand for it together (word_term()). */
-static json_t *with_unit(json_t *json, const char *unit)
+static json_t *add_unit(json_t *json, const char *unit)
 {
     size_t i;
     json_t *other;
@@ -353,48 +354,48 @@ static json_t *with_unit(json_t *json, const char *unit)
     return json;
 }
 
-static json_t *one(struct reader *reader)
+static json_t *read_term(struct reader *reader)
 {
     struct term term;
     char unit[NAME_MAX_LENGTH];
     bool of_line;
-    if (!take_term(reader, &term))
+    if (!scan_term(reader, &term))
         return NULL;
     const char *name = unit_of(term.name, unit);
     json_t *json = line_term(reader, &term, name, unit, &of_line);
-    return of_line ? json : with_unit(unit_term(reader, &term, name), unit[0] != '\0' ? unit : reader->unit);
+    return of_line ? json : add_unit(unit_term(reader, &term, name), unit[0] != '\0' ? unit : reader->unit);
 }
 
 /* ---- Several -------------------------------------------------------------------------------------------------------- */
 
 /* Terms that hold together, up to an "or" or the end. */
-static json_t *together(struct reader *reader)
+static json_t *read_all_of(struct reader *reader)
 {
     json_t *all = json_array();
     for (;;) {
-        json_t *term = one(reader);
+        json_t *term = read_term(reader);
         if (term == NULL || json_array_append_new(all, term) != 0) {
             json_decref(all);
             return NULL;
         }
-        if (take(reader, "and", "&&") || take(reader, "and", ","))
+        if (accept_word(reader, "and", "&&") || accept_word(reader, "and", ","))
             continue;
         struct reader ahead = *reader;
-        if (*reader->at == '\0' || take(&ahead, "or", "||"))
+        if (*reader->at == '\0' || accept_word(&ahead, "or", "||"))
             return one_or_list(reader, all, "all");
     }
 }
 
-static json_t *alternatives(struct reader *reader)
+static json_t *read_any_of(struct reader *reader)
 {
     json_t *any = json_array();
     do {
-        json_t *group = together(reader);
+        json_t *group = read_all_of(reader);
         if (group == NULL || json_array_append_new(any, group) != 0) {
             json_decref(any);
             return NULL;
         }
-    } while (take(reader, "or", "||"));
+    } while (accept_word(reader, "or", "||"));
     return one_or_list(reader, any, "any");
 }
 
@@ -405,7 +406,7 @@ json_t *client_condition(const char *text, const char *unit, char wrong[CLIENT_C
     snprintf(wrong, CLIENT_CONDITION_WRONG_SIZE, "%s", strerror(ENOMEM));
     skip_blanks(&reader);
     if (*reader.at != '{')
-        return alternatives(&reader);
+        return read_any_of(&reader);
     json_t *json = json_loads(reader.at, JSON_REJECT_DUPLICATES, &error);
-    return json != NULL ? json : expected(&reader, "a condition in JSON: %s", error.text);
+    return json != NULL ? json : report_expected(&reader, "a condition in JSON: %s", error.text);
 }

@@ -60,7 +60,8 @@ enum exit_status client_job_outcome(const struct client_job *job, enum client_rp
     }
 }
 
-static enum exit_status call(struct client_job *job, const char *method, json_t *params, int timeout_ms, json_t **result)
+static enum exit_status call_with_timeout(struct client_job *job, const char *method, json_t *params, int timeout_ms,
+                                          json_t **result)
 {
     *result = NULL;
     if (!client_job_connect(job)) {
@@ -80,13 +81,13 @@ static enum exit_status call(struct client_job *job, const char *method, json_t 
 enum exit_status client_job_call(struct client_job *job, const char *method, json_t *params, bool of_unit, json_t **result)
 {
     int timeout_ms = job->timeout_ms > 0 ? job->timeout_ms : CLIENT_JOB_TIMEOUT_MS;
-    return call(job, method, client_job_params(job, params, of_unit), timeout_ms, result);
+    return call_with_timeout(job, method, client_job_params(job, params, of_unit), timeout_ms, result);
 }
 
 enum exit_status client_job_call_long(struct client_job *job, const char *method, json_t *params, json_t **result)
 {
     int timeout_ms = job->timeout_ms > 0 ? job->timeout_ms : CLIENT_RPC_FOREVER;
-    return call(job, method, client_job_params(job, params, false), timeout_ms, result);
+    return call_with_timeout(job, method, client_job_params(job, params, false), timeout_ms, result);
 }
 
 enum exit_status client_job_done(const struct client_job *job, json_t *result)
@@ -147,29 +148,29 @@ bool client_job_members(json_t *params, const char *const *words, size_t count)
 /* ---- Commands without much to them ------------------------------------------------------------------------------------ */
 
 /* Call a method whose result nobody needs to see. */
-static enum exit_status simply(struct client_job *job, const char *method, json_t *params, bool of_unit)
+static enum exit_status call_without_result(struct client_job *job, const char *method, json_t *params, bool of_unit)
 {
     json_t *result;
     enum exit_status status = client_job_call(job, method, params, of_unit, &result);
     return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
 }
 
-static enum exit_status reset(struct client_job *job)
+static enum exit_status reset_unit(struct client_job *job)
 {
-    return simply(job, "reset", NULL, true);
+    return call_without_result(job, "reset", NULL, true);
 }
 
 static enum exit_status end_emulator(struct client_job *job)
 {
-    return simply(job, "shutdown", NULL, false);
+    return call_without_result(job, "shutdown", NULL, false);
 }
 
-static enum exit_status power(struct client_job *job)
+static enum exit_status switch_power(struct client_job *job)
 {
     bool on = strcmp(job->words[0], "on") == 0;
     if (!on && strcmp(job->words[0], "off") != 0)
         return client_usage("power: expected on or off, found '%s'", job->words[0]);
-    return simply(job, "power", json_pack("{s:b}", "on", on), true);
+    return call_without_result(job, "power", json_pack("{s:b}", "on", on), true);
 }
 
 static enum exit_status set_switch(struct client_job *job)
@@ -183,10 +184,10 @@ static enum exit_status set_switch(struct client_job *job)
     json_t *params = json_pack("{s:i}", "node", (int)node);
     if (and_reset)
         json_object_set_new(params, "reset", json_true());
-    return simply(job, "switch", params, true);
+    return call_without_result(job, "switch", params, true);
 }
 
-static enum exit_status clock_of_line(struct client_job *job)
+static enum exit_status show_or_set_clock(struct client_job *job)
 {
     json_t *result, *params = job->count > 0 ? json_pack("{s:s}", "clock", job->words[0]) : NULL;
     enum exit_status status = client_job_call(job, "clock", params, false, &result);
@@ -199,7 +200,7 @@ static enum exit_status clock_of_line(struct client_job *job)
 }
 
 /* The place of a file that the emulator, in its own folder, is to use. Returns a string to be freed; NULL: none (reported). */
-static char *absolute(const char *path)
+static char *absolute_path(const char *path)
 {
     char folder[PATH_MAX], *whole;
     if (path[0] == '/')
@@ -212,7 +213,7 @@ static char *absolute(const char *path)
 
 json_t *client_job_file(const char *path)
 {
-    char *whole = absolute(path);
+    char *whole = absolute_path(path);
     json_t *params = whole != NULL ? json_pack("{s:s}", "file", whole) : NULL;
     if (whole != NULL && params == NULL)
         client_usage("%s: expected UTF-8", path);
@@ -229,27 +230,27 @@ json_t *client_job_output(const struct client_job *job, const char *path)
 }
 
 /* snapshot, restore: a name in memory, or file=PATH. */
-static enum exit_status come_back(struct client_job *job, const char *method)
+static enum exit_status snapshot_or_restore(struct client_job *job, const char *method)
 {
     const char *word = job->words[0];
     bool file = strncmp(word, "file=", 5) == 0;
     json_t *params = file ? client_job_output(job, word + 5) : json_pack("{s:s}", "name", word);
     if (params == NULL)
         return file ? STATUS_FAILURE : client_usage("%s: expected UTF-8", word);
-    return simply(job, method, params, false);
+    return call_without_result(job, method, params, false);
 }
 
-static enum exit_status snapshot(struct client_job *job)
+static enum exit_status take_snapshot(struct client_job *job)
 {
-    return come_back(job, "snapshot");
+    return snapshot_or_restore(job, "snapshot");
 }
 
 /* A file takes as long as the emulator lets it. */
-static enum exit_status restore(struct client_job *job)
+static enum exit_status restore_snapshot(struct client_job *job)
 {
     const char *word = job->words[0];
     if (strncmp(word, "file=", 5) != 0)
-        return come_back(job, "restore");
+        return snapshot_or_restore(job, "restore");
     json_t *result, *params = client_job_file(word + 5);
     enum exit_status status = params != NULL ? client_job_call_long(job, "restore", params, &result) : STATUS_FAILURE;
     return status == STATUS_SUCCESS ? client_job_done(job, result) : status;
@@ -293,20 +294,20 @@ static const struct command {
     {"advance", 1, SIZE_MAX, "a time, as in 10ms, or a condition", TAKES_UNIT | TAKES_LIMIT, client_control_advance},
     {"watch", 0, 0, "nothing", TAKES_UNIT | TAKES_ONCE, client_watch},
     {"events", 0, SIZE_MAX, "kinds of events", TAKES_UNIT | TAKES_LIMIT, client_control_events},
-    {"snapshot", 1, 1, "NAME or file=PATH", TAKES_FORCE, snapshot},
-    {"restore", 1, 1, "NAME or file=PATH", 0, restore},
-    {"reset", 0, 0, "nothing", TAKES_UNIT, reset},
-    {"power", 1, 1, "on or off", TAKES_UNIT, power},
+    {"snapshot", 1, 1, "NAME or file=PATH", TAKES_FORCE, take_snapshot},
+    {"restore", 1, 1, "NAME or file=PATH", 0, restore_snapshot},
+    {"reset", 0, 0, "nothing", TAKES_UNIT, reset_unit},
+    {"power", 1, 1, "on or off", TAKES_UNIT, switch_power},
     {"switch", 1, 2, "an address, and optionally reset", TAKES_UNIT, set_switch},
     {"fault", 0, SIZE_MAX, "inject KIND NAME=VALUE..., clear [ID], or nothing to list them", TAKES_UNIT, client_control_fault},
     {"plant", 0, 4, "set FILE, none, motor=N..., or nothing to show it", TAKES_UNIT, client_control_plant},
-    {"clock", 0, 1, "real, xN, max, stepped, or nothing to show it", 0, clock_of_line},
+    {"clock", 0, 1, "real, xN, max, stepped, or nothing to show it", 0, show_or_set_clock},
     {"trace", 1, 2, "start FILE or stop [NUMBER]", TAKES_FORCE, client_control_trace},
     {"call", 1, SIZE_MAX, "a METHOD and its parameters, JSON or NAME=VALUE...", TAKES_UNIT, call_method},
     {"shutdown", 0, 0, "nothing", 0, end_emulator},
 };
 
-static const struct command *find(const char *name)
+static const struct command *find_command(const char *name)
 {
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         if (strcmp(commands[i].name, name) == 0)
@@ -315,14 +316,14 @@ static const struct command *find(const char *name)
     return NULL;
 }
 
-bool client_control_knows(const char *name)
+bool client_control_has(const char *name)
 {
-    return find(name) != NULL;
+    return find_command(name) != NULL;
 }
 
 enum exit_status client_control(struct client_job *job, const char *name)
 {
-    const struct command *command = find(name);
+    const struct command *command = find_command(name);
     if (job->count < command->least)
         return client_usage("%s: expected %s", name, command->words);
     if (job->count > command->most)

@@ -10,7 +10,7 @@
     "shutdown"
 
 /* Is `name` one of them? */
-bool client_control_knows(const char *name);
+bool client_control_has(const char *name);
 
 /* Do the command `name`, with everything of *job but connected and rpc set. Returns the exit status. */
 enum exit_status client_control(struct client_job *job, const char *name);

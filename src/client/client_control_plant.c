@@ -54,7 +54,7 @@ static json_t *read_plant(const char *path)
 }
 
 /* motor=N and what a hand does there: position=, jammed=, missing_lead=. */
-static json_t *read_hand(const struct client_job *job)
+static json_t *read_plant_change(const struct client_job *job)
 {
     json_t *params = json_object();
     if (client_job_members(params, job->words, job->count))
@@ -76,7 +76,7 @@ enum exit_status client_control_plant(struct client_job *job)
         return client_usage(set ? "plant set: expected one FILE" : "plant none takes no argument");
     if ((set || none) && job->unit != NULL)
         return client_usage("plant %s is about all units: use it without --unit", job->words[0]);
-    params = set ? read_plant(job->words[1]) : none ? json_pack("{s:n}", "plant") : read_hand(job);
+    params = set ? read_plant(job->words[1]) : none ? json_pack("{s:n}", "plant") : read_plant_change(job);
     if (params == NULL)
         return set ? STATUS_FAILURE : STATUS_USAGE;
     enum exit_status status = client_job_call(job, "plant.set", params, true, &result);
@@ -108,7 +108,7 @@ static enum exit_status list_faults(struct client_job *job)
     return client_job_done(job, result);
 }
 
-static enum exit_status inject(struct client_job *job)
+static enum exit_status inject_fault(struct client_job *job)
 {
     if (job->count < 2)
         return client_usage("fault inject: expected a KIND, as in `fault inject drop'; docs/FAULTS.md lists them");
@@ -127,7 +127,7 @@ static enum exit_status inject(struct client_job *job)
     return client_job_done(job, result);
 }
 
-static enum exit_status clear(struct client_job *job)
+static enum exit_status clear_faults(struct client_job *job)
 {
     json_t *result, *params = NULL;
     if (job->count > 2)
@@ -147,7 +147,7 @@ enum exit_status client_control_fault(struct client_job *job)
     static const struct {
         const char *name;
         client_job_function *function;
-    } kinds[] = {{"inject", inject}, {"clear", clear}, {"list", list_faults}};
+    } kinds[] = {{"inject", inject_fault}, {"clear", clear_faults}, {"list", list_faults}};
     if (job->count == 0)
         return list_faults(job);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {

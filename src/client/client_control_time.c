@@ -22,7 +22,7 @@ static json_t *read_time(const char *text)
 }
 
 /* All words as one text, blanks between them; to be freed. */
-static char *join(const char *const *words, size_t count)
+static char *join_words(const char *const *words, size_t count)
 {
     size_t length = 1;
     for (size_t i = 0; i < count; i++)
@@ -37,10 +37,10 @@ static char *join(const char *const *words, size_t count)
 }
 
 /* {"until": the condition of all words, "limit": …}. Returns NULL if the condition is wrong (reported). */
-static json_t *until(const struct client_job *job)
+static json_t *read_until(const struct client_job *job)
 {
     char wrong[CLIENT_CONDITION_WRONG_SIZE];
-    char *text = join(job->words, job->count);
+    char *text = join_words(job->words, job->count);
     json_t *condition = text != NULL ? client_condition(text, job->unit, wrong) : NULL;
     if (text == NULL)
         warnx("%s", strerror(ENOMEM));
@@ -79,7 +79,7 @@ static enum exit_status show_waited(const struct client_job *job, json_t *result
     return status;
 }
 
-static enum exit_status wait_by(struct client_job *job, const char *method, json_t *params)
+static enum exit_status call_wait(struct client_job *job, const char *method, json_t *params)
 {
     json_t *result;
     if (params == NULL)
@@ -89,7 +89,7 @@ static enum exit_status wait_by(struct client_job *job, const char *method, json
 }
 
 /* Does the clock stand until somebody advances it? Returns the exit status. */
-static enum exit_status look_at_clock(struct client_job *job, bool *stopped)
+static enum exit_status check_stopped(struct client_job *job, bool *stopped)
 {
     json_t *result;
     enum exit_status status = client_job_call(job, "clock", NULL, false, &result);
@@ -119,30 +119,30 @@ static enum exit_status wait_stopped(struct client_job *job, json_t *params)
         return status;
     }
     note_stopped();
-    return wait_by(job, "wait", params);
+    return call_wait(job, "wait", params);
 }
 
 enum exit_status client_control_wait(struct client_job *job)
 {
     bool stopped;
-    json_t *params = until(job);
-    enum exit_status status = params != NULL ? look_at_clock(job, &stopped) : STATUS_USAGE;
+    json_t *params = read_until(job);
+    enum exit_status status = params != NULL ? check_stopped(job, &stopped) : STATUS_USAGE;
     if (status != STATUS_SUCCESS) {
         json_decref(params);
         return status;
     }
-    return stopped && !job->advance ? wait_stopped(job, params) : wait_by(job, stopped ? "advance" : "wait", params);
+    return stopped && !job->advance ? wait_stopped(job, params) : call_wait(job, stopped ? "advance" : "wait", params);
 }
 
 enum exit_status client_control_advance(struct client_job *job)
 {
     if (job->words[0][0] < '0' || job->words[0][0] > '9')
-        return wait_by(job, "advance", until(job));
+        return call_wait(job, "advance", read_until(job));
     if (job->count > 1)
         return client_usage("advance: expected one time, as in 10ms, found '%s' behind it", job->words[1]);
     if (job->limit != NULL || job->unit != NULL)
         return client_usage("advance: --limit and --unit need a condition, found the time %s", job->words[0]);
-    return wait_by(job, "advance", json_pack("{s:o}", "ticks", read_time(job->words[0])));
+    return call_wait(job, "advance", json_pack("{s:o}", "ticks", read_time(job->words[0])));
 }
 
 /* ---- Events ----------------------------------------------------------------------------------------------------------- */
@@ -193,7 +193,7 @@ static void on_event(void *context, const char *method, const json_t *params)
 }
 
 /* Words: kinds, motor=N, count=N. Returns the parameters of `subscribe`, NULL: wrong (reported). */
-static json_t *read_choice(const struct client_job *job, uint64_t *count)
+static json_t *read_subscription(const struct client_job *job, uint64_t *count)
 {
     json_t *params = json_object(), *kinds = json_array();
     for (size_t i = 0; i < job->count; i++) {
@@ -230,11 +230,11 @@ enum exit_status client_control_events(struct client_job *job)
 {
     struct listening listening = {.job = job, .count = UINT64_MAX};
     bool stopped = false;
-    json_t *result, *params = read_choice(job, &listening.count);
+    json_t *result, *params = read_subscription(job, &listening.count);
     if (params == NULL)
         return STATUS_USAGE;
     listening.left = listening.count;
-    enum exit_status status = look_at_clock(job, &stopped);
+    enum exit_status status = check_stopped(job, &stopped);
     if (status != STATUS_SUCCESS) {
         json_decref(params);
         return status;

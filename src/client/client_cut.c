@@ -14,8 +14,8 @@ struct cutter {
     struct client_cut *cut;
     const char *text;
     size_t length, room;
-    size_t open_block; /* index of the first `[` behind the last `]` and `\`; NOWHERE: none */
-    size_t let_go;     /* the piece with a `]` added before that block; NOWHERE: none */
+    size_t open_block;   /* index of the first `[` behind the last `]` and `\`; NOWHERE: none */
+    size_t released;     /* the piece with a `]` added before that block; NOWHERE: none */
     bool in_comment;
     bool held;  /* an added `[` is open */
     bool ended; /* an open block has begun: no brackets from here on */
@@ -52,7 +52,7 @@ static enum client_cut_result list_commands(struct client_cut *cut, const char *
 }
 
 /* Find how much the last `\` leaves of the program, and a block that stays open. */
-static void look_ahead(struct cutter *c)
+static void find_open_block(struct cutter *c)
 {
     for (size_t i = 0; i < c->cut->commands; i++) {
         uint8_t op = c->cut->command[i].op;
@@ -66,27 +66,27 @@ static void look_ahead(struct cutter *c)
 
 /* ---- Pieces ------------------------------------------------------------------------------------------------------- */
 
-static void fail(struct cutter *c, enum client_cut_result result)
+static void set_error(struct cutter *c, enum client_cut_result result)
 {
     if (c->result == CLIENT_CUT_DONE)
         c->result = result;
 }
 
-static struct client_piece *present(struct cutter *c)
+static struct client_piece *present_piece(struct cutter *c)
 {
     return &c->cut->piece[c->cut->pieces - 1];
 }
 
-static void put(struct cutter *c, const char *bytes, size_t length)
+static void append(struct cutter *c, const char *bytes, size_t length)
 {
-    struct client_piece *piece = present(c);
+    struct client_piece *piece = present_piece(c);
     memcpy(piece->text + piece->length, bytes, length);
     piece->length += length;
 }
 
 static void insert_bracket(struct cutter *c)
 {
-    struct client_piece *piece = present(c);
+    struct client_piece *piece = present_piece(c);
     memmove(piece->text + 1, piece->text, piece->length);
     piece->text[0] = '[';
     piece->length++;
@@ -101,8 +101,8 @@ static void insert_bracket(struct cutter *c)
 static void end_piece(struct cutter *c)
 {
     if (c->in_comment)
-        put(c, "}", 1);
-    if (present(c)->commands == 1 && present(c)->sole && c->cut->commands > 1)
+        append(c, "}", 1);
+    if (present_piece(c)->commands == 1 && present_piece(c)->sole && c->cut->commands > 1)
         insert_bracket(c);
 }
 
@@ -115,37 +115,37 @@ static bool begin_piece(struct cutter *c)
         if (c->cut->piece[c->cut->pieces].text != NULL) {
             c->cut->pieces++;
             if (c->in_comment)
-                put(c, "{", 1);
+                append(c, "{", 1);
             return true;
         }
     }
-    fail(c, CLIENT_CUT_NO_MEMORY);
+    set_error(c, CLIENT_CUT_NO_MEMORY);
     return false;
 }
 
 /* Add what must not be cut. */
-static bool add(struct cutter *c, const char *bytes, size_t length)
+static bool add_text(struct cutter *c, const char *bytes, size_t length)
 {
     if (length > c->room - SPARE - (c->in_comment ? 1 : 0)) {
-        fail(c, CLIENT_CUT_LONG_COMMAND);
+        set_error(c, CLIENT_CUT_LONG_COMMAND);
         return false;
     }
-    if (present(c)->length + length > c->room - SPARE) {
+    if (present_piece(c)->length + length > c->room - SPARE) {
         end_piece(c);
         if (!begin_piece(c))
             return false;
     }
-    put(c, bytes, length);
+    append(c, bytes, length);
     return true;
 }
 
 /* Add a bracket of our own. */
 static bool add_bracket(struct cutter *c, const char *bracket)
 {
-    if (!add(c, bracket, 1))
+    if (!add_text(c, bracket, 1))
         return false;
-    present(c)->commands++;
-    present(c)->sole = false;
+    present_piece(c)->commands++;
+    present_piece(c)->sole = false;
     c->cut->places++;
     return true;
 }
@@ -155,10 +155,10 @@ static bool add_gap(struct cutter *c, size_t from, size_t to)
 {
     for (size_t i = from; i < to; i++) {
         if (c->in_comment && c->text[i] == '}') {
-            put(c, "}", 1); /* into the place kept for it */
+            append(c, "}", 1); /* into the place kept for it */
             c->in_comment = false;
         } else {
-            if (!add(c, c->text + i, 1))
+            if (!add_text(c, c->text + i, 1))
                 return false;
             c->in_comment = c->in_comment || c->text[i] == '{';
         }
@@ -167,13 +167,13 @@ static bool add_gap(struct cutter *c, size_t from, size_t to)
 }
 
 /* Let go before a block that stays open. All behind the `]` has to be in the last piece, so it begins one. */
-static bool let_go(struct cutter *c)
+static bool release_hold(struct cutter *c)
 {
     c->ended = true;
     if (!c->held)
         return true;
     end_piece(c);
-    c->let_go = c->cut->pieces;
+    c->released = c->cut->pieces;
     return begin_piece(c) && add_bracket(c, "]");
 }
 
@@ -183,7 +183,7 @@ static bool add_hold(struct cutter *c, size_t index)
     if (c->cut->commands == 1 || c->ended)
         return true;
     if (index == c->open_block)
-        return let_go(c);
+        return release_hold(c);
     if (c->held || c->cut->command[index].op == '\\')
         return true;
     c->held = true;
@@ -194,9 +194,9 @@ static bool add_command(struct cutter *c, size_t index)
 {
     struct client_command *command = &c->cut->command[index];
     c->cut->wrong = command->start;
-    if (!add_hold(c, index) || !add(c, c->text + command->start, command->end - command->start))
+    if (!add_hold(c, index) || !add_text(c, c->text + command->start, command->end - command->start))
         return false;
-    struct client_piece *piece = present(c);
+    struct client_piece *piece = present_piece(c);
     command->piece = c->cut->pieces - 1;
     command->at = piece->length - (command->end - command->start);
     piece->commands++;
@@ -239,12 +239,12 @@ static void hold_inner_ends(struct client_cut *cut)
 
 /* ---- Calls -------------------------------------------------------------------------------------------------------- */
 
-static enum client_cut_result as_one_piece(struct cutter *c)
+static enum client_cut_result make_one_piece(struct cutter *c)
 {
     struct client_cut *cut = c->cut;
     if (!begin_piece(c))
         return c->result;
-    put(c, c->text, c->length);
+    append(c, c->text, c->length);
     cut->piece[0].commands = (unsigned)cut->commands;
     for (size_t i = 0; i < cut->commands; i++)
         cut->command[i].at = cut->command[i].start;
@@ -255,16 +255,16 @@ static enum client_cut_result as_one_piece(struct cutter *c)
 enum client_cut_result client_cut(struct client_cut *cut, const char *text, size_t length, size_t room)
 {
     *cut = (struct client_cut){0};
-    struct cutter c = {.cut = cut, .text = text, .length = length, .room = room, .open_block = NOWHERE, .let_go = NOWHERE};
+    struct cutter c = {.cut = cut, .text = text, .length = length, .room = room, .open_block = NOWHERE, .released = NOWHERE};
     enum client_cut_result listed = list_commands(cut, text, length);
     if (listed != CLIENT_CUT_DONE)
         return listed;
-    look_ahead(&c);
+    find_open_block(&c);
     if (length <= room)
-        return as_one_piece(&c);
+        return make_one_piece(&c);
     if (!fill_pieces(&c))
         return c.result;
-    if (c.let_go != NOWHERE && c.let_go + 1 < cut->pieces) {
+    if (c.released != NOWHERE && c.released + 1 < cut->pieces) {
         cut->wrong = cut->command[c.open_block].start;
         return CLIENT_CUT_OPEN_BLOCK;
     }

@@ -23,7 +23,7 @@ static uint64_t line_time(size_t bytes)
     return (uint64_t)bytes * 10u * RKM04_TICKS_PER_SECOND / CLIENT_BAUD;
 }
 
-static size_t encode(struct client *client, const uint8_t *message, size_t length)
+static size_t encode_frame(struct client *client, const uint8_t *message, size_t length)
 {
     struct rkm04_sender sender = {0};
     size_t n = client->framing->begin(&sender, client->node, 0, length, false, client->wire);
@@ -90,7 +90,7 @@ static const char *find_refusal(struct client *client)
     return reason;
 }
 
-static enum client_outcome lost(struct client *client)
+static enum client_outcome report_lost(struct client *client)
 {
     uint8_t bytes[256];
     int why = errno;
@@ -109,7 +109,7 @@ static enum client_outcome lost(struct client *client)
 /* ---- Sending ------------------------------------------------------------------------------------------------------ */
 
 /* Forget what has come so far. Returns false if the line is gone. */
-static bool forget(struct client *client)
+static bool drop_input(struct client *client)
 {
     uint8_t bytes[512];
     ssize_t n;
@@ -129,21 +129,21 @@ static enum client_outcome send_frame(const struct dialogue *d)
         if (n > 0) {
             sent += (size_t)n;
         } else if (n < 0 && errno != EAGAIN && errno != EINTR) {
-            return lost(client);
+            return report_lost(client);
         } else {
             if (!wait_for(d, POLLOUT | POLLIN)) {
                 warnx("%s accepts no bytes: is the program or the device at its other end stuck?", client->port);
                 return CLIENT_SILENT;
             }
-            if (!forget(client)) /* no answer yet; but who sends us something must not wait for us to read it */
-                return lost(client);
+            if (!drop_input(client)) /* no answer yet; but who sends us something must not wait for us to read it */
+                return report_lost(client);
         }
     }
     return CLIENT_SENT;
 }
 
 /* To all units: nobody says when it has arrived. */
-static void let_it_go_out(const struct dialogue *d)
+static void wait_until_sent(const struct dialogue *d)
 {
     uint64_t end = d->begun + line_time(d->frame) + CLOSE_GRACE_US;
     tcdrain(d->client->fd);
@@ -182,20 +182,20 @@ static const struct rkm04_framing *other_framing(const struct client *client)
 }
 
 /* A whole message that is not the answer. */
-static void count_strange(const struct dialogue *d)
+static void count_unexpected(const struct dialogue *d)
 {
     struct client *client = d->client;
-    client->strange++;
+    client->unexpected++;
     client->echoed += client->receiver.dnode == client->node && client->receiver.length == d->length &&
                       memcmp(client->answer, d->request, d->length) == 0;
 }
 
 /* Take what came. Returns true when the answer stands in the buffer. */
-static bool take(struct dialogue *d, const uint8_t *bytes, size_t length)
+static bool process_bytes(struct dialogue *d, const uint8_t *bytes, size_t length)
 {
     struct client *client = d->client;
     uint64_t now = client_now();
-    client->heard += (uint32_t)length;
+    client->received += (uint32_t)length;
     for (size_t i = 0; i < length; i++) {
         client->foreign += other_framing(client)->receive(&client->other, bytes[i], now, client->foreign_message,
                                                           sizeof client->foreign_message);
@@ -205,7 +205,7 @@ static bool take(struct dialogue *d, const uint8_t *bytes, size_t length)
             client->length = client->receiver.length;
             return true;
         }
-        count_strange(d);
+        count_unexpected(d);
     }
     uint64_t limit = now + (uint64_t)client->timeout_ms * 1000u;
     d->deadline = limit < d->last_moment ? limit : d->last_moment;
@@ -213,11 +213,11 @@ static bool take(struct dialogue *d, const uint8_t *bytes, size_t length)
 }
 
 /* What the bytes that came tell about the cause. Returns whether there is anything to tell. */
-static bool tell_causes(const struct dialogue *d)
+static bool print_causes(const struct dialogue *d)
 {
     const struct client *client = d->client;
     const struct rkm04_receiver *r = &client->receiver;
-    uint32_t others = client->strange - client->echoed;
+    uint32_t others = client->unexpected - client->echoed;
     if (client->foreign > 0)
         fprintf(stderr, "  - %" PRIu32 " messages came in the framing %s: try --framing %s.\n", client->foreign,
                 other_framing(client)->name, other_framing(client)->name);
@@ -233,20 +233,20 @@ static bool tell_causes(const struct dialogue *d)
         fprintf(stderr, "  - %" PRIu32 " frames came that are cut or malformed: do two units have the address %u and answer at "
                 "different times (a collision)? Does another program read from %s, too?\n", r->malformed, client->node,
                 client->port);
-    bool told = client->foreign > 0 || client->strange > 0 || r->bad_check > 0 || r->malformed > 0;
-    if (!told && client->heard > 0)
+    bool told = client->foreign > 0 || client->unexpected > 0 || r->bad_check > 0 || r->malformed > 0;
+    if (!told && client->received > 0)
         fprintf(stderr, "  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right?\n",
-                client->heard);
-    return told || client->heard > 0;
+                client->received);
+    return told || client->received > 0;
 }
 
-static void advise(const struct dialogue *d)
+static void print_advice(const struct dialogue *d)
 {
     const struct client *client = d->client;
     warnx("no answer from unit %u within %u ms", client->node, client->timeout_ms);
     fputs("Please check:\n", stderr);
     bool known = client_print_emulator_causes(client->port, client->framing, client->node);
-    if (tell_causes(d) || known)
+    if (print_causes(d) || known)
         return;
     fprintf(stderr,
             "  - nothing was received.\n"
@@ -264,34 +264,34 @@ static enum client_outcome await_answer(struct dialogue *d)
         ssize_t n = read_bytes(d->client, bytes, sizeof bytes);
         if (n == 0) {
             errno = 0;
-            return lost(d->client);
+            return report_lost(d->client);
         }
         if (n < 0 && errno != EAGAIN && errno != EINTR)
-            return lost(d->client);
-        if (n > 0 && take(d, bytes, (size_t)n))
+            return report_lost(d->client);
+        if (n > 0 && process_bytes(d, bytes, (size_t)n))
             return CLIENT_ANSWERED;
     }
-    advise(d);
+    print_advice(d);
     return CLIENT_SILENT;
 }
 
 enum client_outcome client_exchange(struct client *client, const uint8_t *request, size_t length)
 {
-    struct dialogue d = {.client = client, .request = request, .length = length, .frame = encode(client, request, length)};
-    client->heard = 0;
-    client->strange = client->echoed = client->foreign = 0;
+    struct dialogue d = {.client = client, .request = request, .length = length, .frame = encode_frame(client, request, length)};
+    client->received = 0;
+    client->unexpected = client->echoed = client->foreign = 0;
     client->other = (struct rkm04_receiver){0};
     d.begun = client_now();
     d.deadline = d.begun + line_time(d.frame) + (uint64_t)client->timeout_ms * 1000u;
     d.last_moment = d.deadline + line_time(sizeof client->wire);
-    if (!forget(client))
-        return lost(client);
+    if (!drop_input(client))
+        return report_lost(client);
     enum client_outcome outcome = send_frame(&d);
     if (outcome != CLIENT_SENT)
         return outcome;
     if (client->node == 0) {
-        let_it_go_out(&d);
-        return forget(client) ? CLIENT_SENT : lost(client);
+        wait_until_sent(&d);
+        return drop_input(client) ? CLIENT_SENT : report_lost(client);
     }
     return await_answer(&d);
 }

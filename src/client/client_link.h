@@ -37,10 +37,10 @@ struct client {
 
     struct rkm04_receiver receiver;
     size_t first_count;
-    char first[256];  /* bytes that came: a text, if we are refused */
-    uint32_t heard;   /* bytes that came since the request */
-    uint32_t strange; /* whole messages among them that were not the answer */
-    uint32_t echoed;  /* of these, the request itself */
+    char first[256];             /* bytes that came: a text, if we are refused */
+    uint32_t received;           /* bytes that came since the request */
+    uint32_t unexpected;         /* whole messages among them that were not the answer */
+    uint32_t echoed;             /* of these, the request itself */
     struct rkm04_receiver other; /* what the same bytes are in the other framing: counts only */
     uint32_t foreign;            /* whole messages in it */
     uint8_t foreign_message[CLIENT_MESSAGE_MAX];

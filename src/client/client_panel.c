@@ -17,11 +17,11 @@ static void put_character(struct panel *panel, int row, int column, enum panel_s
         panel->cell[row][column] = (struct panel_cell){character, (unsigned char)style};
 }
 
-static int put(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
+static int put_text(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
 /* Put text, of which only printable ASCII is shown as it is. Returns the column behind it. */
-static int put(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
+static int put_text(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
 {
     char text[TEXT_MAX];
     va_list arguments;
@@ -47,7 +47,7 @@ static int put_whole(struct panel *panel, int row, int column, enum panel_style 
     va_end(arguments);
     if (column + (int)strlen(text) > panel->columns)
         return panel->columns + 1;
-    return put(panel, row, column, style, "%s", text);
+    return put_text(panel, row, column, style, "%s", text);
 }
 
 static void fill_row(struct panel *panel, int row, enum panel_style style)
@@ -86,7 +86,7 @@ static unsigned mask_of(const json_t *object, const char *key)
     return (unsigned)json_integer_value(json_object_get(object, key));
 }
 
-static bool powered(const struct panel_view *view)
+static bool is_powered(const struct panel_view *view)
 {
     return !json_is_false(json_object_get(view->state, "powered"));
 }
@@ -149,9 +149,9 @@ static void put_field(struct panel *panel, int row, const int column[FIELDS], en
     if (field == FIELD_COMMAND)
         put_whole(panel, row, column[field], style, "%s", text);
     else if (fields[field].right)
-        put(panel, row, column[field], style, "%*.*s", fields[field].width, fields[field].width, text);
+        put_text(panel, row, column[field], style, "%*.*s", fields[field].width, fields[field].width, text);
     else
-        put(panel, row, column[field], style, "%-*.*s", fields[field].width, fields[field].width, text);
+        put_text(panel, row, column[field], style, "%-*.*s", fields[field].width, fields[field].width, text);
 }
 
 /* What the command waits for, as far as there is room for it: "10 of 5000 steps", "10/5000", or nothing. Returns the column
@@ -203,7 +203,7 @@ static void put_motor(struct panel *panel, const struct panel_view *view, int ro
     const char *speed = number_text(motor, "speed", text);
     bool back = json_is_false(json_object_get(motor, "forward")) && strspn(speed, "123456789") > 0;
     snprintf(signed_text, sizeof signed_text, "%s%s", back ? "-" : "", speed);
-    put(panel, row, column[FIELD_MOTOR], PANEL_PLAIN, "%u", number);
+    put_text(panel, row, column[FIELD_MOTOR], PANEL_PLAIN, "%u", number);
     put_lamp(panel, view, row, column[FIELD_LED] + 1, json_is_true(json_object_get(motor, "lit")));
     put_field(panel, row, column, FIELD_SPEED, PANEL_PLAIN, signed_text);
     const char *state = string_of(motor, "state", "-");
@@ -231,7 +231,7 @@ static void put_lamps(struct panel *panel, const struct panel_view *view, int ro
     char name[8] = "";
     for (size_t i = 0; key[i] != '\0'; i++)
         name[i] = (char)(key[i] - 'a' + 'A');
-    put(panel, row, 1, PANEL_PLAIN, "%s", name);
+    put_text(panel, row, 1, PANEL_PLAIN, "%s", name);
     for (unsigned i = 0; i < count; i++)
         put_lamp(panel, view, row, LAMPS_LEFT + (int)i * lamp_step(panel) + lamp_step(panel) / 2,
                  (mask_of(view->state, key) >> i & 1) != 0);
@@ -240,7 +240,7 @@ static void put_lamps(struct panel *panel, const struct panel_view *view, int ro
 static void put_numbers(struct panel *panel, int row, unsigned first, unsigned count)
 {
     for (unsigned i = 0; i < count && lamp_step(panel) == 3; i++)
-        put(panel, row, LAMPS_LEFT + (int)i * 3, PANEL_DARK, "%02u", first + i);
+        put_text(panel, row, LAMPS_LEFT + (int)i * 3, PANEL_DARK, "%02u", first + i);
 }
 
 /* ---- Rows ------------------------------------------------------------------------------------------------------------- */
@@ -286,7 +286,7 @@ static void put_title(struct panel *panel, const struct panel_view *view, int ro
         return;
     fill_row(panel, row, PANEL_TITLE);
     int column = put_whole(panel, row, 1, PANEL_TITLE, "RKM04 unit %s", name);
-    if (!powered(view))
+    if (!is_powered(view))
         column = put_whole(panel, row, column, PANEL_TITLE, ": no power");
     column = put_whole(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000),
                        (int)(t_us % 1000000));
@@ -343,7 +343,7 @@ void client_panel_draw(struct panel *panel, const struct panel_view *view, int r
     put_lamps(panel, view, at[ROW_VAR], "var", 16);
     put_counters(panel, view, at);
     if (view->keys != NULL)
-        put(panel, at[ROW_KEYS], 1, PANEL_DARK, "%s", view->keys);
+        put_text(panel, at[ROW_KEYS], 1, PANEL_DARK, "%s", view->keys);
 }
 
 void client_panel_print(const struct panel *panel, FILE *file)

@@ -50,7 +50,7 @@ static const char *open_advice(int error)
 }
 
 /* Two clients at once would take each other's answers: wait for the other one to finish. */
-static bool lock(int fd, unsigned timeout_ms)
+static bool lock_terminal(int fd, unsigned timeout_ms)
 {
     uint64_t end = client_now() + (uint64_t)timeout_ms * 1000u;
     while (flock(fd, LOCK_EX | LOCK_NB) != 0) {
@@ -80,7 +80,7 @@ static bool set_up_terminal(int fd, const char *path, unsigned timeout_ms)
         warnx("%s is not a serial device: expected one like /dev/ttyUSB0, a pseudo terminal, or tcp:HOST:PORT", path);
         return false;
     }
-    if (!lock(fd, timeout_ms)) {
+    if (!lock_terminal(fd, timeout_ms)) {
         warnx("%s is in use by another program: end that program, or wait for it with a longer --timeout", path);
         return false;
     }

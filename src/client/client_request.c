@@ -44,7 +44,7 @@ struct asking {
     size_t raw_length;
 };
 
-static const struct command *find(const char *name)
+static const struct command *find_command(const char *name)
 {
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
         if (strcmp(commands[i].name, name) == 0)
@@ -53,9 +53,9 @@ static const struct command *find(const char *name)
     return NULL;
 }
 
-bool client_request_knows(const char *name)
+bool client_request_has(const char *name)
 {
-    return find(name) != NULL;
+    return find_command(name) != NULL;
 }
 
 /* ---- Usage ------------------------------------------------------------------------------------------------------------ */
@@ -66,7 +66,7 @@ static int hex_digit(char c)
 }
 
 /* Bytes of two digits each, blanks between them. Returns the exit status if that is not what they are. */
-static enum exit_status take_hex(struct asking *a, const char *text)
+static enum exit_status read_hex(struct asking *a, const char *text)
 {
     for (; *text != '\0'; text++) {
         if (*text == ' ')
@@ -83,7 +83,7 @@ static enum exit_status take_hex(struct asking *a, const char *text)
 }
 
 /* Look at what stands behind the command. Returns the exit status if it is wrong. */
-static enum exit_status take_words(struct asking *a)
+static enum exit_status read_words(struct asking *a)
 {
     static const char *const operands[] = {[TEXT_OPERAND] = "a TEXT", [FILE_OPERAND] = "a FILE", [HEX_OPERAND] = "HEX bytes"};
     const struct client_request *request = a->request;
@@ -93,7 +93,7 @@ static enum exit_status take_words(struct asking *a)
     if (operand != NO_OPERAND && operand != HEX_OPERAND && request->count > 1)
         return client_usage("%s takes one argument: put it in quotes", a->command->name);
     for (size_t i = 0; operand == HEX_OPERAND && i < request->count; i++) {
-        enum exit_status status = take_hex(a, request->words[i]);
+        enum exit_status status = read_hex(a, request->words[i]);
         if (status != STATUS_SUCCESS)
             return status;
     }
@@ -112,10 +112,10 @@ static const char *port_of(const struct client_request *request)
     return found != NULL ? found->port : NULL;
 }
 
-static enum exit_status check(struct asking *a)
+static enum exit_status check_request(struct asking *a)
 {
     const struct client_request *request = a->request;
-    enum exit_status status = take_words(a);
+    enum exit_status status = read_words(a);
     if (status != STATUS_SUCCESS)
         return status;
     a->port = port_of(request);
@@ -130,7 +130,7 @@ static enum exit_status check(struct asking *a)
 
 /* ---- Work ------------------------------------------------------------------------------------------------------------- */
 
-static enum exit_status show(const struct asking *a, const struct client *client, char motor)
+static enum exit_status show_answer(const struct asking *a, const struct client *client, char motor)
 {
     struct client_answer answer = {.bytes = client->answer, .length = client->length, .motor = motor, .json = a->request->json};
     const struct command *command = a->command;
@@ -141,7 +141,7 @@ static enum exit_status show(const struct asking *a, const struct client *client
     return command->show(&answer);
 }
 
-static enum exit_status ask(const struct asking *a, struct client *client, char motor)
+static enum exit_status send_request(const struct asking *a, struct client *client, char motor)
 {
     const struct command *command = a->command;
     uint8_t question[] = {command->number, (uint8_t)motor};
@@ -149,7 +149,7 @@ static enum exit_status ask(const struct asking *a, struct client *client, char 
     size_t length = raw ? a->raw_length : command->motors == NO_MOTOR ? 1 : 2;
     switch (client_exchange(client, raw ? a->raw : question, length)) {
     case CLIENT_ANSWERED:
-        return show(a, client, motor);
+        return show_answer(a, client, motor);
     case CLIENT_SENT:
         if (command->show != client_show_store && !raw)
             warnx("note: no unit answers a request to all units");
@@ -161,7 +161,7 @@ static enum exit_status ask(const struct asking *a, struct client *client, char 
     }
 }
 
-static enum exit_status run(const struct asking *a, struct client *client)
+static enum exit_status run_request(const struct asking *a, struct client *client)
 {
     char motor = (char)('0' + a->request->motor);
     const struct client_request *request = a->request;
@@ -173,7 +173,7 @@ static enum exit_status run(const struct asking *a, struct client *client)
     case FILE_OPERAND:
         return client_send_file(&sender, request->words[0]);
     default:
-        return ask(a, client, motor);
+        return send_request(a, client, motor);
     }
 }
 
@@ -181,8 +181,8 @@ enum exit_status client_request(const struct client_request *request, const char
 {
     static struct client client; /* its buffers are large */
     static struct asking a;
-    a = (struct asking){.request = request, .command = find(name)};
-    enum exit_status status = check(&a);
+    a = (struct asking){.request = request, .command = find_command(name)};
+    enum exit_status status = check_request(&a);
     if (status != STATUS_SUCCESS)
         return status;
     client.port = a.port;
@@ -192,7 +192,7 @@ enum exit_status client_request(const struct client_request *request, const char
     client.fd = client_port_open(a.port, request->timeout_ms);
     if (client.fd < 0)
         return STATUS_FAILURE;
-    status = run(&a, &client);
+    status = run_request(&a, &client);
     close(client.fd);
     return status;
 }

@@ -19,7 +19,7 @@ struct client_request {
 };
 
 /* Is `name` one of them? */
-bool client_request_knows(const char *name);
+bool client_request_has(const char *name);
 
 /* Send the request `name` and show the answer. Returns the exit status. */
 enum exit_status client_request(const struct client_request *request, const char *name);

@@ -69,7 +69,7 @@ static void report(struct client_rpc *rpc, const char *format, ...)
         warnx("%s", rpc->trouble);
 }
 
-static const char *advice(const char *path, int error)
+static const char *connect_advice(const char *path, int error)
 {
     struct stat found;
     if (stat(path, &found) == 0 && !S_ISSOCK(found.st_mode))
@@ -124,7 +124,7 @@ bool client_rpc_open(struct client_rpc *rpc, const char *path)
     if (connected)
         report(rpc, "%s: it belongs to another user's emulator; to use it, name it: --control PATH", rpc->path);
     else
-        report(rpc, "cannot connect to %s: %s%s", rpc->path, strerror(error), advice(rpc->path, error));
+        report(rpc, "cannot connect to %s: %s%s", rpc->path, strerror(error), connect_advice(rpc->path, error));
     if (rpc->fd >= 0)
         close(rpc->fd);
     return false;
@@ -202,7 +202,7 @@ static bool make_room(struct client_rpc *rpc)
 }
 
 /* Read what there is, waiting for it up to `timeout_ms`. Returns CLIENT_RPC_RESULT if something came. */
-static enum client_rpc_outcome fill(struct client_rpc *rpc, int timeout_ms)
+static enum client_rpc_outcome read_bytes(struct client_rpc *rpc, int timeout_ms)
 {
     struct pollfd ready = {.fd = rpc->fd, .events = POLLIN};
     int count = poll(&ready, 1, timeout_ms);
@@ -224,7 +224,7 @@ static enum client_rpc_outcome fill(struct client_rpc *rpc, int timeout_ms)
 }
 
 /* What an object lacks of what an emulator sends; NULL: nothing. */
-static const char *lacks(const json_t *object, bool ours)
+static const char *find_missing(const json_t *object, bool ours)
 {
     const json_t *error = json_object_get(object, "error"), *result = json_object_get(object, "result");
     if (json_is_string(json_object_get(object, "method")))
@@ -233,7 +233,7 @@ static const char *lacks(const json_t *object, bool ours)
 }
 
 /* Look at one object. Returns true if it is the answer to the last request, or an error to no request: *outcome and *json. */
-static bool take_line(struct client_rpc *rpc, const char *line, enum client_rpc_outcome *outcome, json_t **json, bool *event)
+static bool handle_line(struct client_rpc *rpc, const char *line, enum client_rpc_outcome *outcome, json_t **json, bool *event)
 {
     json_error_t wrong;
     json_t *object = json_loads(line, 0, &wrong);
@@ -241,7 +241,9 @@ static bool take_line(struct client_rpc *rpc, const char *line, enum client_rpc_
     const char *method = json_string_value(json_object_get(object, "method"));
     json_t *error = json_object_get(object, "error"), *result = json_object_get(object, "result");
     bool ours = json_is_integer(id) ? json_integer_value(id) == rpc->id : json_is_null(id) && error != NULL;
-    const char *lacking = object == NULL ? wrong.text : json_is_object(object) ? lacks(object, ours) : "expected an object";
+    const char *lacking = object == NULL            ? wrong.text
+                          : json_is_object(object) ? find_missing(object, ours)
+                                                   : "expected an object";
     if (lacking != NULL) {
         report(rpc, "%s does not speak JSON-RPC: %s", rpc->path, lacking);
         *outcome = CLIENT_RPC_LOST;
@@ -260,7 +262,7 @@ static bool take_line(struct client_rpc *rpc, const char *line, enum client_rpc_
 }
 
 /* Take what comes up to `timeout_ms`: until the answer is there or, with `any`, an event. */
-static enum client_rpc_outcome take(struct client_rpc *rpc, int timeout_ms, json_t **json, bool any)
+static enum client_rpc_outcome receive_until(struct client_rpc *rpc, int timeout_ms, json_t **json, bool any)
 {
     uint64_t end = client_now() + (uint64_t)(timeout_ms < 0 ? 0 : timeout_ms) * 1000u;
     *json = NULL;
@@ -268,14 +270,14 @@ static enum client_rpc_outcome take(struct client_rpc *rpc, int timeout_ms, json
         enum client_rpc_outcome outcome = CLIENT_RPC_NOTHING;
         bool event = false;
         for (char *line = next_line(rpc); line != NULL; line = next_line(rpc)) {
-            if (take_line(rpc, line, &outcome, json, &event))
+            if (handle_line(rpc, line, &outcome, json, &event))
                 return outcome;
         }
         if (event && any)
             return CLIENT_RPC_RESULT;
         uint64_t now = client_now();
         int left = timeout_ms < 0 ? CLIENT_RPC_FOREVER : now < end ? (int)((end - now + 999u) / 1000u) : 0;
-        outcome = fill(rpc, left);
+        outcome = read_bytes(rpc, left);
         if (outcome == CLIENT_RPC_LOST || (outcome == CLIENT_RPC_NOTHING && left == 0))
             return outcome;
     }
@@ -283,12 +285,12 @@ static enum client_rpc_outcome take(struct client_rpc *rpc, int timeout_ms, json
 
 enum client_rpc_outcome client_rpc_receive(struct client_rpc *rpc, int timeout_ms, json_t **json)
 {
-    return take(rpc, timeout_ms, json, false);
+    return receive_until(rpc, timeout_ms, json, false);
 }
 
 enum client_rpc_outcome client_rpc_listen(struct client_rpc *rpc, int timeout_ms, json_t **json)
 {
-    return take(rpc, timeout_ms, json, true);
+    return receive_until(rpc, timeout_ms, json, true);
 }
 
 enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms,

@@ -7,7 +7,7 @@
 #include <term.h> /* takes names like `columns' away: not to be mixed with anything */
 #include <unistd.h>
 
-bool client_terminal_fits(void)
+bool client_terminal_is_usable(void)
 {
     int known;
     const char *name = getenv("TERM");

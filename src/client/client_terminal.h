@@ -6,6 +6,6 @@
 #include <stdbool.h>
 
 /* Is the terminal of standard output, named by TERM, known, and can the cursor be placed on it? If not, that is reported. */
-bool client_terminal_fits(void);
+bool client_terminal_is_usable(void);
 
 #endif

@@ -78,7 +78,7 @@ static json_t *state_params(const struct watching *w)
     return client_job_params(w->job, params, false);
 }
 
-static struct panel_view view_of(const struct watching *w, const char *keys)
+static struct panel_view make_view(const struct watching *w, const char *keys)
 {
     return (struct panel_view){.state = w->state, .units = w->units, .keys = keys, .round = !w->plain};
 }
@@ -94,7 +94,7 @@ static enum exit_status show_once(struct watching *w)
     if (w->job->json)
         return client_print_json(json_incref(w->state));
     w->plain = true;
-    struct panel_view view = view_of(w, NULL);
+    struct panel_view view = make_view(w, NULL);
     client_panel_draw(&panel, &view, PANEL_ROWS, TEXT_COLUMNS);
     client_panel_print(&panel, stdout);
     return STATUS_SUCCESS;
@@ -115,7 +115,7 @@ static const struct {
 static bool open_screen(struct watching *w)
 {
     const char *no_color = getenv("NO_COLOR");
-    w->screen = client_terminal_fits() ? newterm(NULL, stdout, stdin) : NULL;
+    w->screen = client_terminal_is_usable() ? newterm(NULL, stdout, stdin) : NULL;
     if (w->screen == NULL)
         return false;
     cbreak();
@@ -142,10 +142,10 @@ static void close_screen(struct watching *w)
         warnx("%s", w->job->rpc.trouble);
 }
 
-static void show(const struct watching *w)
+static void draw(const struct watching *w)
 {
     static struct panel panel;
-    struct panel_view view = view_of(w, json_array_size(w->units) > 1 ? KEYS_UNITS : KEYS);
+    struct panel_view view = make_view(w, json_array_size(w->units) > 1 ? KEYS_UNITS : KEYS);
     erase();
     client_panel_draw(&panel, &view, LINES, COLS);
     for (int row = 0; row < panel.rows; row++) {
@@ -162,19 +162,19 @@ static void show(const struct watching *w)
 }
 
 /* The terminal has another size. Everything is painted anew: what it showed may be gone, even if the size is what it was. */
-static void fit(const struct watching *w)
+static void resize_screen(const struct watching *w)
 {
     struct winsize size;
     resized = 0;
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 && size.ws_col > 0)
         resizeterm(size.ws_row, size.ws_col);
     clearok(curscr, TRUE);
-    show(w);
+    draw(w);
 }
 
 /* ---- The loop --------------------------------------------------------------------------------------------------------- */
 
-static void choose(struct watching *w, size_t step)
+static void select_unit(struct watching *w, size_t step)
 {
     size_t count = json_array_size(w->units);
     if (count < 2)
@@ -184,7 +184,7 @@ static void choose(struct watching *w, size_t step)
 }
 
 /* Obey what has been pressed. Returns false if that is to end. */
-static bool take_keys(struct watching *w)
+static bool handle_keys(struct watching *w)
 {
     int key;
     while ((key = getch()) != ERR) {
@@ -196,16 +196,16 @@ static bool take_keys(struct watching *w)
         case 'n':
         case KEY_RIGHT:
         case KEY_DOWN:
-            choose(w, 1);
+            select_unit(w, 1);
             break;
         case KEY_BTAB:
         case 'p':
         case KEY_LEFT:
         case KEY_UP:
-            choose(w, json_array_size(w->units) - 1);
+            select_unit(w, json_array_size(w->units) - 1);
             break;
         case '\f':
-            fit(w);
+            resize_screen(w);
             break;
         default:
             break;
@@ -215,7 +215,7 @@ static bool take_keys(struct watching *w)
 }
 
 /* Ask for the state when it is time, and show it when it has come. */
-static enum client_rpc_outcome follow(struct watching *w, json_t **json)
+static enum client_rpc_outcome update_state(struct watching *w, json_t **json)
 {
     struct client_rpc *rpc = &w->job->rpc;
     *json = NULL;
@@ -227,7 +227,7 @@ static enum client_rpc_outcome follow(struct watching *w, json_t **json)
         json_decref(w->state);
         w->state = *json;
         *json = NULL;
-        show(w);
+        draw(w);
     }
     if (!w->asked && client_now() >= w->next) {
         if (!client_rpc_send(rpc, "state", state_params(w)))
@@ -239,7 +239,7 @@ static enum client_rpc_outcome follow(struct watching *w, json_t **json)
 }
 
 /* Wait for a key, an answer, or the next frame. Returns false if the terminal has gone. */
-static bool pause_until_something(const struct watching *w)
+static bool wait_for_input(const struct watching *w)
 {
     struct pollfd ready[] = {{.fd = STDIN_FILENO, .events = POLLIN}, {.fd = w->job->rpc.fd, .events = POLLIN}};
     uint64_t now = client_now();
@@ -258,9 +258,9 @@ static enum exit_status show_live(struct watching *w)
         sigaction(signals[i], &action, NULL);
     if (!open_screen(w))
         return STATUS_FAILURE;
-    while (told_to_end == 0 && (outcome = follow(w, &json)) == CLIENT_RPC_NOTHING && pause_until_something(w) && take_keys(w)) {
+    while (told_to_end == 0 && (outcome = update_state(w, &json)) == CLIENT_RPC_NOTHING && wait_for_input(w) && handle_keys(w)) {
         if (resized)
-            fit(w);
+            resize_screen(w);
     }
     close_screen(w);
     enum exit_status status = outcome == CLIENT_RPC_NOTHING ? STATUS_SUCCESS : client_job_outcome(w->job, outcome, json);

@@ -70,7 +70,7 @@ static void add_messages(struct coverage *coverage)
 }
 
 /* K, C75 and V mean one thing as the only command of a message and another in a longer text (C3, C4). */
-static bool place_matters(struct rkm04_command command)
+static bool depends_on_place(struct rkm04_command command)
 {
     return command.op == 'K' || command.op == 'V' || (command.op == 'C' && command.argument == 75);
 }
@@ -84,7 +84,7 @@ static void add_command(struct coverage *coverage, struct rkm04_command low, str
     bool one = low.argument == high.argument;
     for (enum coverage_place place = COVERAGE_ANYWHERE; place <= COVERAGE_INSIDE; place++) {
         static const char *const where[] = {"", " alone", " in a text"};
-        if ((place != COVERAGE_ANYWHERE) != place_matters(low))
+        if ((place != COVERAGE_ANYWHERE) != depends_on_place(low))
             continue;
         struct coverage_item *item = add(coverage, COVERAGE_COMMANDS, low.op, "%.*s%s%.*s%s", from_length, from, one ? "" : "..",
                                          one ? 0 : to_length, to, where[place]);
@@ -142,7 +142,7 @@ static void add_forms(struct coverage *coverage, uint8_t op, enum rkm04_form for
 }
 
 /* What the reader would give for a command; other spellings of the call have a form as well, but are not canonical. */
-static bool canonical(uint8_t op)
+static bool is_canonical(uint8_t op)
 {
     const char text[] = {(char)op, '0', '1', 'H', '1'};
     struct rkm04_reader reader;
@@ -158,7 +158,7 @@ static void add_commands(struct coverage *coverage)
         enum rkm04_form form;
         struct rkm04_range ranges[RKM04_RANGES_MAX];
         int count = rkm04_form_of((uint8_t)op, &form, ranges);
-        if (count >= 0 && canonical((uint8_t)op))
+        if (count >= 0 && is_canonical((uint8_t)op))
             add_forms(coverage, (uint8_t)op, form, ranges, count);
     }
     add(coverage, COVERAGE_COMMANDS, COMMENT, "{ comment }");
@@ -186,7 +186,7 @@ void coverage_begin(struct coverage *coverage, const struct rkm04_readings *read
 
 /* ---- Counting ------------------------------------------------------------------------------------------------------- */
 
-static void count(struct coverage *coverage, enum coverage_group group, uint32_t key)
+static void count_item(struct coverage *coverage, enum coverage_group group, uint32_t key)
 {
     for (size_t i = 0; i < coverage->items; i++)
         if (coverage->item[i].group == group && coverage->item[i].key == key)
@@ -234,7 +234,7 @@ static void count_text(struct coverage *coverage, const uint8_t *text, size_t le
     if (found != RKM04_READ_END)
         return;
     if (length > 0 && memchr(text, COMMENT, length) != NULL)
-        count(coverage, COVERAGE_COMMANDS, COMMENT);
+        count_item(coverage, COVERAGE_COMMANDS, COMMENT);
     if (reset.op != 0)
         count_command(coverage, reset, false);
     while (rkm04_read(&from, &command) == RKM04_READ_COMMAND)
@@ -250,16 +250,16 @@ void coverage_request(struct coverage *coverage, uint8_t dnode, const uint8_t *m
     if (dnode == 0 && !known->broadcast)
         return;
     if (!known->has_motor) {
-        count(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_UNIT));
+        count_item(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_UNIT));
         return;
     }
     if (length < HEAD || message[1] < '0' || message[1] > '0' + RKM04_MOTORS)
         return;
     uint32_t motor = (uint32_t)message[1] - '0';
-    count(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, motor == 0 ? TO_ALL_MOTORS : TO_ONE_MOTOR));
+    count_item(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, motor == 0 ? TO_ALL_MOTORS : TO_ONE_MOTOR));
     if (dnode == 0)
-        count(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, BROADCAST));
-    count(coverage, COVERAGE_MOTORS, motor);
+        count_item(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, BROADCAST));
+    count_item(coverage, COVERAGE_MOTORS, motor);
     if (number == SET_COMMAND)
         count_text(coverage, message + HEAD, length - HEAD);
 }
@@ -270,17 +270,17 @@ void coverage_answer(struct coverage *coverage, const uint8_t *message, size_t l
         return;
     unsigned number = message[0];
     if (number == SET_COMMAND)
-        count(coverage, COVERAGE_FLAGS, message[HEAD]);
+        count_item(coverage, COVERAGE_FLAGS, message[HEAD]);
     if (number == STORE_FLASH)
-        count(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, message[HEAD] != 0));
+        count_item(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, message[HEAD] != 0));
     if (messages[number].error && length == HEAD + strlen(ERROR_TEXT) &&
         memcmp(message + HEAD, ERROR_TEXT, strlen(ERROR_TEXT)) == 0)
-        count(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, 1));
+        count_item(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, 1));
 }
 
 void coverage_fault(struct coverage *coverage, unsigned fault)
 {
-    count(coverage, COVERAGE_FAULTS, fault);
+    count_item(coverage, COVERAGE_FAULTS, fault);
 }
 
 struct coverage_sum coverage_sum(const struct coverage *coverage, enum coverage_group group)

@@ -80,7 +80,7 @@ static int on_flash_program(void *context, unsigned block, unsigned offset, cons
     return device->outer->flash_program(device->context, block, offset, data, length);
 }
 
-static void join(struct rkm04_device *device, const struct device_port *port, void *context)
+static void connect_port(struct rkm04_device *device, const struct device_port *port, void *context)
 {
     device->outer = port;
     device->context = context;
@@ -98,7 +98,7 @@ static void join(struct rkm04_device *device, const struct device_port *port, vo
 static void begin(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context)
 {
     const struct rkm04_config settings = rkm04_settings(config);
-    join(device_of(unit), port, context);
+    connect_port(device_of(unit), port, context);
     rkm04_init(rkm04_of(unit), &settings, &device_of(unit)->port, unit);
 }
 
@@ -106,7 +106,7 @@ static void attach(struct device_unit *unit, const struct device_config *config,
 {
     const struct rkm04_config settings = rkm04_settings(config);
     struct rkm04_unit *core = rkm04_of(unit);
-    join(device_of(unit), port, context);
+    connect_port(device_of(unit), port, context);
     core->config.framing = settings.framing;
     core->config.version_text = settings.version_text;
     core->port = &device_of(unit)->port;
@@ -335,7 +335,7 @@ static const char *led_name(unsigned led)
 
 static uint64_t find_repeat(void *memory, const struct device_unit *unit)
 {
-    return rkm04_repeat_look(memory, core_of(unit));
+    return rkm04_repeat_check(memory, core_of(unit));
 }
 
 static bool is_endless(const struct device_unit *unit, unsigned motor, char text[DEVICE_ERROR_SIZE])
@@ -411,7 +411,7 @@ const struct device_kind rkm04_device = {
     .settings = rkm04_setting_names,
     .put_settings = rkm04_put_settings,
     .read_setting = rkm04_read_setting,
-    .unlike = rkm04_settings_unlike,
+    .unlike = rkm04_settings_difference,
     .framing = rkm04_settings_framing,
     .repeat_size = sizeof(struct rkm04_repeat),
     .find_repeat = find_repeat,

@@ -54,7 +54,7 @@ size_t rkm04_plan(const struct rkm04_unit *unit, unsigned motor, struct device_p
 extern const char *const rkm04_setting_names[];
 void rkm04_put_settings(const struct device_config *config, json_t *object);
 bool rkm04_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
-const char *rkm04_settings_unlike(const struct device_config *a, const struct device_config *b);
+const char *rkm04_settings_difference(const struct device_config *a, const struct device_config *b);
 const struct rkm04_framing *rkm04_settings_framing(const struct device_config *config);
 
 #endif

@@ -13,7 +13,7 @@ static bool has_absolute_motion(const struct rkm04_motor *motor)
 }
 
 /* G+, G-, ) or ( at its constant speed. Nothing comes that could end it: its guards have been looked at, and inputs stay. */
-static bool goes_on_for_ever(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
+static bool is_endless_motion(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
     const struct rkm04_motion *motion = &motor->motion;
     bool limit = motion->kind == RKM04_MOTION_LIMIT && ((unsigned)unit->inputs >> (motion->input - 1u) & 1u) == 0;
@@ -22,12 +22,12 @@ static bool goes_on_for_ever(const struct rkm04_unit *unit, const struct rkm04_m
 }
 
 /* A time that is still to come counts from now. */
-static uint64_t from_now(uint64_t tick, uint64_t now)
+static uint64_t ticks_from_now(uint64_t tick, uint64_t now)
 {
     return tick == RKM04_NEVER ? RKM04_NEVER : tick > now ? tick - now : 0;
 }
 
-static void take_out_of_motion(struct rkm04_motion *motion, uint64_t now)
+static void make_motion_relative(struct rkm04_motion *motion, uint64_t now)
 {
     struct rkm04_ramp *ramp = &motion->ramp;
     if (motion->kind == RKM04_MOTION_NONE) {
@@ -39,14 +39,14 @@ static void take_out_of_motion(struct rkm04_motion *motion, uint64_t now)
     ramp->end.tick = ramp->end.tick == RKM04_NEVER ? RKM04_NEVER : ramp->end.tick - now;
 }
 
-static void take_out(const struct rkm04_unit *unit, struct rkm04_motor *motor)
+static void make_relative(const struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     uint64_t now = unit->now;
-    bool for_ever = goes_on_for_ever(unit, motor);
-    motor->due = from_now(motor->due, now);
-    motor->wake = from_now(motor->wake, now);
-    motor->change_due = motor->change_speed != 0 ? from_now(motor->change_due, now) : 0;
-    motor->last_pulse = from_now(motor->last_pulse + RKM04_PULSE_TICKS, now);
+    bool for_ever = is_endless_motion(unit, motor);
+    motor->due = ticks_from_now(motor->due, now);
+    motor->wake = ticks_from_now(motor->wake, now);
+    motor->change_due = motor->change_speed != 0 ? ticks_from_now(motor->change_due, now) : 0;
+    motor->last_pulse = ticks_from_now(motor->last_pulse + RKM04_PULSE_TICKS, now);
     motor->blink_from = 0;
     if (for_ever || !has_absolute_motion(motor))
         motor->position = 0;
@@ -56,14 +56,14 @@ static void take_out(const struct rkm04_unit *unit, struct rkm04_motor *motor)
         motor->wake = RKM04_NEVER;
         return;
     }
-    take_out_of_motion(&motor->motion, now);
+    make_motion_relative(&motor->motion, now);
 }
 
 static void copy_without(struct rkm04_unit *copy, const struct rkm04_unit *unit)
 {
     memcpy(copy, unit, sizeof *copy);
     for (unsigned i = 0; i < RKM04_MOTORS; i++)
-        take_out(unit, &copy->motor[i]);
+        make_relative(unit, &copy->motor[i]);
     copy->now = unit->now % RKM04_SLOT_TICKS;
 }
 
@@ -80,7 +80,7 @@ static uint64_t key_of(const struct rkm04_unit *unit)
     return key;
 }
 
-uint64_t rkm04_repeat_look(struct rkm04_repeat *repeat, const struct rkm04_unit *unit)
+uint64_t rkm04_repeat_check(struct rkm04_repeat *repeat, const struct rkm04_unit *unit)
 {
     uint64_t key = key_of(unit);
     if (repeat->power > 0 && key == repeat->key) {

@@ -21,6 +21,6 @@ struct rkm04_repeat {
 
 /* Look at a unit, again and again. *repeat must be zero at first. Returns after how many ticks its state has repeated; 0: it has
  * not. */
-uint64_t rkm04_repeat_look(struct rkm04_repeat *repeat, const struct rkm04_unit *unit);
+uint64_t rkm04_repeat_check(struct rkm04_repeat *repeat, const struct rkm04_unit *unit);
 
 #endif

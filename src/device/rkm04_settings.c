@@ -106,7 +106,7 @@ const struct rkm04_framing *rkm04_settings_framing(const struct device_config *c
     return framing_of(&settings);
 }
 
-const char *rkm04_settings_unlike(const struct device_config *a, const struct device_config *b)
+const char *rkm04_settings_difference(const struct device_config *a, const struct device_config *b)
 {
     const struct rkm04_config here = rkm04_settings(a), there = rkm04_settings(b);
     if (framing_of(&here) != framing_of(&there))

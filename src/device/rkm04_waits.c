@@ -13,14 +13,14 @@ static void name_bit(char *text, size_t size, unsigned bit)
     snprintf(text, size, "%s %02u", bit >= RKM04_FIRST_VARIABLE ? "VAR" : "DI", bit);
 }
 
-static json_t *for_command(const struct rkm04_motor *motor, const char *rest)
+static json_t *json_for_command(const struct rkm04_motor *motor, const char *rest)
 {
     char text[RKM04_COMMAND_TEXT_MAX];
     int length = (int)rkm04_format(motor->command, text);
     return json_sprintf("the end of %.*s%s", length, text, rest);
 }
 
-static json_t *moving(const struct rkm04_motor *motor)
+static json_t *json_for_motion(const struct rkm04_motor *motor)
 {
     const struct rkm04_motion *motion = &motor->motion;
     char rest[64], input[16];
@@ -41,12 +41,12 @@ static json_t *moving(const struct rkm04_motor *motor)
         return json_sprintf("%s to be 1", input);
     default:
         snprintf(rest, sizeof rest, ": %" PRIu32 " of %" PRIu32 " steps done", motion->done, motion->total);
-        return for_command(motor, rest);
+        return json_for_command(motor, rest);
     }
 }
 
 /* W, or a motion that is being planned. */
-static json_t *dwelling(const struct rkm04_motor *motor, uint64_t left)
+static json_t *json_for_dwell(const struct rkm04_motor *motor, uint64_t left)
 {
     char text[RKM04_COMMAND_TEXT_MAX];
     int length = (int)rkm04_format(motor->command, text);
@@ -54,7 +54,7 @@ static json_t *dwelling(const struct rkm04_motor *motor, uint64_t left)
                         (left + TICKS_PER_MS - 1) / TICKS_PER_MS);
 }
 
-static json_t *held(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
+static json_t *json_for_hold(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
     const char *others = unit->config.readings.hold_exit == RKM04_HOLD_EXIT_LATCH ? "" : ", or new commands";
     if (motor->held == RKM04_MOVING)
@@ -67,7 +67,7 @@ static json_t *held(const struct rkm04_unit *unit, const struct rkm04_motor *mot
 }
 
 /* O, Z, or a jump or call whose label has not arrived. */
-static json_t *waiting(const struct rkm04_motor *motor)
+static json_t *json_for_wait(const struct rkm04_motor *motor)
 {
     char bit[16];
     unsigned label = rkm04_awaited_label(motor);
@@ -89,15 +89,15 @@ json_t *rkm04_waits_json(const struct rkm04_unit *unit, unsigned number)
     const struct rkm04_motor *motor = &unit->motor[number - 1];
     switch ((enum rkm04_state)motor->state) {
     case RKM04_MOVING:
-        return moving(motor);
+        return json_for_motion(motor);
     case RKM04_DWELL:
-        return dwelling(motor, motor->due > unit->now ? motor->due - unit->now : 0);
+        return json_for_dwell(motor, motor->due > unit->now ? motor->due - unit->now : 0);
     case RKM04_WAIT:
-        return waiting(motor);
+        return json_for_wait(motor);
     case RKM04_BLOCK:
         return json_string("the ] of its block");
     case RKM04_HELD:
-        return held(unit, motor);
+        return json_for_hold(unit, motor);
     case RKM04_ENDED:
         return json_string("new commands: ended by X");
     case RKM04_FAULTY:

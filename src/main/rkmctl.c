@@ -125,7 +125,7 @@ static const char doc[] =
     "wrong usage; 3 no answer, the condition did not hold, or too few events, in time.";
 
 /* A decimal number low..high; anything else is a usage error. */
-static unsigned take_number(const char *what, const char *text, unsigned low, unsigned high)
+static unsigned read_number(const char *what, const char *text, unsigned low, unsigned high)
 {
     unsigned number = 0;
     if (!client_usage_number(what, text, low, high, &number))
@@ -133,7 +133,7 @@ static unsigned take_number(const char *what, const char *text, unsigned low, un
     return number;
 }
 
-static const struct rkm04_framing *take_framing(const struct argp_state *state, const char *name)
+static const struct rkm04_framing *read_framing(const struct argp_state *state, const char *name)
 {
     const struct rkm04_framing *framing = rkm04_framing_named(name);
     if (framing == NULL)
@@ -150,16 +150,16 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case 'n':
         options->node = text;
-        options->request.node = take_number("--node", text, 0, RKM04_NODE_MAX);
+        options->request.node = read_number("--node", text, 0, RKM04_NODE_MAX);
         return 0;
     case 'm':
-        options->request.motor = take_number("--motor", text, 0, RKM04_MOTORS);
+        options->request.motor = read_number("--motor", text, 0, RKM04_MOTORS);
         return 0;
     case KEY_FRAMING:
-        options->request.framing = take_framing(state, text);
+        options->request.framing = read_framing(state, text);
         return 0;
     case KEY_MESSAGE_MAX:
-        options->request.message_max = take_number("--message-max", text, MESSAGE_MAX_LOWEST, CLIENT_MESSAGE_MAX);
+        options->request.message_max = read_number("--message-max", text, MESSAGE_MAX_LOWEST, CLIENT_MESSAGE_MAX);
         return 0;
     case 'c':
         options->job.path = text;
@@ -168,7 +168,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         options->job.unit = text;
         return 0;
     case KEY_LINE:
-        options->job.line = (int)take_number("--line", text, 0, LINE_NUMBER_MAX);
+        options->job.line = (int)read_number("--line", text, 0, LINE_NUMBER_MAX);
         return 0;
     case KEY_LIMIT:
         options->job.limit = text;
@@ -187,7 +187,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_TIMEOUT:
         options->timed = true;
-        options->request.timeout_ms = take_number("--timeout", text, 1, TIMEOUT_MS_MAX);
+        options->request.timeout_ms = read_number("--timeout", text, 1, TIMEOUT_MS_MAX);
         return 0;
     case 'j':
         options->json = true;
@@ -241,9 +241,9 @@ static enum exit_status run(struct options *options)
 {
     if (options->command == NULL)
         return client_usage("no command: expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator");
-    if (client_request_knows(options->command))
+    if (client_request_has(options->command))
         return do_request(options);
-    if (client_control_knows(options->command))
+    if (client_control_has(options->command))
         return do_job(options);
     return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator, found '%s'%s",
                         options->command, nearest_hint(options->command, CLIENT_REQUEST_NAMES ", " CLIENT_CONTROL_NAMES));

@@ -72,7 +72,7 @@ static FILE *stream_of(struct journal *journal)
     return journal->page && !journal->too_long ? journal->page->stream : NULL;
 }
 
-static void written(struct journal *journal)
+static void note_written(struct journal *journal)
 {
     struct journal_page *page = journal->page;
     if (fflush(page->stream) != 0 || page->total + page->length > RECORD_EMBEDDED_MAX)
@@ -85,7 +85,7 @@ static void on_bytes(void *context, uint64_t now, uint64_t tick, const uint8_t *
     FILE *out = stream_of(journal);
     if (out) {
         record_line_bytes(out, now, tick, bytes, length);
-        written(journal);
+        note_written(journal);
     }
     if (journal->next)
         journal->next->bytes(journal->next->context, now, tick, bytes, length);
@@ -97,7 +97,7 @@ static void on_purge(void *context, uint64_t now)
     FILE *out = stream_of(journal);
     if (out) {
         record_line_purge(out, now);
-        written(journal);
+        note_written(journal);
     }
     if (journal->next)
         journal->next->purge(journal->next->context, now);
@@ -109,7 +109,7 @@ static void on_break(void *context, uint64_t now, bool on)
     FILE *out = stream_of(journal);
     if (out) {
         record_line_break(out, now, on);
-        written(journal);
+        note_written(journal);
     }
     if (journal->next)
         journal->next->line_break(journal->next->context, now, on);
@@ -121,7 +121,7 @@ static void on_timed(void *context, uint64_t now, bool timed)
     FILE *out = stream_of(journal);
     if (out) {
         record_line_timed(out, now, timed);
-        written(journal);
+        note_written(journal);
     }
     if (journal->next)
         journal->next->timed(journal->next->context, now, timed);
@@ -135,7 +135,7 @@ static void on_command(void *context, uint64_t now, const char *method, const js
     if (out && strcmp(method, "snapshot") != 0 && strcmp(method, "restore") != 0) {
         if (!record_line_command(out, now, method, params))
             journal->too_long = true;
-        written(journal);
+        note_written(journal);
     }
     if (journal->next)
         journal->next->command(journal->next->context, now, method, params);
@@ -154,7 +154,7 @@ struct journal *journal_begin(struct sim *sim)
         journal_free(journal);
         return NULL;
     }
-    written(journal);
+    note_written(journal);
     journal->hooks = (struct sim_journal){
         .bytes = on_bytes,
         .purge = on_purge,
@@ -178,7 +178,7 @@ void journal_free(struct journal *journal)
     free(journal);
 }
 
-void journal_pass_over(struct journal *journal, const struct sim_journal *gone, const struct sim_journal *next)
+void journal_skip(struct journal *journal, const struct sim_journal *gone, const struct sim_journal *next)
 {
     if (journal->next == gone)
         journal->next = next;
@@ -246,7 +246,7 @@ bool journal_turn(struct journal *journal, struct journal_page *page, const char
     if (!journal->page)
         return false;
     fprintf(journal->page->stream, "{\"t\":%" PRIu64 ",\"moved\":%" PRIu64 "}\n", now - later, later);
-    written(journal);
+    note_written(journal);
     journal->page->bare = journal->page->length;
     journal->page->moved = later;
     return true;

@@ -16,7 +16,7 @@ struct journal *journal_begin(struct sim *sim);
 void journal_free(struct journal *journal);
 
 /* Somebody who was there before this journal is no more; `next` was before him. */
-void journal_pass_over(struct journal *journal, const struct sim_journal *gone, const struct sim_journal *next);
+void journal_skip(struct journal *journal, const struct sim_journal *gone, const struct sim_journal *next);
 
 /* The past up to now; to be given back. NULL: out of memory. */
 struct journal_page *journal_mark(struct journal *journal);

@@ -26,7 +26,7 @@ struct record {
 };
 
 /* After the first failure nothing is written: what stands in the file can be used. */
-static void written(struct record *record)
+static void note_written(struct record *record)
 {
     if (fflush(record->out) != 0 && record->error == 0)
         record->error = errno != 0 ? errno : EIO;
@@ -43,7 +43,7 @@ static void write_gathered(struct record *record)
         fputs(",\"out\":\"", record->out);
         record_hex(record->out, record->bytes, record->gathered);
         fputs("\"}\n", record->out);
-        written(record);
+        note_written(record);
     }
     record->gathered = 0;
 }
@@ -75,7 +75,7 @@ static void write_digests(struct record *record, uint64_t tick, const char *more
         }
     }
     if (record->error == 0)
-        written(record);
+        note_written(record);
 }
 
 static void on_span(void *context, uint64_t tick)
@@ -86,9 +86,9 @@ static void on_span(void *context, uint64_t tick)
 /* ---- What comes in -------------------------------------------------------------------------------------------------- */
 
 /* Everything before has gone out. Returns false if nothing is to be written any more. */
-static bool settle(struct record *record)
+static bool finish_tick(struct record *record)
 {
-    tally_settle(&record->tally);
+    tally_finish_tick(&record->tally);
     write_gathered(record);
     return record->error == 0;
 }
@@ -96,9 +96,9 @@ static bool settle(struct record *record)
 static void on_bytes(void *context, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length)
 {
     struct record *record = context;
-    if (settle(record)) {
+    if (finish_tick(record)) {
         record_line_bytes(record->out, now, tick, bytes, length);
-        written(record);
+        note_written(record);
     }
     if (record->next)
         record->next->bytes(record->next->context, now, tick, bytes, length);
@@ -107,9 +107,9 @@ static void on_bytes(void *context, uint64_t now, uint64_t tick, const uint8_t *
 static void on_purge(void *context, uint64_t now)
 {
     struct record *record = context;
-    if (settle(record)) {
+    if (finish_tick(record)) {
         record_line_purge(record->out, now);
-        written(record);
+        note_written(record);
     }
     if (record->next)
         record->next->purge(record->next->context, now);
@@ -118,9 +118,9 @@ static void on_purge(void *context, uint64_t now)
 static void on_break(void *context, uint64_t now, bool on)
 {
     struct record *record = context;
-    if (settle(record)) {
+    if (finish_tick(record)) {
         record_line_break(record->out, now, on);
-        written(record);
+        note_written(record);
     }
     if (record->next)
         record->next->line_break(record->next->context, now, on);
@@ -129,16 +129,16 @@ static void on_break(void *context, uint64_t now, bool on)
 static void on_timed(void *context, uint64_t now, bool timed)
 {
     struct record *record = context;
-    if (settle(record)) {
+    if (finish_tick(record)) {
         record_line_timed(record->out, now, timed);
-        written(record);
+        note_written(record);
     }
     if (record->next)
         record->next->timed(record->next->context, now, timed);
 }
 
 /* The file that a restore has read stands before it, line by line, so that the record can be replayed anywhere. */
-static void embed(struct record *record, uint64_t now, const struct sim_snapshots *store)
+static void embed_recording(struct record *record, uint64_t now, const struct sim_snapshots *store)
 {
     size_t length = store->length, lines = 0;
     while (length > 0 && store->text[length - 1u] != '\n')
@@ -153,12 +153,12 @@ static void on_command(void *context, uint64_t now, const char *method, const js
 {
     struct record *record = context;
     const struct sim_snapshots *store = record->sim->snapshots;
-    if (settle(record)) {
+    if (finish_tick(record)) {
         if (strcmp(method, "restore") == 0 && store->text)
-            embed(record, now, store);
+            embed_recording(record, now, store);
         if (!record_line_command(record->out, now, method, params))
             record->error = ENOMEM;
-        written(record);
+        note_written(record);
     }
     if (record->next)
         record->next->command(record->next->context, now, method, params);
@@ -178,7 +178,7 @@ struct record *record_begin(struct sim *sim, FILE *out)
         free(record);
         return NULL;
     }
-    written(record);
+    note_written(record);
     record->hooks = (struct sim_journal){
         .bytes = on_bytes,
         .purge = on_purge,
@@ -205,14 +205,14 @@ int record_end(struct record *record)
     write_digests(record, sim_now(record->sim), ",\"partial\":true");
     if (record->error == 0) {
         fprintf(record->out, "{\"t\":%" PRIu64 ",\"end\":true}\n", sim_now(record->sim));
-        written(record);
+        note_written(record);
     }
     int error = record->tally.short_of_memory || record->sim->watch.short_of_memory ? ENOMEM : record->error;
     tally_end(&record->tally);
     if (record->sim->journal == &record->hooks)
         record->sim->journal = record->next;
     else if (record->sim->snapshots && record->sim->snapshots->journal)
-        journal_pass_over(record->sim->snapshots->journal, &record->hooks, record->next);
+        journal_skip(record->sim->snapshots->journal, &record->hooks, record->next);
     free(record);
     return error;
 }

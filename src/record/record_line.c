@@ -35,7 +35,7 @@ static bool put_string(json_t *head, const char *name, const char *text)
     return well;
 }
 
-static bool put(json_t *head, const char *name, json_t *value)
+static bool put_member(json_t *head, const char *name, json_t *value)
 {
     return json_object_set_new(head, name, value) == 0;
 }
@@ -65,12 +65,14 @@ static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
     for (unsigned at = 0; at < config->nodes.count; at++)
         if (json_array_append_new(nodes, json_integer(config->nodes.node[at])) != 0)
             return json_decref(nodes), false;
-    return put(head, "rkm04_record", json_integer(RECORD_VERSION)) && put(head, "program", json_string("rkm04 " RKM04_VERSION)) &&
-           (kind == &rkm04_device || put(head, "device", json_string(kind->name))) && put(head, "nodes", nodes) &&
+    return put_member(head, "rkm04_record", json_integer(RECORD_VERSION)) &&
+           put_member(head, "program", json_string("rkm04 " RKM04_VERSION)) &&
+           (kind == &rkm04_device || put_member(head, "device", json_string(kind->name))) && put_member(head, "nodes", nodes) &&
            put_device(head, kind, &config->unit) &&
-           put(head, "timed", json_boolean(config->timed)) && put(head, "turnaround", json_integer(config->turnaround)) &&
-           put(head, "seed", json_string(seed)) && (!sim->plant_text || put_string(head, "plant", sim->plant_text)) &&
-           put(head, "outputs", json_boolean(outputs));
+           put_member(head, "timed", json_boolean(config->timed)) &&
+           put_member(head, "turnaround", json_integer(config->turnaround)) &&
+           put_member(head, "seed", json_string(seed)) && (!sim->plant_text || put_string(head, "plant", sim->plant_text)) &&
+           put_member(head, "outputs", json_boolean(outputs));
 }
 
 /* Blocks that are not erased, without the erased bytes at their ends. */

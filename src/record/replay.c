@@ -38,7 +38,7 @@ static bool is_interrupted(struct replay *replay)
 }
 
 /* Let time run to `tick`; only `bytes` bytes may come that have not been compared. */
-static bool go(struct replay *replay, uint64_t tick, size_t bytes)
+static bool run_to(struct replay *replay, uint64_t tick, size_t bytes)
 {
     struct sim *sim = replay->sim;
     while (sim_now(sim) < tick) {
@@ -47,19 +47,19 @@ static bool go(struct replay *replay, uint64_t tick, size_t bytes)
         sim_advance(sim, step_end(replay, tick));
         if (!replay->outputs)
             continue;
-        tally_settle(&replay->tally);
-        if (!replay_nothing_more(replay, tick, bytes))
+        tally_finish_tick(&replay->tally);
+        if (!replay_expect_nothing(replay, tick, bytes))
             return false;
     }
     return !replay->ended;
 }
 
 /* The tick of the present line is over; `last` is that of the replay. Returns false if it comes before. */
-static bool reach(struct replay *replay, uint64_t tick, size_t bytes)
+static bool run_to_line(struct replay *replay, uint64_t tick, size_t bytes)
 {
     if (tick <= replay->until)
-        return go(replay, tick, bytes);
-    if (go(replay, replay->until, bytes)) {
+        return run_to(replay, tick, bytes);
+    if (run_to(replay, replay->until, bytes)) {
         replay->ended = true;
         replay->end = REPLAY_SAME;
     }
@@ -67,16 +67,16 @@ static bool reach(struct replay *replay, uint64_t tick, size_t bytes)
 }
 
 /* Come to a line about what came in: everything before has gone out, and was recorded. */
-static bool come_to_input(struct replay *replay, const char *const *keys, uint64_t *tick)
+static bool run_to_input(struct replay *replay, const char *const *keys, uint64_t *tick)
 {
     if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, tick) ||
-        !reach(replay, *tick, 0))
+        !run_to_line(replay, *tick, 0))
         return false;
     sim_finish_tick(replay->sim);
     if (!replay->outputs)
         return true;
-    tally_settle(&replay->tally);
-    return replay_nothing_more(replay, DEVICE_NEVER, 0);
+    tally_finish_tick(&replay->tally);
+    return replay_expect_nothing(replay, DEVICE_NEVER, 0);
 }
 
 /* ---- Lines about what came in --------------------------------------------------------------------------------------- */
@@ -86,7 +86,7 @@ static bool do_bytes(struct replay *replay)
     static const char *const keys[] = {"t", "at", "in", NULL};
     uint64_t tick, at;
     size_t length, room;
-    if (!come_to_input(replay, keys, &tick) || !replay_number(replay, "at", tick, TIME_VALUE_MAX, tick, &at))
+    if (!run_to_input(replay, keys, &tick) || !replay_number(replay, "at", tick, TIME_VALUE_MAX, tick, &at))
         return false;
     room = sim_room(replay->sim);
     const uint8_t *bytes = replay_bytes(replay, "in", room < SEGMENT_ROOM ? room : SEGMENT_ROOM, &length);
@@ -102,7 +102,7 @@ static bool do_purge(struct replay *replay)
 {
     static const char *const keys[] = {"t", "purge", NULL};
     uint64_t tick;
-    if (!come_to_input(replay, keys, &tick))
+    if (!run_to_input(replay, keys, &tick))
         return false;
     replay->counts.inputs++;
     sim_purge(replay->sim);
@@ -114,7 +114,7 @@ static bool do_break(struct replay *replay)
     static const char *const keys[] = {"t", "break", NULL};
     uint64_t tick;
     bool on;
-    if (!replay_flag(replay, "break", false, &on) || !come_to_input(replay, keys, &tick))
+    if (!replay_flag(replay, "break", false, &on) || !run_to_input(replay, keys, &tick))
         return false;
     replay->counts.inputs++;
     sim_break(replay->sim, on);
@@ -126,7 +126,7 @@ static bool do_timed(struct replay *replay)
     static const char *const keys[] = {"t", "timed", NULL};
     uint64_t tick;
     bool timed;
-    if (!replay_flag(replay, "timed", false, &timed) || !come_to_input(replay, keys, &tick))
+    if (!replay_flag(replay, "timed", false, &timed) || !run_to_input(replay, keys, &tick))
         return false;
     replay->counts.inputs++;
     sim_set_timed(replay->sim, timed);
@@ -147,7 +147,7 @@ static bool do_embedded(struct replay *replay)
     return replay_read_embedded(replay, lines);
 }
 
-static bool refused(struct replay *replay, const char *method, const struct refusal *refusal)
+static bool report_refused(struct replay *replay, const char *method, const struct refusal *refusal)
 {
     struct replay_difference difference = {.what = "the control", .from = sim_now(replay->sim), .until = sim_now(replay->sim)};
     if (refusal->code == REFUSED_MEMORY)
@@ -175,7 +175,7 @@ static json_t *restore_embedded(struct replay *replay, struct refusal *refusal)
 }
 
 /* No file is touched on behalf of a record: what was read stands in it, what was written is of no concern. */
-static json_t *obey(struct replay *replay, const char *method, const json_t *params, struct refusal *refusal)
+static json_t *execute_command(struct replay *replay, const char *method, const json_t *params, struct refusal *refusal)
 {
     if (!json_object_get(params, "file"))
         return sim_command(replay->sim, method, params, refusal);
@@ -189,7 +189,7 @@ static bool do_command(struct replay *replay)
     const char *method = replay_string(replay, "command");
     struct refusal refusal = {0};
     uint64_t tick;
-    if (!method || !come_to_input(replay, keys, &tick))
+    if (!method || !run_to_input(replay, keys, &tick))
         return false;
     if (!json_is_object(params))
         return replay_wrong(replay, "params", "expected \"params\", an object");
@@ -198,7 +198,7 @@ static bool do_command(struct replay *replay)
     bool restore = strcmp(method, "restore") == 0 && json_object_get(params, "file");
     if (restore && !replay->embedded)
         return replay_wrong(replay, "command", "expected the file that was restored before this line, behind \"embedded\"");
-    json_t *result = obey(replay, method, params, &refusal);
+    json_t *result = execute_command(replay, method, params, &refusal);
     json_decref(result);
     if (replay->paused)
         return false;
@@ -207,7 +207,7 @@ static bool do_command(struct replay *replay)
         free(replay->embedded);
         replay->embedded = NULL;
     }
-    return result || refused(replay, method, &refusal);
+    return result || report_refused(replay, method, &refusal);
 }
 
 /* ---- Lines of journals ---------------------------------------------------------------------------------------------- */
@@ -223,8 +223,8 @@ static bool do_moved(struct replay *replay)
     if (replay->outputs)
         return replay_wrong(replay, "moved", "expected {\"outputs\":false} before this line");
     if (tick + by > replay->until)
-        return reach(replay, DEVICE_NEVER, 0);
-    return reach(replay, tick, 0) && (snapshot_move(replay->sim, by) || replay_no_memory(replay));
+        return run_to_line(replay, DEVICE_NEVER, 0);
+    return run_to_line(replay, tick, 0) && (snapshot_move(replay->sim, by) || replay_no_memory(replay));
 }
 
 static bool do_outputs(struct replay *replay)
@@ -235,13 +235,13 @@ static bool do_outputs(struct replay *replay)
         return false;
     if (outputs)
         return replay_wrong(replay, "outputs", "expected \"outputs\": false");
-    replay_listen_no_more(replay);
+    replay_end_compare(replay);
     return true;
 }
 
 /* ---- Lines about what went out -------------------------------------------------------------------------------------- */
 
-static bool wants_outputs(struct replay *replay, const char *key)
+static bool expects_outputs(struct replay *replay, const char *key)
 {
     return replay->outputs || replay_wrong(replay, key, "expected no outputs: the recording says that it has none");
 }
@@ -251,16 +251,16 @@ static bool do_out(struct replay *replay)
     static const char *const keys[] = {"t", "to", "out", NULL};
     uint64_t from, until;
     size_t length;
-    if (!wants_outputs(replay, "out") || !replay_keys(replay, keys) ||
+    if (!expects_outputs(replay, "out") || !replay_keys(replay, keys) ||
         !replay_number(replay, "t", 0, TIME_VALUE_MAX, DEVICE_NEVER, &from) ||
         !replay_number(replay, "to", from, TIME_VALUE_MAX, from, &until))
         return false;
     const uint8_t *bytes = replay_bytes(replay, "out", SEGMENT_ROOM, &length);
-    if (!bytes || !reach(replay, until, length))
+    if (!bytes || !run_to_line(replay, until, length))
         return false;
     sim_finish_tick(replay->sim);
-    tally_settle(&replay->tally);
-    return replay_nothing_more(replay, from, 0) && replay_compare_bytes(replay, from, until, bytes, length);
+    tally_finish_tick(&replay->tally);
+    return replay_expect_nothing(replay, from, 0) && replay_compare_bytes(replay, from, until, bytes, length);
 }
 
 static bool read_digest(struct replay *replay, uint64_t *digest)
@@ -296,16 +296,16 @@ static bool do_digest(struct replay *replay)
     static const char *const keys[] = {"t", "partial", "unit", "motor", "events", "steps", "position", "digest", NULL};
     struct replay_span span = {0};
     bool partial;
-    if (!wants_outputs(replay, "digest") || !replay_keys(replay, keys) || !read_span(replay, &span) ||
-        !replay_flag(replay, "partial", false, &partial) || !reach(replay, span.tick, 0))
+    if (!expects_outputs(replay, "digest") || !replay_keys(replay, keys) || !read_span(replay, &span) ||
+        !replay_flag(replay, "partial", false, &partial) || !run_to_line(replay, span.tick, 0))
         return false;
     if (partial) {
         sim_finish_tick(replay->sim);
         tally_finish(&replay->tally);
     } else {
-        tally_settle(&replay->tally);
+        tally_finish_tick(&replay->tally);
     }
-    return replay_nothing_more(replay, span.tick, 0) && replay_compare_stream(replay, &span, partial);
+    return replay_expect_nothing(replay, span.tick, 0) && replay_compare_stream(replay, &span, partial);
 }
 
 static bool do_end(struct replay *replay)
@@ -313,7 +313,7 @@ static bool do_end(struct replay *replay)
     static const char *const keys[] = {"t", "end", NULL};
     uint64_t tick;
     if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
-        !reach(replay, tick, 0))
+        !run_to_line(replay, tick, 0))
         return false;
     sim_finish_tick(replay->sim);
     replay->counts.whole = true;
@@ -341,7 +341,7 @@ static bool unknown_line(struct replay *replay)
                                       "\"break\", \"timed\", \"moved\", \"embedded\", \"outputs\", \"end\"");
 }
 
-static bool obey_line(struct replay *replay)
+static bool do_line(struct replay *replay)
 {
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
         if (json_object_get(replay->json, kinds[i].key))
@@ -366,8 +366,8 @@ static bool check_line(struct replay *replay)
 }
 
 /* Deal with all lines, or pause. Returns false if it has paused. */
-static bool each_line(struct replay *replay, bool (*deal)(struct replay *replay), bool (*interrupted)(void *context),
-                      void *context)
+static bool for_each_line(struct replay *replay, bool (*deal)(struct replay *replay), bool (*interrupted)(void *context),
+                          void *context)
 {
     replay->interrupted = interrupted;
     replay->context = context;
@@ -382,7 +382,7 @@ enum replay_end replay_check(struct replay *replay, bool (*interrupted)(void *co
 {
     if (replay->ended)
         return replay->end;
-    if (!each_line(replay, check_line, interrupted, context))
+    if (!for_each_line(replay, check_line, interrupted, context))
         return REPLAY_INTERRUPTED;
     return replay->ended ? replay->end : REPLAY_SAME;
 }
@@ -392,8 +392,8 @@ enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *cont
     if (replay->ended)
         return replay->end;
     if (replay->outputs && !replay->tally.sim)
-        replay_listen(replay);
-    if (!each_line(replay, obey_line, interrupted, context))
+        replay_begin_compare(replay);
+    if (!for_each_line(replay, do_line, interrupted, context))
         return REPLAY_INTERRUPTED;
     if (!replay->ended) {
         replay->end = REPLAY_SAME;
@@ -403,7 +403,7 @@ enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *cont
     replay->ended = true;
     if (replay->end == REPLAY_SAME)
         snprintf(replay->text, sizeof replay->text, "the same up to tick %" PRIu64, sim_now(replay->sim));
-    replay_listen_no_more(replay);
+    replay_end_compare(replay);
     return replay->end;
 }
 

@@ -59,13 +59,13 @@ static void on_span(void *context, uint64_t tick)
                 keep_span(replay, tick, unit, motor);
 }
 
-void replay_listen(struct replay *replay)
+void replay_begin_compare(struct replay *replay)
 {
     static const struct tally_calls calls = {.byte = on_byte, .span = on_span};
     tally_begin(&replay->tally, replay->sim, &calls, replay);
 }
 
-void replay_listen_no_more(struct replay *replay)
+void replay_end_compare(struct replay *replay)
 {
     if (!replay->outputs)
         return;
@@ -104,7 +104,7 @@ bool replay_differs(struct replay *replay, const struct replay_difference *diffe
     return false;
 }
 
-static void show_bytes(char *text, size_t size, const uint8_t *bytes, size_t length)
+static void format_bytes(char *text, size_t size, const uint8_t *bytes, size_t length)
 {
     size_t at = 0;
     for (size_t i = 0; i < length && i < SHOWN; i++)
@@ -114,7 +114,7 @@ static void show_bytes(char *text, size_t size, const uint8_t *bytes, size_t len
 }
 
 /* The bytes that have come and were not compared, up to `until`. */
-static void show_came(const struct replay *replay, char *text, size_t size, uint64_t until)
+static void format_arrived(const struct replay *replay, char *text, size_t size, uint64_t until)
 {
     uint8_t bytes[SHOWN];
     size_t count = 0;
@@ -123,10 +123,10 @@ static void show_came(const struct replay *replay, char *text, size_t size, uint
             bytes[count] = replay->bytes[i].byte;
     snprintf(text, size, "nothing");
     if (count > 0)
-        show_bytes(text, size, bytes, count);
+        format_bytes(text, size, bytes, count);
 }
 
-static void show_stream(char *text, size_t size, const struct tally_stream *stream, const struct tally_stream *other)
+static void format_stream(char *text, size_t size, const struct tally_stream *stream, const struct tally_stream *other)
 {
     if (stream->steps != other->steps || stream->position != other->position)
         snprintf(text, size, "%" PRIu64 " pulses since the beginning, the last one to %" PRId32, stream->steps, stream->position);
@@ -150,15 +150,15 @@ static bool streams_differ(struct replay *replay, uint64_t tick, unsigned unit, 
         .came = "nothing",
     };
     if (recorded)
-        show_stream(difference.recorded, sizeof difference.recorded, recorded, came ? came : &(struct tally_stream){0});
+        format_stream(difference.recorded, sizeof difference.recorded, recorded, came ? came : &(struct tally_stream){0});
     if (came)
-        show_stream(difference.came, sizeof difference.came, came, recorded ? recorded : &(struct tally_stream){0});
+        format_stream(difference.came, sizeof difference.came, came, recorded ? recorded : &(struct tally_stream){0});
     return replay_differs(replay, &difference);
 }
 
 /* ---- Comparing ------------------------------------------------------------------------------------------------------ */
 
-static bool more_bytes(struct replay *replay, uint64_t tick)
+static bool report_extra_byte(struct replay *replay, uint64_t tick)
 {
     const struct tally_byte *first = &replay->bytes[replay->bytes_at];
     struct replay_difference difference = {
@@ -167,11 +167,11 @@ static bool more_bytes(struct replay *replay, uint64_t tick)
         .until = first->tick,
         .recorded = "nothing",
     };
-    show_came(replay, difference.came, sizeof difference.came, tick);
+    format_arrived(replay, difference.came, sizeof difference.came, tick);
     return replay_differs(replay, &difference);
 }
 
-bool replay_nothing_more(struct replay *replay, uint64_t tick, size_t bytes)
+bool replay_expect_nothing(struct replay *replay, uint64_t tick, size_t bytes)
 {
     if (replay->ended)
         return false;
@@ -181,7 +181,7 @@ bool replay_nothing_more(struct replay *replay, uint64_t tick, size_t bytes)
     }
     if (replay->bytes_count - replay->bytes_at > bytes && replay->bytes[replay->bytes_at + bytes].tick < tick) {
         replay->bytes_at += bytes;
-        return more_bytes(replay, tick);
+        return report_extra_byte(replay, tick);
     }
     return true;
 }
@@ -198,11 +198,11 @@ bool replay_compare_bytes(struct replay *replay, uint64_t from, uint64_t until, 
         bool late = at < replay->bytes_count && replay->bytes[at].byte == bytes[i];
         snprintf(difference.recorded, sizeof difference.recorded, "as byte %zu of ", i + 1u);
         size_t used = strlen(difference.recorded);
-        show_bytes(difference.recorded + used, sizeof difference.recorded - used, bytes, length);
+        format_bytes(difference.recorded + used, sizeof difference.recorded - used, bytes, length);
         if (late)
             snprintf(difference.came, sizeof difference.came, "it at tick %" PRIu64, replay->bytes[at].tick);
         else
-            show_came(replay, difference.came, sizeof difference.came, until);
+            format_arrived(replay, difference.came, sizeof difference.came, until);
         return replay_differs(replay, &difference);
     }
     replay->bytes_at += length;
@@ -239,7 +239,7 @@ bool replay_compare_stream(struct replay *replay, const struct replay_span *reco
 
 bool replay_compare_rest(struct replay *replay)
 {
-    if (!replay_nothing_more(replay, DEVICE_NEVER, 0))
+    if (!replay_expect_nothing(replay, DEVICE_NEVER, 0))
         return false;
     for (unsigned unit = 0; unit < TALLY_UNITS; unit++)
         for (unsigned motor = 0; motor < TALLY_MOTORS; motor++)

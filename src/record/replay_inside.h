@@ -95,12 +95,12 @@ bool replay_begin(struct replay *replay);
 
 /* ---- replay_compare.c ------------------------------------------------------------------------------------------------- */
 
-void replay_listen(struct replay *replay);
-void replay_listen_no_more(struct replay *replay);
+void replay_begin_compare(struct replay *replay);
+void replay_end_compare(struct replay *replay);
 
 /* Is there anything before `tick` that the record does not have? `bytes`: so many bytes may come. Returns false if there is: a
  * difference. */
-bool replay_nothing_more(struct replay *replay, uint64_t tick, size_t bytes);
+bool replay_expect_nothing(struct replay *replay, uint64_t tick, size_t bytes);
 
 /* Compare. Return false: a difference. */
 bool replay_compare_bytes(struct replay *replay, uint64_t from, uint64_t until, const uint8_t *bytes, size_t length);

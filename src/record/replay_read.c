@@ -41,13 +41,13 @@ static size_t column_of(const struct replay *replay, const char *key)
     return 1;
 }
 
-static void finish(struct replay *replay, enum replay_end end)
+static void end_replay(struct replay *replay, enum replay_end end)
 {
     replay->ended = true;
     replay->end = end;
 }
 
-static void say_wrong(struct replay *replay, size_t column, const char *format, va_list list)
+static void write_error(struct replay *replay, size_t column, const char *format, va_list list)
 {
     uint64_t line = replay->counts.lines > 0 ? replay->counts.lines : 1u;
     int length = snprintf(replay->text, sizeof replay->text, "%.200s:%" PRIu64 ":%zu: ", replay->name, line, column);
@@ -55,14 +55,14 @@ static void say_wrong(struct replay *replay, size_t column, const char *format, 
         vsnprintf(replay->text + length, sizeof replay->text - (size_t)length, format, list);
     invisible_note(replay->text, sizeof replay->text);
     replay->note[0] = '\0';
-    finish(replay, REPLAY_WRONG);
+    end_replay(replay, REPLAY_WRONG);
 }
 
 bool replay_wrong(struct replay *replay, const char *key, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    say_wrong(replay, key ? column_of(replay, key) : 1u, format, list);
+    write_error(replay, key ? column_of(replay, key) : 1u, format, list);
     va_end(list);
     return false;
 }
@@ -73,7 +73,7 @@ static bool wrong_at(struct replay *replay, size_t column, const char *format, .
 {
     va_list list;
     va_start(list, format);
-    say_wrong(replay, column, format, list);
+    write_error(replay, column, format, list);
     va_end(list);
     return false;
 }
@@ -81,7 +81,7 @@ static bool wrong_at(struct replay *replay, size_t column, const char *format, .
 bool replay_no_memory(struct replay *replay)
 {
     snprintf(replay->text, sizeof replay->text, "out of memory");
-    finish(replay, REPLAY_NO_MEMORY);
+    end_replay(replay, REPLAY_NO_MEMORY);
     return false;
 }
 

@@ -44,10 +44,10 @@ static bool open_replay(struct restore *restore)
 }
 
 /* Refuse what another bus has recorded, as soon as the head is read. Returns whether it fits. */
-static bool fits(const struct restore *restore, struct refusal *refusal)
+static bool is_fitting(const struct restore *restore, struct refusal *refusal)
 {
     struct sim *recorded = replay_sim(restore->replay);
-    const char *unlike = recorded ? snapshot_unlike(restore->sim, recorded) : NULL;
+    const char *unlike = recorded ? snapshot_difference(restore->sim, recorded) : NULL;
     if (!recorded)
         refuse(refusal, REFUSED_STATE, "file: %s", replay_text(restore->replay));
     else if (unlike)
@@ -66,7 +66,7 @@ struct restore *restore_open(struct sim *sim, const char *name, const char *text
     if (restore) {
         *restore = (struct restore){.sim = sim, .name = name, .depth = depth, .in = fmemopen((void *)text, length, "r")};
         if (restore->in && open_replay(restore)) {
-            if (fits(restore, refusal))
+            if (is_fitting(restore, refusal))
                 return restore;
             restore_cancel(restore);
             return NULL;
@@ -107,7 +107,7 @@ bool restore_go_on(struct restore *restore, bool (*interrupted)(void *context), 
     return restore->end != REPLAY_INTERRUPTED;
 }
 
-static json_t *put(const struct restore *restore, struct refusal *refusal)
+static json_t *put_state(const struct restore *restore, struct refusal *refusal)
 {
     struct sim_snapshots *store = snapshots_of(restore->sim);
     if (restore->late)
@@ -164,7 +164,7 @@ static bool read_file(struct restore *restore, struct refusal *refusal)
     return false;
 }
 
-static struct restore *open_read(struct sim *sim, struct restore *read, struct refusal *refusal)
+static struct restore *open_text(struct sim *sim, struct restore *read, struct refusal *refusal)
 {
     struct restore *restore = restore_open(sim, read->name, read->text, read->length, 0, refusal);
     if (!restore) {
@@ -187,7 +187,7 @@ struct restore *restore_begin(struct sim *sim, const json_t *params, struct refu
         refuse(refusal, REFUSED_PARAMS, "file: expected a path");
         return NULL;
     }
-    struct restore *restore = read_file(&read, refusal) ? open_read(sim, &read, refusal) : NULL;
+    struct restore *restore = read_file(&read, refusal) ? open_text(sim, &read, refusal) : NULL;
     if (restore)
         restore->params = json_incref((json_t *)params);
     return restore;
@@ -225,7 +225,7 @@ json_t *restore_put(struct restore *restore, struct refusal *refusal)
         snapshots_keep_text(store, restore->text, restore->length);
         restore->text = NULL; /* it stays until the next one: records and the journal want it */
     }
-    json_t *result = put(restore, refusal);
+    json_t *result = put_state(restore, refusal);
     restore_cancel(restore);
     return result;
 }

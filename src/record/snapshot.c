@@ -72,7 +72,7 @@ static bool write_images(struct sim *sim, const struct snapshot *snapshot)
 
 /* ---- Taking --------------------------------------------------------------------------------------------------------- */
 
-static bool take_unit(struct sim *sim, struct snapshot *snapshot, unsigned at)
+static bool copy_unit(struct sim *sim, struct snapshot *snapshot, unsigned at)
 {
     const struct device_kind *kind = sim_device(sim);
     struct sim_unit *unit = &snapshot->unit[at];
@@ -102,7 +102,7 @@ struct snapshot *snapshot_take(struct sim *sim)
     if (sim->plant_text)
         well = (snapshot->plant_text = strdup(sim->plant_text)) && well;
     for (unsigned at = 0; at < sim_units(sim); at++)
-        well = take_unit(sim, snapshot, at) && well;
+        well = copy_unit(sim, snapshot, at) && well;
     if (well)
         return snapshot;
     snapshot_free(snapshot);
@@ -130,7 +130,7 @@ uint64_t snapshot_tick(const struct snapshot *snapshot)
 
 /* ---- Does it fit? --------------------------------------------------------------------------------------------------- */
 
-static const char *unlike(const struct segment *a, const struct segment *b)
+static const char *find_difference(const struct segment *a, const struct segment *b)
 {
     if (segment_kind(a) != segment_kind(b))
         return "the device";
@@ -146,21 +146,21 @@ static const char *unlike(const struct segment *a, const struct segment *b)
     return NULL;
 }
 
-const char *snapshot_unlike(const struct sim *sim, const struct sim *other)
+const char *snapshot_difference(const struct sim *sim, const struct sim *other)
 {
-    return unlike(&sim->segment, &other->segment);
+    return find_difference(&sim->segment, &other->segment);
 }
 
 const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapshot)
 {
     if (sim->segment.units == snapshot->segment.units && sim->segment.config.timed != snapshot->segment.config.timed)
         return "whether bytes take time (--baud, --clock stepped)";
-    return unlike(&sim->segment, &snapshot->segment);
+    return find_difference(&sim->segment, &snapshot->segment);
 }
 
 /* ---- Telling what has changed --------------------------------------------------------------------------------------- */
 
-static void look_at(struct sim *sim, unsigned number, struct look *look)
+static void read_look(struct sim *sim, unsigned number, struct look *look)
 {
     const struct device_kind *kind = sim_device(sim);
     const struct device_unit *unit = sim_core(sim, number);
@@ -183,7 +183,7 @@ static void look_at(struct sim *sim, unsigned number, struct look *look)
     }
 }
 
-static void tell(struct sim *sim, unsigned number, unsigned motor, enum watch_kind kind, int32_t before, int32_t after)
+static void report_change(struct sim *sim, unsigned number, unsigned motor, enum watch_kind kind, int32_t before, int32_t after)
 {
     struct watch_event event = {
         .tick = sim_now(sim),
@@ -196,22 +196,22 @@ static void tell(struct sim *sim, unsigned number, unsigned motor, enum watch_ki
         sim_report(sim, WATCH_DELIVERED, &event);
 }
 
-static void tell_changes(struct sim *sim, unsigned number, const struct look *before)
+static void report_changes(struct sim *sim, unsigned number, const struct look *before)
 {
     struct look after;
-    look_at(sim, number, &after);
-    tell(sim, number, 0, WATCH_POWER, before->powered, after.powered);
-    tell(sim, number, 0, WATCH_INPUTS, (int32_t)before->inputs, (int32_t)after.inputs);
-    tell(sim, number, 0, WATCH_OUTPUTS, (int32_t)before->outputs, (int32_t)after.outputs);
-    tell(sim, number, 0, WATCH_VARIABLES, (int32_t)before->variables, (int32_t)after.variables);
+    read_look(sim, number, &after);
+    report_change(sim, number, 0, WATCH_POWER, before->powered, after.powered);
+    report_change(sim, number, 0, WATCH_INPUTS, (int32_t)before->inputs, (int32_t)after.inputs);
+    report_change(sim, number, 0, WATCH_OUTPUTS, (int32_t)before->outputs, (int32_t)after.outputs);
+    report_change(sim, number, 0, WATCH_VARIABLES, (int32_t)before->variables, (int32_t)after.variables);
     for (unsigned motor = 1; motor <= sim_device(sim)->axes; motor++) {
         const struct look_motor *a = &before->motor[motor - 1u], *b = &after.motor[motor - 1u];
-        tell(sim, number, motor, WATCH_POSITION, a->position, b->position);
-        tell(sim, number, motor, WATCH_MOTION, a->moving, b->moving);
-        tell(sim, number, motor, WATCH_DIRECTION, a->forward, b->forward);
-        tell(sim, number, motor, WATCH_COMMAND, a->index, b->index);
-        tell(sim, number, motor, WATCH_LED, a->led, b->led);
-        tell(sim, number, motor, WATCH_FAULT, a->fault, b->fault);
+        report_change(sim, number, motor, WATCH_POSITION, a->position, b->position);
+        report_change(sim, number, motor, WATCH_MOTION, a->moving, b->moving);
+        report_change(sim, number, motor, WATCH_DIRECTION, a->forward, b->forward);
+        report_change(sim, number, motor, WATCH_COMMAND, a->index, b->index);
+        report_change(sim, number, motor, WATCH_LED, a->led, b->led);
+        report_change(sim, number, motor, WATCH_FAULT, a->fault, b->fault);
     }
 }
 
@@ -242,7 +242,7 @@ static bool copy_plants(const struct snapshot *snapshot, uint64_t later, struct 
 }
 
 /* `sim` as it was, everything later by so many ticks. */
-static bool put_later(struct sim *sim, const struct snapshot *snapshot, uint64_t later)
+static bool put_shifted(struct sim *sim, const struct snapshot *snapshot, uint64_t later)
 {
     struct plant *plant[SEGMENT_UNITS] = {NULL};
     struct look before[SEGMENT_UNITS];
@@ -254,7 +254,7 @@ static bool put_later(struct sim *sim, const struct snapshot *snapshot, uint64_t
         return false;
     }
     for (unsigned number = 1; number <= sim_units(sim); number++)
-        look_at(sim, number, &before[number - 1u]);
+        read_look(sim, number, &before[number - 1u]);
     bool unplugged = sim->faults.unplugged;
     segment_copy(&sim->segment, &snapshot->segment); /* there is memory for its units */
     segment_shift(&sim->segment, later);
@@ -267,23 +267,23 @@ static bool put_later(struct sim *sim, const struct snapshot *snapshot, uint64_t
     sim->plant_text = text;
     for (unsigned number = 1; number <= sim_units(sim); number++) {
         sim_update_inputs(sim, number);
-        tell_changes(sim, number, &before[number - 1u]);
+        report_changes(sim, number, &before[number - 1u]);
     }
     if (sim->config.adapter && unplugged != sim->faults.unplugged)
         sim->config.adapter(sim->config.context, unplugged);
     return true;
 }
 
-bool snapshot_put(struct sim *sim, const struct snapshot *snapshot)
+bool snapshot_restore(struct sim *sim, const struct snapshot *snapshot)
 {
     uint64_t now = sim_now(sim), taken = snapshot_tick(snapshot);
-    return put_later(sim, snapshot, now > taken ? now - taken : 0);
+    return put_shifted(sim, snapshot, now > taken ? now - taken : 0);
 }
 
 bool snapshot_move(struct sim *sim, uint64_t ticks)
 {
     struct snapshot *snapshot = snapshot_take(sim);
-    bool well = snapshot && put_later(sim, snapshot, ticks);
+    bool well = snapshot && put_shifted(sim, snapshot, ticks);
     snapshot_free(snapshot);
     return well;
 }

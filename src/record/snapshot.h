@@ -16,14 +16,14 @@ struct snapshot *snapshot_take(struct sim *sim);
 
 /* Make `sim` as it was. It must be like the one it was taken of (snapshot_misfit()). Returns false if out of memory or a flash
  * image cannot be written: then nothing is changed but what flash shows. */
-bool snapshot_put(struct sim *sim, const struct snapshot *snapshot);
+bool snapshot_restore(struct sim *sim, const struct snapshot *snapshot);
 
 /* Move everything that has a time along by `ticks`: the line's time leaps ahead, and nothing happens meanwhile. Returns false if
  * out of memory. */
 bool snapshot_move(struct sim *sim, uint64_t ticks);
 
 /* In what is `sim` unlike another, but for what a command may change: "the framing", …; NULL: in nothing that matters. */
-const char *snapshot_unlike(const struct sim *sim, const struct sim *other);
+const char *snapshot_difference(const struct sim *sim, const struct sim *other);
 
 /* In what is `sim` unlike the one that it was taken of: "the framing", …; NULL: in nothing that matters. */
 const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapshot);

@@ -151,7 +151,7 @@ json_t *snapshots_put(struct sim_snapshots *store, const struct snapshot *snapsh
     const char *misfit = snapshot_misfit(store->sim, snapshot);
     if (misfit)
         return refuse(refusal, REFUSED_STATE, "the snapshot does not fit this bus: %s is different", misfit);
-    if (!snapshot_put(store->sim, snapshot))
+    if (!snapshot_restore(store->sim, snapshot))
         return refuse(refusal, REFUSED_MEMORY, "out of memory, or the flash image of a unit cannot be written");
     uint64_t now = sim_now(store->sim), taken = snapshot_tick(snapshot);
     if (store->journal)

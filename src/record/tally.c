@@ -5,7 +5,7 @@
 
 #include "record_line.h"
 
-static uint64_t mix(uint64_t x)
+static uint64_t mix_hash(uint64_t x)
 {
     x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
     x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
@@ -15,10 +15,10 @@ static uint64_t mix(uint64_t x)
 /* Two numbers and a tick as one. Sums of these do not depend on the order within a tick. */
 static uint64_t hash(uint64_t tick, uint64_t a, uint64_t b)
 {
-    return mix(mix(mix(tick) + a) + b);
+    return mix_hash(mix_hash(mix_hash(tick) + a) + b);
 }
 
-void tally_seen(struct tally *tally)
+void tally_clear_changed(struct tally *tally)
 {
     for (unsigned unit = 0; unit < TALLY_UNITS; unit++)
         for (unsigned motor = 0; motor < TALLY_MOTORS; motor++)
@@ -32,7 +32,7 @@ static void close_span(struct tally *tally, uint64_t tick)
         return;
     if (tally->changed) {
         tally->calls->span(tally->context, tally->span_end);
-        tally_seen(tally);
+        tally_clear_changed(tally);
     }
     tally->span_end = (tick / RECORD_SPAN + 1u) * RECORD_SPAN;
 }
@@ -121,7 +121,7 @@ void tally_begin(struct tally *tally, struct sim *sim, const struct tally_calls 
     sim_watch(sim, &tally->watcher);
 }
 
-void tally_settle(struct tally *tally)
+void tally_finish_tick(struct tally *tally)
 {
     pass_time(tally, sim_now(tally->sim));
 }
@@ -129,7 +129,7 @@ void tally_settle(struct tally *tally)
 void tally_finish(struct tally *tally)
 {
     watch_deliver(&tally->sim->watch, sim_now(tally->sim) + 1u);
-    tally_settle(tally);
+    tally_finish_tick(tally);
 }
 
 void tally_end(struct tally *tally)

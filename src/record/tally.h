@@ -49,13 +49,13 @@ struct tally {
 void tally_begin(struct tally *tally, struct sim *sim, const struct tally_calls *calls, void *context);
 
 /* Tell everything before the present tick of the sim. */
-void tally_settle(struct tally *tally);
+void tally_finish_tick(struct tally *tally);
 
 /* Tell also what has happened at the present tick; the present span need not be over for that. */
 void tally_finish(struct tally *tally);
 
 /* The streams that have changed are taken note of: a new span begins. */
-void tally_seen(struct tally *tally);
+void tally_clear_changed(struct tally *tally);
 
 void tally_end(struct tally *tally);
 

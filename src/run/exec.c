@@ -149,7 +149,7 @@ static bool is_running(struct exec_run *run)
 }
 
 /* What repeats from slot to slot are motions: a program takes more than one for a turn. */
-static void say_endless(struct exec_run *run)
+static void report_endless(struct exec_run *run)
 {
     const uint64_t period = run->period, slot = run->device->slot;
     char text[DEVICE_ERROR_SIZE];
@@ -174,7 +174,7 @@ static int exit_status(struct exec_run *run, const struct options *options, enum
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
     if (end == EXEC_ENDLESS) {
-        say_endless(run);
+        report_endless(run);
         return written ? STATUS_UNTIL : STATUS_FAILURE;
     }
     if (end == EXEC_INTERRUPTED)
@@ -183,7 +183,7 @@ static int exit_status(struct exec_run *run, const struct options *options, enum
 }
 
 /* What goes wrong with the trace. Returns whether nothing did. */
-static bool tell_trace(const struct options *options, int wrong)
+static bool report_trace_error(const struct options *options, int wrong)
 {
     if (wrong != 0)
         fprintf(stderr, "rkm04 exec: cannot write the trace %s: %s\n", options->trace, strerror(wrong));
@@ -225,7 +225,7 @@ static int run_programs(struct exec_run *run, const struct options *options, FIL
     exec_inputs_store(&options->inputs, run);
     enum exec_end end = exec_run(run);
 
-    bool written = trace == NULL || tell_trace(options, trace_file_end(trace));
+    bool written = trace == NULL || report_trace_error(options, trace_file_end(trace));
     if (!report_end(&report, run, end, out == stdout ? stderr : stdout))
         written = false;
     return exit_status(run, options, end, written);
@@ -249,7 +249,7 @@ static int run_traced(struct exec_run *run, const struct options *options)
     setvbuf(file, NULL, _IONBF, 0); /* gathered in a buffer already */
     int status = run_programs(run, options, file);
     if (output_file_close(file) != 0 && status == STATUS_SUCCESS) {
-        tell_trace(options, errno);
+        report_trace_error(options, errno);
         status = STATUS_FAILURE;
     }
     return status;

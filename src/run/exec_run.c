@@ -67,7 +67,7 @@ static void progress_begin(struct progress *progress)
     clock_gettime(CLOCK_MONOTONIC, &progress->start);
 }
 
-static void progress_look(struct progress *progress, const struct exec_run *run)
+static void progress_update(struct progress *progress, const struct exec_run *run)
 {
     if (!run->progress || ++progress->leaps % LEAPS_A_LOOK != 0)
         return;
@@ -94,7 +94,7 @@ static void deliver_input(struct exec_run *run, const struct stimulus *s)
     sim_set_di(&run->sim, 1, s->level ? mask | bit : mask & ~bit);
 }
 
-static void deliver(struct exec_run *run, const struct stimulus *s)
+static void deliver_stimulus(struct exec_run *run, const struct stimulus *s)
 {
     uint8_t answer[ANSWER_MAX];
     size_t length;
@@ -146,7 +146,7 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
         if (now > run->until)
             return EXEC_UNTIL;
         if (stimulus <= now) {
-            deliver(run, &run->stimuli->list[run->next++]);
+            deliver_stimulus(run, &run->stimuli->list[run->next++]);
             continue;
         }
         uint64_t end = leap_end(run, stimulus);
@@ -160,7 +160,7 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
             return EXEC_NO_TRACE;
         if (run->open && !left && repeats(run))
             return EXEC_ENDLESS;
-        progress_look(progress, run);
+        progress_update(progress, run);
     }
     return EXEC_INTERRUPTED;
 }

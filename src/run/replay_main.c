@@ -137,19 +137,19 @@ struct progress {
     double begin, next; /* s */
 };
 
-static double seconds(void)
+static double seconds_now(void)
 {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
-static bool look(void *context)
+static bool update_progress(void *context)
 {
     struct progress *progress = context;
     if (interrupted || !progress->wanted || ++progress->steps % STEPS_A_LOOK != 0)
         return interrupted;
-    double now = seconds();
+    double now = seconds_now();
     if (now < progress->next)
         return false;
     progress->next = now + PROGRESS_EVERY;
@@ -165,7 +165,7 @@ static bool look(void *context)
 static void begin_progress(struct progress *progress, struct replay *replay, FILE *in)
 {
     struct stat status;
-    double now = seconds();
+    double now = seconds_now();
     *progress = (struct progress){
         .replay = replay,
         .in = in,
@@ -184,7 +184,7 @@ struct files {
     struct wire_file *wire[FILES_MAX];
 };
 
-static bool check(const char *path, int error)
+static bool check_written(const char *path, int error)
 {
     if (error != 0)
         fprintf(stderr, "rkm04 replay: cannot write %s: %s\n", path, strerror(error));
@@ -210,10 +210,10 @@ static bool end_files(struct files *files, const struct options *options)
     bool well = true;
     for (size_t i = 0; i < options->traces; i++)
         if (files->trace[i])
-            well = check(options->trace[i], trace_file_end(files->trace[i])) && well;
+            well = check_written(options->trace[i], trace_file_end(files->trace[i])) && well;
     for (size_t i = 0; i < options->wires; i++)
         if (files->wire[i])
-            well = check(options->wire[i], wire_file_end(files->wire[i])) && well;
+            well = check_written(options->wire[i], wire_file_end(files->wire[i])) && well;
     return well;
 }
 
@@ -275,7 +275,7 @@ static bool report_text(struct replay *replay, const char *name, enum replay_end
 
 /* ---- All of it ------------------------------------------------------------------------------------------------------ */
 
-static int run(struct replay *replay, FILE *in, const char *name, const struct options *options)
+static int run_replay(struct replay *replay, FILE *in, const char *name, const struct options *options)
 {
     struct files files = {0};
     struct progress progress;
@@ -286,7 +286,7 @@ static int run(struct replay *replay, FILE *in, const char *name, const struct o
     if (replay_sim(replay))
         well = begin_files(&files, replay_sim(replay), options);
     if (well)
-        end = replay_run(replay, look, &progress);
+        end = replay_run(replay, update_progress, &progress);
     if (progress.shown)
         fputs("\r\033[K", stderr);
     well = end_files(&files, options) && well;
@@ -294,7 +294,7 @@ static int run(struct replay *replay, FILE *in, const char *name, const struct o
         return STATUS_FAILURE;
     well = (options->json ? report_json(replay, name, end) : report_text(replay, name, end)) && well;
     if (fflush(stdout) != 0)
-        well = check("standard output", errno);
+        well = check_written("standard output", errno);
     return end == REPLAY_WRONG ? STATUS_USAGE : end == REPLAY_SAME && well ? STATUS_SUCCESS : STATUS_FAILURE;
 }
 
@@ -318,7 +318,7 @@ int replay_main(int argc, char **argv)
     struct replay *replay = replay_open(name, in);
     int status = STATUS_FAILURE;
     if (replay)
-        status = run(replay, in, name, &options);
+        status = run_replay(replay, in, name, &options);
     else
         fputs("rkm04 replay: out of memory\n", stderr);
     if (replay)

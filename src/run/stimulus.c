@@ -55,7 +55,7 @@ static bool word_is(struct word word, const char *text)
 }
 
 /* Report what was expected at the word, or `offset` characters into it. Returns false. */
-static bool expected(struct parser *p, struct word word, size_t offset, const char *what)
+static bool report_expected(struct parser *p, struct word word, size_t offset, const char *what)
 {
     char found[FOUND_MAX + 1];
     size_t n = word.length < FOUND_MAX ? word.length : FOUND_MAX;
@@ -78,7 +78,7 @@ static bool read_end(struct parser *p)
 {
     struct word word = next_word(p);
     if (word.length > 0 && word.text[0] != '#')
-        return expected(p, word, 0, "the end of the line");
+        return report_expected(p, word, 0, "the end of the line");
     return true;
 }
 
@@ -88,16 +88,16 @@ static bool read_input(struct parser *p, struct stimulus *s)
     unsigned number = 0;
     for (size_t i = 0; i < word.length; i++) {
         if (word.text[i] < '0' || word.text[i] > '9' || word.length > 2)
-            return expected(p, word, 0, "an input 01 to 08");
+            return report_expected(p, word, 0, "an input 01 to 08");
         number = number * 10 + (unsigned)(word.text[i] - '0');
     }
     if (number < 1 || number > RKM04_INPUTS)
-        return expected(p, word, 0, "an input 01 to 08");
+        return report_expected(p, word, 0, "an input 01 to 08");
     s->kind = STIMULUS_INPUT;
     s->input = (uint8_t)number;
     word = next_word(p);
     if (!word_is(word, "0") && !word_is(word, "1"))
-        return expected(p, word, 0, "0 or 1");
+        return report_expected(p, word, 0, "0 or 1");
     s->level = word.text[0] == '1';
     return read_end(p);
 }
@@ -106,7 +106,7 @@ static bool read_set(struct parser *p, struct stimulus *s)
 {
     struct word word = next_word(p);
     if (word.length != 1 || word.text[0] < '0' || word.text[0] > '0' + RKM04_MOTORS)
-        return expected(p, word, 0, "a motor 1 to 4, or 0 for all");
+        return report_expected(p, word, 0, "a motor 1 to 4, or 0 for all");
     s->kind = STIMULUS_SET;
     s->motor = word.text[0];
     skip_blanks(p);
@@ -114,7 +114,7 @@ static bool read_set(struct parser *p, struct stimulus *s)
     while (end > p->at && is_blank(p->line[end - 1]))
         end--;
     if (end == p->at)
-        return expected(p, next_word(p), 0, "a program text");
+        return report_expected(p, next_word(p), 0, "a program text");
     s->data = p->free_byte;
     s->length = end - p->at;
     s->column = p->at + 1;
@@ -141,15 +141,15 @@ static bool read_message(struct parser *p, struct stimulus *s)
     s->data = p->free_byte;
     s->column = word.at + 1;
     if (word.length == 0 || word.text[0] == '#')
-        return expected(p, word, 0, "the bytes of a message in hexadecimal, such as 0431");
+        return report_expected(p, word, 0, "the bytes of a message in hexadecimal, such as 0431");
     for (; word.length > 0 && word.text[0] != '#'; word = next_word(p)) {
         for (size_t i = 0; i < word.length; i += 2) {
             int high = hex_digit(word.text[i]);
             int low = i + 1 < word.length ? hex_digit(word.text[i + 1]) : -1;
             if (high < 0 || low < 0)
-                return expected(p, word, high < 0 ? i : i + 1, "two hexadecimal digits a byte");
+                return report_expected(p, word, high < 0 ? i : i + 1, "two hexadecimal digits a byte");
             if (s->length == RKM04_MESSAGE_MAX)
-                return expected(p, word, i, "no more bytes than a request may have");
+                return report_expected(p, word, i, "no more bytes than a request may have");
             p->free_byte[s->length++] = (uint8_t)(high << 4 | low);
         }
     }
@@ -166,7 +166,7 @@ static bool read_line(struct parser *p, struct stimulus *s)
     size_t wrong;
     const char *form = time_value_read(time.text, time.length, &s->tick, &wrong);
     if (form != NULL)
-        return expected(p, time, wrong, form);
+        return report_expected(p, time, wrong, form);
     s->line = p->number;
     struct word kind = next_word(p);
     if (word_is(kind, "di"))
@@ -175,7 +175,7 @@ static bool read_line(struct parser *p, struct stimulus *s)
         return read_set(p, s);
     if (word_is(kind, "message"))
         return read_message(p, s);
-    return expected(p, kind, 0, "di, set or message");
+    return report_expected(p, kind, 0, "di, set or message");
 }
 
 static bool append(struct parser *p, const struct stimulus *s)
@@ -194,7 +194,7 @@ static bool append(struct parser *p, const struct stimulus *s)
 }
 
 /* Lines of one time stay in the order of the file. */
-static int by_tick(const void *left, const void *right)
+static int compare_ticks(const void *left, const void *right)
 {
     const struct stimulus *a = left, *b = right;
     if (a->tick != b->tick)
@@ -222,7 +222,7 @@ int stimuli_read(struct stimuli *stimuli, const char *name, const char *text, si
         begin += p.length + 1;
     }
     if (stimuli->count > 1)
-        qsort(stimuli->list, stimuli->count, sizeof stimuli->list[0], by_tick);
+        qsort(stimuli->list, stimuli->count, sizeof stimuli->list[0], compare_ticks);
     return p.error_count;
 }
 

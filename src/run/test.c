@@ -207,7 +207,7 @@ static bool run_all(struct test_case *tests, const struct options *options, int 
 }
 
 /* `wrong`: an errno of before, or 0. */
-static bool finish(FILE *file, const char *what, int wrong)
+static bool finish_file(FILE *file, const char *what, int wrong)
 {
     if (fflush(file) != 0 && wrong == 0)
         wrong = errno;
@@ -225,16 +225,16 @@ static bool report_all(const struct test_case *tests, const struct options *opti
     bool well = true;
     if (junit != NULL) {
         test_report_junit(junit, tests, options->paths, options->strict);
-        well = finish(junit, options->junit, 0);
+        well = finish_file(junit, options->junit, 0);
     }
     if (options->json)
         test_report_json(stdout, tests, options->paths);
     else if (options->paths > 1)
         test_report_sum(stdout, tests, options->paths);
-    return finish(stdout, "the results", wrong) && well;
+    return finish_file(stdout, "the results", wrong) && well;
 }
 
-static int run(struct test_case *tests, const struct options *options)
+static int run_files(struct test_case *tests, const struct options *options)
 {
     FILE *junit = NULL;
     int status = read_all(tests, options);
@@ -271,7 +271,7 @@ int test_main(int argc, char **argv)
         fprintf(stderr, "rkm04 test: %s\n", strerror(ENOMEM));
     } else {
         parse_options(argc, argv, &options);
-        status = run(tests, &options);
+        status = run_files(tests, &options);
     }
     for (size_t i = 0; tests != NULL && i < options.paths; i++)
         test_case_free(&tests[i]);

@@ -119,7 +119,7 @@ void test_case_free(struct test_case *test)
 /* ---- Records -------------------------------------------------------------------------------------------------------- */
 
 /* The name of the file without folder and suffix. */
-static const char *base_of(const struct test_case *test, int *length)
+static const char *base_name(const struct test_case *test, int *length)
 {
     const char *slash = strrchr(test->file, '/'), *base = slash != NULL ? slash + 1 : test->file;
     if (strcmp(base, "<stdin>") == 0)
@@ -132,14 +132,14 @@ static const char *base_of(const struct test_case *test, int *length)
 bool test_case_alike(const struct test_case *left, const struct test_case *right)
 {
     int left_length, right_length;
-    const char *left_base = base_of(left, &left_length), *right_base = base_of(right, &right_length);
+    const char *left_base = base_name(left, &left_length), *right_base = base_name(right, &right_length);
     return left_length == right_length && memcmp(left_base, right_base, (size_t)left_length) == 0;
 }
 
 static char *record_path(const struct test_case *test, const char *folder, unsigned number)
 {
     int length;
-    const char *base = base_of(test, &length);
+    const char *base = base_name(test, &length);
     char *path, suffix[16] = "";
     if (number > 1)
         snprintf(suffix, sizeof suffix, "-%u", number);
@@ -159,8 +159,8 @@ static bool write_record(const char *path, unsigned flags, const char *text, siz
     return well && output_file_spare(path); /* from the others of the run */
 }
 
-static bool keep_record(struct test_case *test, const char *folder, unsigned flags, unsigned number, const char *text,
-                        size_t length)
+static bool store_recording(struct test_case *test, const char *folder, unsigned flags, unsigned number, const char *text,
+                            size_t length)
 {
     char *path = record_path(test, folder, number), *why = NULL;
     if (test->result.record_error == 0 && path != NULL && write_record(path, flags, text, length, &why)) {
@@ -178,16 +178,16 @@ static bool keep_record(struct test_case *test, const char *folder, unsigned fla
 
 /* ---- The run -------------------------------------------------------------------------------------------------------- */
 
-static double now(void)
+static double seconds_now(void)
 {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
     return (double)time.tv_sec + (double)time.tv_nsec * 1e-9;
 }
 
-static void show(struct test_progress *progress, uint64_t tick)
+static void show_progress(struct test_progress *progress, uint64_t tick)
 {
-    double real = now();
+    double real = seconds_now();
     if (!progress->wanted || real < progress->next)
         return;
     double virtual = (double)tick / US_PER_SECOND;
@@ -197,9 +197,9 @@ static void show(struct test_progress *progress, uint64_t tick)
             test_case_name(progress->test), virtual);
 }
 
-static bool ask(void *context, uint64_t tick)
+static bool on_turn(void *context, uint64_t tick)
 {
-    show(context, tick);
+    show_progress(context, tick);
     return interrupted != 0;
 }
 
@@ -212,11 +212,11 @@ static enum test_outcome run_once(struct test_case *test, FILE *out, struct scen
         [SCENARIO_INTERRUPTED] = TEST_NOT_RUN,
         [SCENARIO_NO_MEMORY] = TEST_BROKEN,
     };
-    double begin = now();
+    double begin = seconds_now();
     progress->test = test;
     progress->next = begin + PROGRESS_AFTER;
-    enum test_outcome outcome = outcomes[scenario_run(test->scenario, out, ask, progress, result)];
-    test->seconds += now() - begin;
+    enum test_outcome outcome = outcomes[scenario_run(test->scenario, out, on_turn, progress, result)];
+    test->seconds += seconds_now() - begin;
     if (progress->shown)
         fputs("\r\033[K", stderr);
     progress->shown = false;
@@ -238,7 +238,7 @@ bool test_case_run(struct test_case *test, const char *folder, unsigned flags, u
     if (out != NULL && fclose(out) != 0)
         test->result.record_error = errno;
     if (test->outcome == TEST_FAILED && folder != NULL)
-        well = keep_record(test, folder, flags, number, record, length);
+        well = store_recording(test, folder, flags, number, record, length);
     free(record);
     return well;
 }

@@ -28,7 +28,7 @@ static void list_choices(struct trial *trial, readings_set fixed)
     }
 }
 
-static bool keep(struct test_readings *under, const struct test_variant *variant)
+static bool add_variant(struct test_readings *under, const struct test_variant *variant)
 {
     struct test_variant *grown = realloc(under->variant, (under->variants + 1) * sizeof *grown);
     if (grown == NULL)
@@ -55,7 +55,7 @@ static bool run_under(struct trial *trial, struct test_choice first, struct test
     under->runs += counts;
     under->passed += variant.outcome == TEST_PASSED;
     bool differs = counts && variant.outcome != trial->test->outcome;
-    bool kept = differs && keep(under, &variant);
+    bool kept = differs && add_variant(under, &variant);
     if (variant.outcome == TEST_BROKEN || differs != kept)
         under->broken = true;
     if (!kept)
@@ -88,7 +88,7 @@ void test_readings_run(struct test_case *test, const struct rkm04_readings *base
     test->under = calloc(1, sizeof *test->under);
     if (test->under == NULL)
         return;
-    list_choices(&trial, named | scenario_named(test->scenario));
+    list_choices(&trial, named | scenario_readings(test->scenario));
     test->under->planned = 1 + trial.choices;
     test->under->runs = 1;
     test->under->passed = test->outcome == TEST_PASSED;

@@ -38,7 +38,7 @@ const char *scenario_name(const struct scenario *scenario);
 void scenario_set_readings(struct scenario *scenario, const struct rkm04_readings *readings);
 
 /* The readings that it names itself. */
-readings_set scenario_named(const struct scenario *scenario);
+readings_set scenario_readings(const struct scenario *scenario);
 
 enum scenario_end {
     SCENARIO_PASSED,

@@ -10,23 +10,23 @@
 #define TIME_OF(ticks) (ticks) / US_PER_SECOND, (ticks) % US_PER_SECOND
 
 /* "TEXT within 5.000000 s"; takes `text` over. */
-static char *with_time(char *text, const char *word, uint64_t ticks)
+static char *add_time(char *text, const char *word, uint64_t ticks)
 {
     char *whole = text != NULL ? running_text("%s %s " TIME_FORMAT, text, word, TIME_OF(ticks)) : NULL;
     free(text);
     return whole;
 }
 
-static bool go_to(struct running *running, uint64_t tick)
+static bool run_until(struct running *running, uint64_t tick)
 {
     while (!running->over && sim_now(running->sim) < tick)
-        running_turn(running, tick, NULL);
+        running_advance(running, tick, NULL);
     return !running->over;
 }
 
 /* ---- Conditions ----------------------------------------------------------------------------------------------------- */
 
-static struct condition *arm(struct running *running, const struct scenario_step *step)
+static struct condition *arm_condition(struct running *running, const struct scenario_step *step)
 {
     struct refusal refusal;
     struct condition *condition = condition_read(running->sim, step->json, &refusal);
@@ -37,32 +37,32 @@ static struct condition *arm(struct running *running, const struct scenario_step
     return condition;
 }
 
-static bool judge_wait(struct running *running, const struct scenario_step *step, struct condition *condition, uint64_t begin)
+static bool check_wait(struct running *running, const struct scenario_step *step, struct condition *condition, uint64_t begin)
 {
     uint64_t now = sim_now(running->sim);
     if (!condition_holds(condition))
-        return running_failed(running, step, now, with_time(condition_wanted_text(condition), "within", step->within),
+        return running_failed(running, step, now, add_time(condition_wanted_text(condition), "within", step->within),
                               condition_found_text(condition));
     if (now - begin < step->not_before)
-        return running_failed(running, step, now, with_time(condition_wanted_text(condition), "not before", step->not_before),
-                              with_time(condition_found_text(condition), "after", now - begin));
+        return running_failed(running, step, now, add_time(condition_wanted_text(condition), "not before", step->not_before),
+                              add_time(condition_found_text(condition), "after", now - begin));
     return true;
 }
 
 static bool do_wait(struct running *running, const struct scenario_step *step)
 {
     uint64_t begin = sim_now(running->sim);
-    struct condition *condition = arm(running, step);
+    struct condition *condition = arm_condition(running, step);
     while (!running->over && !condition_holds(condition) && sim_now(running->sim) < begin + step->within)
-        running_turn(running, begin + step->within, condition);
-    bool well = !running->over && judge_wait(running, step, condition, begin);
+        running_advance(running, begin + step->within, condition);
+    bool well = !running->over && check_wait(running, step, condition, begin);
     condition_free(condition);
     return well;
 }
 
 static bool do_expect(struct running *running, const struct scenario_step *step)
 {
-    struct condition *condition = arm(running, step);
+    struct condition *condition = arm_condition(running, step);
     if (!running->over && !condition_holds(condition))
         running_failed(running, step, sim_now(running->sim), condition_wanted_text(condition), condition_found_text(condition));
     condition_free(condition);
@@ -72,16 +72,16 @@ static bool do_expect(struct running *running, const struct scenario_step *step)
 static bool do_stays(struct running *running, const struct scenario_step *step)
 {
     uint64_t end = sim_now(running->sim) + step->time;
-    struct condition *condition = arm(running, step);
+    struct condition *condition = arm_condition(running, step);
     while (!running->over) {
         uint64_t now = sim_now(running->sim);
         if (!condition_holds(condition))
-            running_failed(running, step, now, with_time(condition_wanted_text(condition), "all the time for", step->time),
+            running_failed(running, step, now, add_time(condition_wanted_text(condition), "all the time for", step->time),
                            condition_found_text(condition));
         else if (now >= end)
             break;
         else
-            running_turn(running, end, condition);
+            running_advance(running, end, condition);
     }
     condition_free(condition);
     return !running->over;
@@ -152,7 +152,7 @@ static bool do_call(struct running *running, const struct scenario_step *step)
 
 /* ---- The whole ------------------------------------------------------------------------------------------------------ */
 
-static bool act(struct running *running, const struct scenario_step *step)
+static bool do_action(struct running *running, const struct scenario_step *step)
 {
     switch ((enum scenario_action)step->action) {
     case ACTION_WAIT:
@@ -162,7 +162,7 @@ static bool act(struct running *running, const struct scenario_step *step)
     case ACTION_STAYS:
         return do_stays(running, step);
     case ACTION_ADVANCE:
-        return go_to(running, sim_now(running->sim) + step->time);
+        return run_until(running, sim_now(running->sim) + step->time);
     case ACTION_PULSES:
         return do_pulses(running, step);
     case ACTION_CALL:
@@ -172,13 +172,13 @@ static bool act(struct running *running, const struct scenario_step *step)
     }
 }
 
-bool running_do(struct running *running, const struct scenario_step *step)
+bool running_do_step(struct running *running, const struct scenario_step *step)
 {
     uint64_t now = sim_now(running->sim);
     if (step->at != DEVICE_NEVER && step->at < now)
         return running_failed(running, step, now, running_text("to begin at " TIME_FORMAT, TIME_OF(step->at)),
                               running_text("the step before has just ended"));
-    if (step->at != DEVICE_NEVER && !go_to(running, step->at))
+    if (step->at != DEVICE_NEVER && !run_until(running, step->at))
         return false;
-    return act(running, step);
+    return do_action(running, step);
 }

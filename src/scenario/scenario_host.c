@@ -13,7 +13,7 @@ static const struct rkm04_framing *framing_of(const struct running *running)
     return sim_device(running->sim)->framing(&running->scenario->config.unit);
 }
 
-void running_hear(void *context, const uint8_t *bytes, size_t length)
+void running_receive(void *context, const uint8_t *bytes, size_t length)
 {
     struct running *running = context;
     struct host *host = &running->host;
@@ -30,7 +30,7 @@ void running_hear(void *context, const uint8_t *bytes, size_t length)
     }
 }
 
-static void listen(struct host *host)
+static void start_listening(struct host *host)
 {
     host->receiver = (struct rkm04_receiver){0};
     host->listening = true;
@@ -45,7 +45,7 @@ static unsigned address_of(const struct running *running, unsigned unit)
 }
 
 /* The bytes on the line. Returns them, to be freed, or NULL if out of memory. */
-static uint8_t *frame(const struct running *running, const struct scenario_step *step, size_t *length)
+static uint8_t *make_frame(const struct running *running, const struct scenario_step *step, size_t *length)
 {
     const struct rkm04_framing *framing = framing_of(running);
     const struct scenario_bytes *bytes = &step->bytes;
@@ -79,12 +79,12 @@ static bool send_bytes(struct running *running, const uint8_t *bytes, size_t len
                 *passed = (sim->segment.host_free + WIRE_TICK - 1) / WIRE_TICK;
             handed += part;
             sim_advance(sim, sim_now(sim));
-        } else if (!running_turn(running, sim_now(sim) + RKM04_SLOT_TICKS, NULL)) {
+        } else if (!running_advance(running, sim_now(sim) + RKM04_SLOT_TICKS, NULL)) {
             return false;
         }
     }
     while (!running->over && !running->host.answered && sim_now(sim) < *passed)
-        running_turn(running, *passed, NULL);
+        running_advance(running, *passed, NULL);
     return !running->over;
 }
 
@@ -157,7 +157,7 @@ static char *flag_text(const uint8_t *answer, const char *wrong)
     return running_text("flag %u (%s, character %02X)%s%s", flag, meaning, answer[3], colon, wrong);
 }
 
-static bool judge_program(struct running *running, const struct scenario_step *step)
+static bool check_program_answer(struct running *running, const struct scenario_step *step)
 {
     const struct host *host = &running->host;
     struct scenario_bytes answer = {.length = host->length, .byte = running->host.buffer};
@@ -168,7 +168,7 @@ static bool judge_program(struct running *running, const struct scenario_step *s
     return true;
 }
 
-static bool judge(struct running *running, const struct scenario_step *step)
+static bool check_answer(struct running *running, const struct scenario_step *step)
 {
     const struct host *host = &running->host;
     struct scenario_bytes answer = {.length = host->length, .byte = running->host.buffer};
@@ -179,7 +179,7 @@ static bool judge(struct running *running, const struct scenario_step *step)
     if (step->unit > 0 && from > 0 && from != address_of(running, step->unit)) /* 0: the framing does not tell */
         return running_failed(running, step, now, wanted_text(step), running_text("an answer from address %u", from));
     if (step->action == ACTION_SET)
-        return judge_program(running, step);
+        return check_program_answer(running, step);
     if (step->answer == ANSWER_THIS && !scenario_bytes_match(&step->wanted, answer.byte, answer.length))
         return running_failed(running, step, now, wanted_text(step), text_with(&answer, "the answer %s"));
     return true;
@@ -189,22 +189,22 @@ bool running_send(struct running *running, const struct scenario_step *step)
 {
     size_t length;
     uint64_t passed;
-    uint8_t *bytes = frame(running, step, &length);
+    uint8_t *bytes = make_frame(running, step, &length);
     if (bytes == NULL)
         return running_no_memory(running);
     if (step->answer != ANSWER_UNASKED)
-        listen(&running->host);
+        start_listening(&running->host);
     bool well = send_bytes(running, bytes, length, &passed);
     free(bytes);
     if (step->answer == ANSWER_UNASKED || !well)
         return well;
     while (!running->over && !running->host.answered && sim_now(running->sim) < passed + step->within)
-        running_turn(running, passed + step->within, NULL);
+        running_advance(running, passed + step->within, NULL);
     running->host.listening = false;
     if (running->over)
         return false;
     if (running->host.answered)
-        return judge(running, step);
+        return check_answer(running, step);
     return step->answer == ANSWER_NONE ||
            running_failed(running, step, sim_now(running->sim), wanted_text(step), silence_text(running, passed));
 }

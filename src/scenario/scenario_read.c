@@ -132,7 +132,7 @@ static bool read_rest(struct scenario *scenario, const struct config_node *root)
 /* ---- Files ---------------------------------------------------------------------------------------------------------- */
 
 /* `name` as seen from the folder of the scenario. */
-static char *beside(const char *scenario, const char *name)
+static char *path_beside(const char *scenario, const char *name)
 {
     const char *slash = strrchr(scenario, '/');
     size_t folder = slash != NULL && name[0] != '/' ? (size_t)(slash - scenario) + 1 : 0;
@@ -151,7 +151,7 @@ char *scenario_file(struct scenario_reader *reader, const struct config_node *no
         config_error(node, "expected the name of a file");
         return NULL;
     }
-    *path = beside(reader->name, config_text(node));
+    *path = path_beside(reader->name, config_text(node));
     if (*path == NULL || reader->files->read == NULL) {
         config_error(node, "cannot read %s: %s", config_text(node), *path == NULL ? "out of memory" : why);
         return NULL;
@@ -355,7 +355,7 @@ void scenario_set_readings(struct scenario *scenario, const struct rkm04_reading
     put_settings(scenario);
 }
 
-readings_set scenario_named(const struct scenario *scenario)
+readings_set scenario_readings(const struct scenario *scenario)
 {
     return scenario->named;
 }

@@ -23,7 +23,7 @@ char *running_text(const char *format, ...)
     return text;
 }
 
-static bool ended(struct running *running, enum scenario_end end, uint64_t tick)
+static bool end_run(struct running *running, enum scenario_end end, uint64_t tick)
 {
     running->over = true;
     running->end = end;
@@ -33,7 +33,7 @@ static bool ended(struct running *running, enum scenario_end end, uint64_t tick)
 
 bool running_no_memory(struct running *running)
 {
-    return ended(running, SCENARIO_NO_MEMORY, sim_now(running->sim));
+    return end_run(running, SCENARIO_NO_MEMORY, sim_now(running->sim));
 }
 
 static bool failed_at(struct running *running, const struct config_node *node, const char *label, uint64_t tick, char *expected,
@@ -47,7 +47,7 @@ static bool failed_at(struct running *running, const struct config_node *node, c
     result->line = config_line(node);
     result->column = config_column(node);
     result->label = label != NULL ? strdup(label) : NULL;
-    return ended(running, SCENARIO_FAILED, tick);
+    return end_run(running, SCENARIO_FAILED, tick);
 }
 
 bool running_failed(struct running *running, const struct scenario_step *step, uint64_t tick, char *expected, char *seen)
@@ -76,7 +76,7 @@ static void on_event(void *context, const struct watch_event *event)
     }
 }
 
-static void watch(struct running *running)
+static void start_watching(struct running *running)
 {
     running->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_FAULT), .on_event = on_event, .context = running};
     if (running->scenario->count_pulses)
@@ -137,7 +137,7 @@ static bool do_stimuli(struct running *running)
             continue;
         state->acted = true;
         step.at = DEVICE_NEVER; /* now */
-        if (running_do(running, &step))
+        if (running_do_step(running, &step))
             i = SIZE_MAX; /* from the first one again */
     }
     return !running->over;
@@ -175,13 +175,13 @@ static bool check_all_acted(struct running *running)
 /* ---- Time ----------------------------------------------------------------------------------------------------------- */
 
 /* Look at everything at the present tick. */
-static bool look(struct running *running)
+static bool check_all(struct running *running)
 {
     if (running->over || !check_faults(running) || !do_stimuli(running) || !check_always(running))
         return false;
     if (running->interrupted != NULL && ++running->turns % LOOK_EVERY == 0 &&
         running->interrupted(running->context, sim_now(running->sim)))
-        return ended(running, SCENARIO_INTERRUPTED, sim_now(running->sim));
+        return end_run(running, SCENARIO_INTERRUPTED, sim_now(running->sim));
     return true;
 }
 
@@ -190,7 +190,7 @@ static uint64_t earlier(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-bool running_turn(struct running *running, uint64_t limit, struct condition *condition)
+bool running_advance(struct running *running, uint64_t limit, struct condition *condition)
 {
     uint64_t now = sim_now(running->sim), quiet = earlier(sim_next_event(running->sim), sim_due(running->sim));
     uint64_t next = now + US_PER_SECOND;
@@ -206,12 +206,12 @@ bool running_turn(struct running *running, uint64_t limit, struct condition *con
     if (running->host.listening)
         next = earlier(next, sim_due(running->sim));
     sim_advance(running->sim, next > now ? next : now + 1);
-    return look(running);
+    return check_all(running);
 }
 
 /* ---- The whole ------------------------------------------------------------------------------------------------------ */
 
-static struct condition *arm(struct running *running, const json_t *json)
+static struct condition *arm_condition(struct running *running, const json_t *json)
 {
     struct refusal refusal;
     struct condition *condition = condition_read(running->sim, json, &refusal);
@@ -222,7 +222,7 @@ static struct condition *arm(struct running *running, const json_t *json)
     return condition;
 }
 
-static bool arm_all(struct running *running)
+static bool arm_conditions(struct running *running)
 {
     const struct scenario *scenario = running->scenario;
     size_t always = json_array_size(scenario->always);
@@ -231,11 +231,11 @@ static bool arm_all(struct running *running)
     if (running->always == NULL || running->stimulus == NULL)
         return running_no_memory(running);
     for (size_t i = 0; i < always && !running->over; i++)
-        running->always[i] = arm(running, json_array_get(scenario->always, i));
+        running->always[i] = arm_condition(running, json_array_get(scenario->always, i));
     for (size_t i = 0; i < scenario->stimuli && !running->over; i++) {
         running->stimulus[i].due = scenario->stimulus[i].step.at;
         if (scenario->stimulus[i].when != NULL)
-            running->stimulus[i].when = arm(running, scenario->stimulus[i].when);
+            running->stimulus[i].when = arm_condition(running, scenario->stimulus[i].when);
         else
             running->stimulus[i].due += scenario->stimulus[i].after;
     }
@@ -250,11 +250,11 @@ static bool run_steps(struct running *running)
     if (!scenario_begin_inputs(scenario, running->sim, &refusal))
         return running_failed(running, running->step, 0, running_text("di to succeed"),
                               running_text("refused: %s", refusal.text));
-    if (!arm_all(running) || !look(running))
+    if (!arm_conditions(running) || !check_all(running))
         return false;
     for (size_t i = 0; i < scenario->steps; i++) {
         running->step = &scenario->step[i];
-        if (!running_do(running, running->step) || !look(running))
+        if (!running_do_step(running, running->step) || !check_all(running))
             return false;
     }
     return check_all_acted(running);
@@ -265,7 +265,7 @@ static bool is_interrupted(void *context)
 {
     struct running *running = context;
     if (running->interrupted != NULL && running->interrupted(running->context, sim_now(running->sim)))
-        ended(running, SCENARIO_INTERRUPTED, sim_now(running->sim));
+        end_run(running, SCENARIO_INTERRUPTED, sim_now(running->sim));
     return running->over;
 }
 
@@ -276,11 +276,11 @@ static void run_recorded(struct running *running, FILE *out)
         running_no_memory(running);
         return;
     }
-    watch(running);
+    start_watching(running);
     running->sim->interrupted = is_interrupted;
     running->sim->interrupted_context = running;
     if (run_steps(running))
-        ended(running, SCENARIO_PASSED, sim_now(running->sim));
+        end_run(running, SCENARIO_PASSED, sim_now(running->sim));
     if (running->sim->watch.short_of_memory)
         running_no_memory(running);
     if (record != NULL)
@@ -325,7 +325,7 @@ enum scenario_end scenario_run(const struct scenario *scenario, FILE *record, bo
         free(sim);
         return SCENARIO_NO_MEMORY;
     }
-    own.config.out = running_hear;
+    own.config.out = running_receive;
     own.config.context = running;
     running->scenario = &own;
     running->sim = sim;

@@ -63,13 +63,13 @@ char *running_text(const char *format, ...) __attribute__((format(printf, 1, 2))
 
 /* Let time go on, up to `limit` at most, but no further than to where `condition` (NULL: none) may have come to hold, or an
  * answer may be there while the host listens. Returns false if the run is over. */
-bool running_turn(struct running *running, uint64_t limit, struct condition *condition);
+bool running_advance(struct running *running, uint64_t limit, struct condition *condition);
 
 /* Do a step, or what a stimulus has to do. Returns false if the run is over. */
-bool running_do(struct running *running, const struct scenario_step *step);
+bool running_do_step(struct running *running, const struct scenario_step *step);
 
 /* The master's ear, for sim_config.out. */
-void running_hear(void *context, const uint8_t *bytes, size_t length);
+void running_receive(void *context, const uint8_t *bytes, size_t length);
 
 /* Send what the step says and judge the answer. */
 bool running_send(struct running *running, const struct scenario_step *step);

@@ -161,7 +161,7 @@ static bool read_bytes(struct scenario_reader *reader, const struct config_node 
 }
 
 /* Keep the first of the errors in the program, for the report if the unit refuses it. `name`: of the file. */
-static void find_wrong(const struct scenario_reader *reader, const char *name, struct scenario_step *step)
+static void find_program_error(const struct scenario_reader *reader, const char *name, struct scenario_step *step)
 {
     char *text = NULL;
     size_t length;
@@ -178,8 +178,8 @@ static void find_wrong(const struct scenario_reader *reader, const char *name, s
 }
 
 /* The message 2 that carries a program text, from the file `name`, and what must be answered. */
-static bool take_program(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step,
-                         const char *name, const char *text, size_t length)
+static bool set_program(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step,
+                        const char *name, const char *text, size_t length)
 {
     const struct config_node *motor_node = config_get(node, "motor"), *flag_node = config_get(node, "flag");
     int64_t motor = 1, flag = 0;
@@ -200,7 +200,7 @@ static bool take_program(struct scenario_reader *reader, const struct config_nod
     step->bytes.length = length + 2;
     if (reader->files->map != NULL)
         step->bytes.length = 2 + reader->files->map((char *)step->bytes.byte + 2, length);
-    find_wrong(reader, name, step);
+    find_program_error(reader, name, step);
     step->flag = (uint8_t)flag;
     step->answer = step->unit == 0 ? ANSWER_UNASKED : ANSWER_THIS;
     return step->unit != 0 || flag_node == NULL ||
@@ -210,7 +210,7 @@ static bool take_program(struct scenario_reader *reader, const struct config_nod
 static bool read_set(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
 {
     const char *text = read_text(config_get(node, "set"), "program");
-    return text != NULL && take_program(reader, node, step, "TEXT", text, strlen(text));
+    return text != NULL && set_program(reader, node, step, "TEXT", text, strlen(text));
 }
 
 static bool read_program(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
@@ -219,7 +219,7 @@ static bool read_program(struct scenario_reader *reader, const struct config_nod
     char *path = NULL;
     size_t length;
     char *text = scenario_file(reader, file, &path, &length);
-    bool well = text != NULL && take_program(reader, node, step, path, text, length);
+    bool well = text != NULL && set_program(reader, node, step, path, text, length);
     free(path);
     free(text);
     return well;
@@ -320,8 +320,8 @@ static bool spare_file(const struct config_node *node, const json_t *params)
 }
 
 /* Try a command out, on a line of which nothing is seen. Takes `params` over. */
-static bool take_command(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step,
-                         const char *method, json_t *params)
+static bool set_command(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step,
+                        const char *method, json_t *params)
 {
     struct refusal refusal = {0};
     step->method = method;
@@ -351,7 +351,7 @@ static bool read_di(struct scenario_reader *reader, const struct config_node *no
     if (params == NULL)
         return false;
     json_object_set_new(params, "di", config_json(config_get(node, "di")));
-    return take_command(reader, config_get(node, "di"), step, "di.set", params);
+    return set_command(reader, config_get(node, "di"), step, "di.set", params);
 }
 
 static bool read_power(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
@@ -361,7 +361,7 @@ static bool read_power(struct scenario_reader *reader, const struct config_node 
     if (params == NULL)
         return false;
     json_object_set_new(params, "on", json_boolean(on));
-    return take_command(reader, node, step, "power", params);
+    return set_command(reader, node, step, "power", params);
 }
 
 static bool read_reset(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
@@ -372,7 +372,7 @@ static bool read_reset(struct scenario_reader *reader, const struct config_node 
     if (!on)
         return config_error(config_get(node, "reset"), "expected true");
     json_t *params = params_of(reader, node);
-    return params != NULL && take_command(reader, node, step, "reset", params);
+    return params != NULL && set_command(reader, node, step, "reset", params);
 }
 
 /* The one parameter that is no whole number: 0.25 is a text in a configuration file. */
@@ -392,14 +392,14 @@ static bool read_fault(struct scenario_reader *reader, const struct config_node 
     const struct config_node *fault = config_get(node, "fault");
     json_t *params = config_json(fault);
     make_probability(params);
-    return take_command(reader, fault, step, "fault.inject", params);
+    return set_command(reader, fault, step, "fault.inject", params);
 }
 
 static bool read_clear(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
 {
     const struct config_node *clear = config_get(node, "clear");
     bool all = config_type(clear) == CONFIG_TEXT && strcmp(config_text(clear), "all") == 0;
-    return take_command(reader, clear, step, "fault.clear", all ? json_object() : config_json(clear));
+    return set_command(reader, clear, step, "fault.clear", all ? json_object() : config_json(clear));
 }
 
 static bool read_call(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
@@ -408,7 +408,7 @@ static bool read_call(struct scenario_reader *reader, const struct config_node *
     const struct config_node *params = config_get(node, "params");
     if (method == NULL)
         return false;
-    return take_command(reader, config_get(node, "call"), step, method, params != NULL ? config_json(params) : json_object());
+    return set_command(reader, config_get(node, "call"), step, method, params != NULL ? config_json(params) : json_object());
 }
 
 /* ---- The whole ------------------------------------------------------------------------------------------------------ */
@@ -440,7 +440,7 @@ static size_t find_action(const struct config_node *node, bool stimulus)
     return i;
 }
 
-static bool read(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step, bool stimulus)
+static bool read_entry(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step, bool stimulus)
 {
     const char *known[EXTRAS_MAX + 6] = {NULL, "at", "label", stimulus ? "when" : NULL, "after"};
     size_t action = find_action(node, stimulus), count = stimulus ? 5 : 3;
@@ -464,12 +464,12 @@ static bool read(struct scenario_reader *reader, const struct config_node *node,
 
 bool scenario_step_read(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
 {
-    return read(reader, node, step, false);
+    return read_entry(reader, node, step, false);
 }
 
 bool scenario_stimulus_read(struct scenario_reader *reader, const struct config_node *node, struct scenario_stimulus *stimulus)
 {
-    if (!read(reader, node, &stimulus->step, true))
+    if (!read_entry(reader, node, &stimulus->step, true))
         return false;
     const struct config_node *when = config_get(node, "when");
     if ((when == NULL) == (stimulus->step.at == DEVICE_NEVER))

@@ -47,7 +47,7 @@ static bool send_to(const struct sockaddr_un *address, socklen_t length, const c
     return sent;
 }
 
-static void tell_manager(const char *state)
+static void notify_manager(const char *state)
 {
     struct sockaddr_un address;
     const char *text = getenv("NOTIFY_SOCKET");
@@ -74,7 +74,7 @@ int notify_fd_read(const char *text)
     return (int)fd;
 }
 
-static bool tell_fd(int fd, const char *text)
+static bool write_ready_fd(int fd, const char *text)
 {
     struct delivery *delivery = delivery_begin(fd, text, true);
     int error = delivery ? delivery_wait(delivery, NOTIFY_WAIT_MS) : ENOMEM;
@@ -90,11 +90,11 @@ bool notify_ready(int fd, const char *text, const char *status)
     char state[1024] = "READY=1";
     if (status)
         snprintf(state, sizeof state, "READY=1\nSTATUS=%.*s", (int)strcspn(status, "\n"), status);
-    tell_manager(state);
-    return fd < 0 || tell_fd(fd, text);
+    notify_manager(state);
+    return fd < 0 || write_ready_fd(fd, text);
 }
 
 void notify_stopping(void)
 {
-    tell_manager("STOPPING=1");
+    notify_manager("STOPPING=1");
 }

@@ -33,7 +33,7 @@ static uint64_t known_access(void)
     return ACCESS_FIRST | (version >= 2 ? ACCESS_REFER : 0) | (version >= 3 ? ACCESS_TRUNCATE : 0);
 }
 
-static void allow(struct sandbox *sandbox, const char *path, uint64_t access)
+static void allow_path(struct sandbox *sandbox, const char *path, uint64_t access)
 {
     struct stat found;
     struct landlock_path_beneath_attr rule = {.parent_fd = open(path, O_PATH | O_CLOEXEC)};
@@ -54,19 +54,19 @@ void sandbox_begin(struct sandbox *sandbox)
         sandbox->ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof attributes, 0);
     if (sandbox->ruleset < 0)
         return;
-    allow(sandbox, "/dev/pts", ACCESS_FILE); /* ptys that are made, and looked at */
-    allow(sandbox, "/dev/ptmx", ACCESS_FILE);
-    allow(sandbox, "/dev/null", ACCESS_FILE);
-    allow(sandbox, "/", LANDLOCK_ACCESS_FS_READ_DIR); /* libuv keeps it open, to turn clients away when descriptors are short */
+    allow_path(sandbox, "/dev/pts", ACCESS_FILE); /* ptys that are made, and looked at */
+    allow_path(sandbox, "/dev/ptmx", ACCESS_FILE);
+    allow_path(sandbox, "/dev/null", ACCESS_FILE);
+    allow_path(sandbox, "/", LANDLOCK_ACCESS_FS_READ_DIR); /* libuv keeps it open to refuse clients without a descriptor */
 #ifdef __SANITIZE_ADDRESS__ /* its reports name places in programs and libraries */
-    allow(sandbox, "/", ACCESS_READ | LANDLOCK_ACCESS_FS_EXECUTE);
+    allow_path(sandbox, "/", ACCESS_READ | LANDLOCK_ACCESS_FS_EXECUTE);
 #endif
 }
 
 void sandbox_allow(struct sandbox *sandbox, const char *path)
 {
     if (sandbox->ruleset >= 0)
-        allow(sandbox, path, ACCESS_FOLDER);
+        allow_path(sandbox, path, ACCESS_FOLDER);
 }
 
 void sandbox_allow_beside(struct sandbox *sandbox, const char *file)

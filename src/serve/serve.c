@@ -50,7 +50,7 @@ struct serve {
     uv_signal_t signals[END_SIGNALS];
 };
 
-static bool wants_coverage(const struct serve *serve)
+static bool is_coverage_wanted(const struct serve *serve)
 {
     return serve->options.coverage || serve->options.min_coverage >= 0;
 }
@@ -123,7 +123,7 @@ static void on_notice(uv_poll_t *handle, int status, int events)
 /* ---- Begin ---------------------------------------------------------------------------------------------------------- */
 
 /* Report what libuv could not do. Returns true if nothing is wrong. */
-static bool check(const char *what, int error)
+static bool check_uv(const char *what, int error)
 {
     if (error != 0)
         log_error("cannot %s: %s", what, uv_strerror(error));
@@ -137,8 +137,8 @@ static bool start_signals(struct serve *serve)
         if (sigaction(end_signals[i], NULL, &present) == 0 && present.sa_handler == SIG_IGN && end_signals[i] == SIGHUP)
             continue; /* nohup */
         serve->signals[i].data = serve;
-        if (!check("handle signals", uv_signal_init(&serve->loop, &serve->signals[i])) ||
-            !check("handle signals", uv_signal_start(&serve->signals[i], on_signal, end_signals[i])))
+        if (!check_uv("handle signals", uv_signal_init(&serve->loop, &serve->signals[i])) ||
+            !check_uv("handle signals", uv_signal_start(&serve->signals[i], on_signal, end_signals[i])))
             return false;
     }
     return true;
@@ -179,8 +179,8 @@ static bool start_watch(struct serve *serve)
         return true;
     serve->notices.data = serve;
     return line_watch_open(&serve->watch) &&
-           check("watch the line", uv_poll_init(&serve->loop, &serve->notices, serve->watch.fd)) &&
-           check("watch the line", uv_poll_start(&serve->notices, UV_READABLE, on_notice));
+           check_uv("watch the line", uv_poll_init(&serve->loop, &serve->notices, serve->watch.fd)) &&
+           check_uv("watch the line", uv_poll_start(&serve->notices, UV_READABLE, on_notice));
 }
 
 /* When all inputs are read and valid. */
@@ -195,7 +195,7 @@ static bool start_files(struct serve *serve)
 
 static bool start_buses(struct serve *serve)
 {
-    struct coverage *coverage = wants_coverage(serve) ? &serve->coverage : NULL;
+    struct coverage *coverage = is_coverage_wanted(serve) ? &serve->coverage : NULL;
     for (unsigned i = 0; i < serve->options.lines; i++) {
         serve->bus[i] = calloc(1, sizeof *serve->bus[i]); /* fresh pages: units that are not there cost nothing */
         if (!serve->bus[i]) {
@@ -296,18 +296,18 @@ static bool find_address(const char **address, char found[NET_NAME_SIZE])
     return !wrong;
 }
 
-static bool start(struct serve *serve)
+static bool start_serve(struct serve *serve)
 {
     const struct bus_options *options = &serve->options;
     allow_files(options);
     if (!start_signals(serve)) /* before anything is made that would have to be removed */
         return false;
-    if (wants_coverage(serve)) {
+    if (is_coverage_wanted(serve)) {
         const struct rkm04_config settings = rkm04_settings(&options->device.config);
         coverage_begin(&serve->coverage, &settings.readings);
     }
     serve->idle.data = serve;
-    if (!check("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
+    if (!check_uv("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
         !start_control(serve) || !has_spare_files())
         return false;
     serve_sandbox_files(options, serve->bus, control_path(serve->control));
@@ -344,7 +344,7 @@ static void report_coverage(struct serve *serve)
     }
 }
 
-static void end(struct serve *serve)
+static void end_serve(struct serve *serve)
 {
     control_close(serve->control);
     for (unsigned i = 0; i < serve->options.lines; i++)
@@ -361,22 +361,22 @@ static void end(struct serve *serve)
     coverage_close(&serve->coverage_files);
 }
 
-static enum exit_status run(struct serve *serve)
+static enum exit_status run_serve(struct serve *serve)
 {
     serve->status = STATUS_FAILURE;
     if (!read_plant(&serve->options) || !find_address(&serve->options.tcp, serve->tcp) ||
-        !find_address(&serve->options.rfc2217, serve->rfc2217) || !check("make an event loop", uv_loop_init(&serve->loop)))
+        !find_address(&serve->options.rfc2217, serve->rfc2217) || !check_uv("make an event loop", uv_loop_init(&serve->loop)))
         return STATUS_FAILURE;
-    if (start(serve)) {
+    if (start_serve(serve)) {
         serve->status = STATUS_SUCCESS;
         uv_run(&serve->loop, UV_RUN_DEFAULT);
         notify_stopping();
         for (unsigned i = 0; i < serve->options.lines; i++)
             serve_report_end(serve->bus[i]);
-        if (wants_coverage(serve))
+        if (is_coverage_wanted(serve))
             report_coverage(serve);
     }
-    end(serve);
+    end_serve(serve);
     free(serve->options.plant_text);
     device_arguments_free(&serve->options.device);
     return serve->status;
@@ -389,7 +389,7 @@ int serve_main(int argc, char **argv)
     serve_options_read(&serve.options, argc, argv);
     signal(SIGPIPE, SIG_IGN);
     log_begin();
-    enum exit_status status = run(&serve);
+    enum exit_status status = run_serve(&serve);
     log_start_thread();
     log_flush(LOG_WAIT_MS);
     return (int)status;

@@ -145,8 +145,8 @@ static long read_number(const char *text, long high)
 }
 
 /* A number from 0 to `high`, or a usage error that says what was expected. */
-static unsigned number(const char *name, const char *text, unsigned low, unsigned high, const char *unit,
-                       struct argp_state *state)
+static unsigned read_bounded_number(const char *name, const char *text, unsigned low, unsigned high, const char *unit,
+                                    struct argp_state *state)
 {
     long value = read_number(text, high);
     if (value < (long)low)
@@ -269,7 +269,7 @@ static void check_patterns(const struct bus_options *options, struct argp_state 
 }
 
 /* What does not go together. */
-static void check_together(struct bus_options *options, struct argp_state *state)
+static void check_combinations(struct bus_options *options, struct argp_state *state)
 {
     bool net = options->tcp || options->rfc2217;
     if (options->port && options->link)
@@ -328,10 +328,10 @@ static error_t read_line_option(int key, char *text, struct argp_state *state)
         options->baud = read_baud(text, state);
         return 0;
     case KEY_TURNAROUND:
-        options->turnaround = number("turnaround", text, 0, SEGMENT_TURNAROUND_MAX, " of us", state);
+        options->turnaround = read_bounded_number("turnaround", text, 0, SEGMENT_TURNAROUND_MAX, " of us", state);
         return 0;
     case KEY_LINES:
-        options->lines = number("lines", text, 1, BUS_LINES_MAX, "", state);
+        options->lines = read_bounded_number("lines", text, 1, BUS_LINES_MAX, "", state);
         return 0;
     case KEY_LINK:
         options->link = read_pattern("link", text, state);
@@ -365,7 +365,7 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
         options->late_skips = read_late(text, state);
         return 0;
     case KEY_SEED:
-        options->seed = number("seed", text, 0, UINT32_MAX / 2, "", state);
+        options->seed = read_bounded_number("seed", text, 0, UINT32_MAX / 2, "", state);
         return 0;
     case KEY_PLANT:
         options->plant = read_path("plant", text, state);
@@ -427,7 +427,9 @@ static error_t read_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_EXIT_WHEN_IDLE:
         options->exit_when_idle = true;
-        options->idle_seconds = text ? number("exit-when-idle", text, 0, IDLE_MAX, " of seconds", state) : IDLE_DEFAULT;
+        options->idle_seconds = IDLE_DEFAULT;
+        if (text)
+            options->idle_seconds = read_bounded_number("exit-when-idle", text, 0, IDLE_MAX, " of seconds", state);
         return 0;
     case KEY_VERBOSE:
         options->verbose = true;
@@ -443,7 +445,7 @@ static error_t read_option(int key, char *text, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         check_device(options, state);
-        check_together(options, state);
+        check_combinations(options, state);
         return 0;
     default:
         return read_test_option(key, text, state);

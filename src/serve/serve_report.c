@@ -26,7 +26,7 @@ static const char *units_text(const struct node_list *nodes, char text[NODES_TEX
     return text;
 }
 
-static void tell_ports(const struct bus *bus)
+static void log_ports(const struct bus *bus)
 {
     const struct bus_ports *ports = &bus->ports;
     char units[NODES_TEXT_SIZE];
@@ -41,7 +41,7 @@ static void tell_ports(const struct bus *bus)
         bus_log(&bus->log, "%s on rfc2217://%s", units, ports->rfc2217->address);
 }
 
-static void tell_flash(struct bus *bus)
+static void log_flash(struct bus *bus)
 {
     for (unsigned at = 0; at < sim_units(&bus->sim); at++) {
         const char *name = bus->sim.unit[at].name;
@@ -68,7 +68,7 @@ void serve_report_start(const struct bus_options *options, struct bus *const *bu
     const struct device_readings *readings = options->device.kind->readings;
     char text[DEVICE_TEXT_SIZE];
     for (unsigned i = 0; i < options->lines; i++)
-        tell_ports(buses[i]);
+        log_ports(buses[i]);
     if (readings && readings->text(&options->device.config, text)[0] != '\0')
         log_at(0, "readings %s", text);
     if (options->baud == 0 || options->clock.stands)
@@ -79,7 +79,7 @@ void serve_report_start(const struct bus_options *options, struct bus *const *bu
     if (!options->flash)
         log_at(0, "no flash image: stored programs are lost when the emulator ends (--flash FILE keeps them)");
     for (unsigned i = 0; i < options->lines; i++)
-        tell_flash(buses[i]);
+        log_flash(buses[i]);
 }
 
 /* ---- READY ---------------------------------------------------------------------------------------------------------- */

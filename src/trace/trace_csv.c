@@ -57,7 +57,7 @@ static void on_event(void *context, const struct watch_event *event)
 
 /* ---- What there is at the beginning --------------------------------------------------------------------------------- */
 
-static void tell(struct trace_file *file, unsigned number, unsigned motor, enum watch_kind kind, int32_t value)
+static void write_initial(struct trace_file *file, unsigned number, unsigned motor, enum watch_kind kind, int32_t value)
 {
     struct watch_event event = {
         .tick = sim_now(file->sim), .value = value, .kind = (uint8_t)kind, .unit = (uint8_t)number, .motor = (uint8_t)motor};
@@ -65,14 +65,14 @@ static void tell(struct trace_file *file, unsigned number, unsigned motor, enum 
         write_row(file, &event, names[kind]);
 }
 
-static void tell_motor(struct trace_file *file, unsigned number, unsigned motor)
+static void write_initial_motor(struct trace_file *file, unsigned number, unsigned motor)
 {
     const struct device_axis state = sim_axis(file->sim, number, motor);
-    tell(file, number, motor, WATCH_POSITION, state.position);
-    tell(file, number, motor, WATCH_COMMAND, state.index);
-    tell(file, number, motor, WATCH_DIRECTION, state.forward);
-    tell(file, number, motor, WATCH_LED, state.led);
-    tell(file, number, motor, WATCH_MOTION, state.moving);
+    write_initial(file, number, motor, WATCH_POSITION, state.position);
+    write_initial(file, number, motor, WATCH_COMMAND, state.index);
+    write_initial(file, number, motor, WATCH_DIRECTION, state.forward);
+    write_initial(file, number, motor, WATCH_LED, state.led);
+    write_initial(file, number, motor, WATCH_MOTION, state.moving);
 }
 
 /* A trace that begins later begins with what is not as after power-up. */
@@ -84,14 +84,14 @@ static void begin(struct trace_file *file)
     for (unsigned number = 1; number <= sim_units(file->sim); number++) {
         const struct device_unit *core = sim_core(file->sim, number);
         if (!sim_powered(file->sim, number)) {
-            tell(file, number, 0, WATCH_POWER, 0);
+            write_initial(file, number, 0, WATCH_POWER, 0);
             continue;
         }
-        tell(file, number, 0, WATCH_INPUTS, (int32_t)kind->inputs_of(core));
-        tell(file, number, 0, WATCH_OUTPUTS, (int32_t)kind->outputs_of(core));
-        tell(file, number, 0, WATCH_VARIABLES, (int32_t)kind->variables_of(core));
+        write_initial(file, number, 0, WATCH_INPUTS, (int32_t)kind->inputs_of(core));
+        write_initial(file, number, 0, WATCH_OUTPUTS, (int32_t)kind->outputs_of(core));
+        write_initial(file, number, 0, WATCH_VARIABLES, (int32_t)kind->variables_of(core));
         for (unsigned motor = 1; motor <= kind->axes; motor++)
-            tell_motor(file, number, motor);
+            write_initial_motor(file, number, motor);
     }
 }
 

@@ -79,7 +79,7 @@ bool trace_file_named(const char *path)
 }
 
 /* What has happened before, also in the present tick, is behind all who watch. */
-static void settle(struct sim *sim)
+static void deliver_past_events(struct sim *sim)
 {
     watch_deliver(&sim->watch, sim_now(sim) + 1u);
 }
@@ -102,13 +102,13 @@ struct trace_file *trace_file_begin_on(struct sim *sim, FILE *out, enum trace_fo
     file->error = 0;
     file->state = state;
     file->length = 0;
-    settle(sim);
+    deliver_past_events(sim);
     writer->begin(file);
     sim_watch(sim, &file->watcher);
     return file;
 }
 
-static void explain(char **error, const char *format, const char *path, const char *why)
+static void set_error(char **error, const char *format, const char *path, const char *why)
 {
     if (asprintf(error, format, path, why) < 0)
         *error = NULL;
@@ -120,12 +120,12 @@ struct trace_file *trace_file_begin(struct sim *sim, const char *path, unsigned 
     enum trace_format format = trace_file_format(path);
     *error = NULL;
     if (format == TRACE_FORMATS) {
-        explain(error, "%s: expected %s", path, TRACE_FILE_EXPECTED);
+        set_error(error, "%s: expected %s", path, TRACE_FILE_EXPECTED);
         return NULL;
     }
     FILE *out = output_file_open(path, &writers[format]->kind, flags, &why);
     if (!out) {
-        explain(error, "cannot write %s: %s", path, why ? why : strerror(ENOMEM));
+        set_error(error, "cannot write %s: %s", path, why ? why : strerror(ENOMEM));
         free(why);
         return NULL;
     }
@@ -140,7 +140,7 @@ struct trace_file *trace_file_begin(struct sim *sim, const char *path, unsigned 
 
 int trace_file_end(struct trace_file *file)
 {
-    settle(file->sim);
+    deliver_past_events(file->sim);
     sim_unwatch(file->sim, &file->watcher);
     file->writer->end(file);
     trace_file_flush(file);

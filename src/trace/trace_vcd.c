@@ -50,7 +50,7 @@ struct vcd {
 
 /* ---- Writing -------------------------------------------------------------------------------------------------------- */
 
-static unsigned first_of(const struct trace_file *file, unsigned unit)
+static unsigned first_signal_of(const struct trace_file *file, unsigned unit)
 {
     const struct vcd *vcd = file->state;
     return (unit - 1u) * vcd->place.count;
@@ -59,7 +59,7 @@ static unsigned first_of(const struct trace_file *file, unsigned unit)
 static unsigned signal_of(const struct trace_file *file, unsigned unit, unsigned motor, enum motor_signal signal)
 {
     const struct vcd *vcd = file->state;
-    return first_of(file, unit) + vcd->place.motors + (motor - 1u) * MOTOR_SIGNALS + signal;
+    return first_signal_of(file, unit) + vcd->place.motors + (motor - 1u) * MOTOR_SIGNALS + signal;
 }
 
 static char *put_id(char *at, unsigned signal)
@@ -173,7 +173,7 @@ static void toggle_leds(struct trace_file *file)
 }
 
 /* Write what changes up to `tick`, this one included, and the time. */
-static void go_to(struct trace_file *file, uint64_t tick)
+static void advance_time(struct trace_file *file, uint64_t tick)
 {
     const struct vcd *vcd = file->state;
     for (;;) {
@@ -198,14 +198,14 @@ static void set_speed(struct trace_file *file, const struct watch_event *event, 
 }
 
 /* Count the pulses of this motor from here on. */
-static void open_gate(struct vcd_motor *state, uint64_t tick)
+static void start_speed_gate(struct vcd_motor *state, uint64_t tick)
 {
     state->counting = true;
     state->gate = tick;
     state->pulses = 0;
 }
 
-static void see_step(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
+static void on_step(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
 {
     struct vcd *vcd = file->state;
     if (vcd->falls == FALLS)
@@ -220,28 +220,28 @@ static void see_step(struct trace_file *file, const struct watch_event *event, s
     state->position = event->value;
     write_real(file, signal_of(file, event->unit, event->motor, POSITION), event->value, 0);
     if (!state->counting) {
-        open_gate(state, event->tick);
+        start_speed_gate(state, event->tick);
         return;
     }
     state->pulses++;
     if (event->tick - state->gate < GATE)
         return;
     set_speed(file, event, state, state->pulses * UINT64_C(1000) * US_PER_SECOND / (event->tick - state->gate));
-    open_gate(state, event->tick);
+    start_speed_gate(state, event->tick);
 }
 
-static void see_motion(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
+static void on_motion(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
 {
     bool moving = event->value != 0;
     if (state->moving != moving)
         write_bit(file, signal_of(file, event->unit, event->motor, MOVING), moving);
     state->moving = moving;
-    open_gate(state, event->tick);
+    start_speed_gate(state, event->tick);
     state->counting = moving;
     set_speed(file, event, state, 0);
 }
 
-static void see_led(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
+static void on_led(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
 {
     bool lit = event->value != DEVICE_LED_OFF;
     if (state->lit != lit)
@@ -251,18 +251,18 @@ static void see_led(struct trace_file *file, const struct watch_event *event, st
     find_toggle(file);
 }
 
-static void see_motor(struct trace_file *file, const struct watch_event *event)
+static void on_motor_event(struct trace_file *file, const struct watch_event *event)
 {
     struct vcd_motor *state = motor_of(file->state, event->unit, event->motor);
     switch ((enum watch_kind)event->kind) {
     case WATCH_STEP:
-        see_step(file, event, state);
+        on_step(file, event, state);
         break;
     case WATCH_MOTION:
-        see_motion(file, event, state);
+        on_motion(file, event, state);
         break;
     case WATCH_LED:
-        see_led(file, event, state);
+        on_led(file, event, state);
         break;
     case WATCH_DIRECTION:
         state->forward = event->value != 0;
@@ -284,7 +284,7 @@ static void see_motor(struct trace_file *file, const struct watch_event *event)
 static void write_unit(struct trace_file *file, unsigned unit);
 
 /* Without power everything that comes from the unit is 0. */
-static void see_power(struct trace_file *file, const struct watch_event *event)
+static void on_power(struct trace_file *file, const struct watch_event *event)
 {
     struct vcd *vcd = file->state;
     struct vcd_unit *unit = &vcd->unit[event->unit - 1u];
@@ -299,11 +299,11 @@ static void see_power(struct trace_file *file, const struct watch_event *event)
     write_unit(file, event->unit);
 }
 
-static void see_masks(struct trace_file *file, const struct watch_event *event)
+static void on_masks(struct trace_file *file, const struct watch_event *event)
 {
     struct vcd *vcd = file->state;
     struct vcd_unit *unit = &vcd->unit[event->unit - 1u];
-    unsigned first = first_of(file, event->unit);
+    unsigned first = first_signal_of(file, event->unit);
     uint32_t mask = (uint32_t)event->value;
     if (event->kind == WATCH_INPUTS) {
         write_mask(file, first + vcd->place.inputs, mask, mask ^ unit->inputs);
@@ -320,19 +320,19 @@ static void see_masks(struct trace_file *file, const struct watch_event *event)
 static void on_event(void *context, const struct watch_event *event)
 {
     struct trace_file *file = context;
-    go_to(file, event->tick);
+    advance_time(file, event->tick);
     if (event->motor != 0)
-        see_motor(file, event);
+        on_motor_event(file, event);
     else if (event->kind == WATCH_POWER)
-        see_power(file, event);
+        on_power(file, event);
     else
-        see_masks(file, event);
+        on_masks(file, event);
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
 /* A signal in the head: `u3_m1_step` of unit 3 on a line with several, `m1_step` otherwise. */
-static void declare(struct trace_file *file, const char *type, const char *prefix, const char *name, unsigned signal)
+static void declare_signal(struct trace_file *file, const char *type, const char *prefix, const char *name, unsigned signal)
 {
     char *at = trace_room(file, 2u * CHANGE_MAX);
     at = put_text(put_text(at, "$var "), type);
@@ -351,7 +351,7 @@ static void declare_bits(struct trace_file *file, const char *prefix, const char
         *at++ = (char)('0' + number / 10u);
         *at++ = (char)('0' + number % 10u);
         *at = '\0';
-        declare(file, "wire 1", prefix, text, signal + bit);
+        declare_signal(file, "wire 1", prefix, text, signal + bit);
     }
 }
 
@@ -381,8 +381,8 @@ static void declare_motor(struct trace_file *file, const char *unit_prefix, unsi
     memcpy(put_text(at, scope), "_", 2);
     open_scope(file, scope);
     for (unsigned signal = 0; signal < MOTOR_SIGNALS; signal++)
-        declare(file, signals[signal].type, prefix, signals[signal].name,
-                signal_of(file, unit, motor, (enum motor_signal)signal));
+        declare_signal(file, signals[signal].type, prefix, signals[signal].name,
+                       signal_of(file, unit, motor, (enum motor_signal)signal));
     close_scope(file);
 }
 
@@ -391,7 +391,7 @@ static void declare_unit(struct trace_file *file, unsigned unit)
     const struct device_kind *kind = sim_device(file->sim);
     const struct vcd *vcd = file->state;
     char prefix[NODE_NAME_SIZE + 4u] = "";
-    unsigned first = first_of(file, unit);
+    unsigned first = first_signal_of(file, unit);
     if (sim_units(file->sim) > 1) {
         char *at = prefix;
         *at++ = 'u';
@@ -401,7 +401,7 @@ static void declare_unit(struct trace_file *file, unsigned unit)
         open_scope(file, prefix);
         memcpy(at, "_", 2);
     }
-    declare(file, "wire 1", prefix, "power", first);
+    declare_signal(file, "wire 1", prefix, "power", first);
     declare_bits(file, prefix, "di", kind->inputs, 1, first + vcd->place.inputs);
     declare_bits(file, prefix, "do", kind->outputs, 1, first + vcd->place.outputs);
     declare_bits(file, prefix, "var", kind->variables, kind->first_variable, first + vcd->place.variables);
@@ -412,7 +412,7 @@ static void declare_unit(struct trace_file *file, unsigned unit)
 }
 
 /* A mask with so many bits. */
-static uint32_t all_of(unsigned bits)
+static uint32_t full_mask(unsigned bits)
 {
     return bits > 0 ? UINT32_MAX >> (32u - bits) : 0;
 }
@@ -423,11 +423,11 @@ static void write_unit(struct trace_file *file, unsigned unit)
     const struct device_kind *kind = sim_device(file->sim);
     const struct vcd *vcd = file->state;
     const struct vcd_unit *state = &vcd->unit[unit - 1u];
-    unsigned first = first_of(file, unit);
+    unsigned first = first_signal_of(file, unit);
     write_bit(file, first, state->power);
-    write_mask(file, first + vcd->place.inputs, state->inputs, all_of(kind->inputs));
-    write_mask(file, first + vcd->place.outputs, state->outputs, all_of(kind->outputs));
-    write_mask(file, first + vcd->place.variables, state->variables, all_of(kind->variables));
+    write_mask(file, first + vcd->place.inputs, state->inputs, full_mask(kind->inputs));
+    write_mask(file, first + vcd->place.outputs, state->outputs, full_mask(kind->outputs));
+    write_mask(file, first + vcd->place.variables, state->variables, full_mask(kind->variables));
     for (unsigned number = 1; number <= sim_device(file->sim)->axes; number++) {
         const struct vcd_motor *motor = &state->motor[number - 1u];
         write_bit(file, signal_of(file, unit, number, STEP), motor->step);
@@ -440,7 +440,7 @@ static void write_unit(struct trace_file *file, unsigned unit)
     }
 }
 
-static void look_at_motor(struct trace_file *file, unsigned unit, unsigned motor)
+static void read_motor_state(struct trace_file *file, unsigned unit, unsigned motor)
 {
     struct vcd_motor *state = motor_of(file->state, unit, motor);
     if (!sim_powered(file->sim, unit))
@@ -458,7 +458,7 @@ static void look_at_motor(struct trace_file *file, unsigned unit, unsigned motor
     state->toggle = from + ((sim_now(file->sim) - from) / BLINK + 1u) * BLINK;
 }
 
-static void look_at_unit(struct trace_file *file, unsigned unit)
+static void read_unit_state(struct trace_file *file, unsigned unit)
 {
     const struct device_kind *kind = sim_device(file->sim);
     const struct device_unit *core = sim_core(file->sim, unit);
@@ -471,7 +471,7 @@ static void look_at_unit(struct trace_file *file, unsigned unit)
     for (unsigned motor = 1; motor <= DEVICE_AXES_MAX; motor++)
         state->motor[motor - 1u].toggle = DEVICE_NEVER;
     for (unsigned motor = 1; motor <= kind->axes; motor++)
-        look_at_motor(file, unit, motor);
+        read_motor_state(file, unit, motor);
 }
 
 static void find_places(struct vcd_places *place, const struct device_kind *kind)
@@ -498,7 +498,7 @@ static void begin(struct trace_file *file)
     vcd->tick = sim_now(file->sim);
     trace_wrote(file, put_text(put_number(trace_room(file, CHANGE_MAX), vcd->tick), "\n$dumpvars\n"));
     for (unsigned unit = 1; unit <= sim_units(file->sim); unit++) {
-        look_at_unit(file, unit);
+        read_unit_state(file, unit);
         write_unit(file, unit);
     }
     trace_put(file, "$end\n", 5);
@@ -507,7 +507,7 @@ static void begin(struct trace_file *file)
 
 static void end(struct trace_file *file)
 {
-    go_to(file, sim_now(file->sim));
+    advance_time(file, sim_now(file->sim));
 }
 
 const struct trace_writer trace_vcd = {

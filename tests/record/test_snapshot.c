@@ -33,7 +33,7 @@ static void live_on(uint64_t dice, char **seen, char **state)
 /* What coming back changes is told at once, and is no part of what follows. */
 static void restore(const struct snapshot *snapshot)
 {
-    ck_assert(snapshot_put(&here.sim, snapshot));
+    ck_assert(snapshot_restore(&here.sim, snapshot));
     watch_deliver(&here.sim.watch, sim_now(&here.sim) + 1u);
 }
 
@@ -173,7 +173,7 @@ static void come_along(const char *fault)
     session_ask(&here, 1, "\2", 1);
     sim_advance(&here.sim, 2 * SECOND);
     session_same(first, session_seen(&here), "the same line");
-    ck_assert(snapshot_put(&other.sim, snapshot));
+    ck_assert(snapshot_restore(&other.sim, snapshot));
     session_forget(&other);
     session_ask(&other, 1, "\2", 1);
     sim_advance(&other.sim, 2 * SECOND);

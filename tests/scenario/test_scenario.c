@@ -347,7 +347,7 @@ START_TEST(readings_can_be_set_and_are_kept)
     struct scenario *scenario = read_bytes(text, strlen(text));
     scenario_set_readings(scenario, &readings);
     ck_assert_int_eq(scenario_run(scenario, NULL, NULL, NULL, &result), SCENARIO_PASSED);
-    ck_assert_uint_eq(scenario_named(scenario), 1u << 9);
+    ck_assert_uint_eq(scenario_readings(scenario), 1u << 9);
     scenario_free(scenario);
 }
 END_TEST

@@ -118,7 +118,7 @@ void board_play(uint32_t wake)
 void board_sleep(bool more)
 {
     interrupts_off(); /* or what comes between the look and the sleep would be slept through; WFI wakes all the same */
-    if (!awake && !changed && !uart_wants_main_loop(more))
+    if (!awake && !changed && !uart_needs_main_loop(more))
         __asm__ volatile("wfi");
     interrupts_on();
 }

@@ -17,11 +17,11 @@ struct rkm04_unit unit;
 static void receive(void)
 {
     const uint8_t *bytes;
-    size_t count = uart_look(&bytes), taken = rkm04_receive(&unit, bytes, count);
-    uart_taken(taken);
+    size_t count = uart_poll(&bytes), taken = rkm04_receive(&unit, bytes, count);
+    uart_take(taken);
     if (taken == count && count > 0) { /* the queue may go on at its beginning */
-        count = uart_look(&bytes);
-        uart_taken(rkm04_receive(&unit, bytes, count));
+        count = uart_poll(&bytes);
+        uart_take(rkm04_receive(&unit, bytes, count));
     }
 }
 

@@ -44,7 +44,7 @@ void uart_start(void)
 
 /* ---- In --------------------------------------------------------------------------------------------------------------- */
 
-/* If the queue is full the byte stays in the UART, and the interrupt off, until uart_taken. What comes on top of that is lost,
+/* If the queue is full the byte stays in the UART, and the interrupt off, until uart_take. What comes on top of that is lost,
  * as it must be on a line without handshake (and QEMU waits with the next byte). */
 void uart_receive_interrupt(void)
 {
@@ -58,7 +58,7 @@ void uart_receive_interrupt(void)
     }
 }
 
-size_t uart_look(const uint8_t **bytes)
+size_t uart_poll(const uint8_t **bytes)
 {
     seen = received.in;
     uint32_t at = received.out % ROOM, count = seen - received.out;
@@ -66,7 +66,7 @@ size_t uart_look(const uint8_t **bytes)
     return count < ROOM - at ? count : ROOM - at;
 }
 
-void uart_taken(size_t count)
+void uart_take(size_t count)
 {
     received.out += (uint32_t)count;
     if (!(MPS2_UART0->control & UART_RECEIVE_INTERRUPT) && used(&received) < ROOM) {
@@ -113,7 +113,7 @@ void uart_timer_interrupt(void)
     board_driver(false);
 }
 
-bool uart_wants_main_loop(bool more)
+bool uart_needs_main_loop(bool more)
 {
     return received.in != seen || (more && used(&sending) <= ROOM / 2);
 }

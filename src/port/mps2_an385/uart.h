@@ -11,10 +11,10 @@
 void uart_start(void);
 
 /* What has come in and not been taken yet, as far as it lies in one piece. Returns its length. */
-size_t uart_look(const uint8_t **bytes);
+size_t uart_poll(const uint8_t **bytes);
 
 /* So many bytes of it have been taken. */
-void uart_taken(size_t count);
+void uart_take(size_t count);
 
 /* Free places in the queue of what goes out. */
 size_t uart_room(void);
@@ -22,9 +22,9 @@ size_t uart_room(void);
 /* Send; at most uart_room() bytes. */
 void uart_send(const uint8_t *bytes, size_t count);
 
-/* Has the main loop something to do for the line: bytes came since uart_look, or it has more to send and half of the queue is
+/* Has the main loop something to do for the line: bytes came since uart_poll, or it has more to send and half of the queue is
  * free? With interrupts off. */
-bool uart_wants_main_loop(bool more);
+bool uart_needs_main_loop(bool more);
 
 void uart_receive_interrupt(void);
 void uart_sent_interrupt(void);

@@ -54,7 +54,7 @@ static uint8_t board_switch(void)
 }
 
 /* Take what the UART's interrupt has received. Returns the number of bytes; they stay in the queue until board_received. */
-static size_t board_look_at_line(const uint8_t **bytes)
+static size_t board_poll_line(const uint8_t **bytes)
 {
     *bytes = NULL;
     return 0;
@@ -169,7 +169,7 @@ static struct board board;
 static void receive(void)
 {
     const uint8_t *bytes;
-    size_t count = board_look_at_line(&bytes);
+    size_t count = board_poll_line(&bytes);
     if (count > 0)
         board_received(rkm04_receive(&unit, bytes, count));
 }
@@ -194,7 +194,7 @@ static void show_leds(void)
 }
 
 /* Nothing is due before the next event: the processor may sleep until that tick is over. */
-static void rest(uint64_t now)
+static void sleep_until_next(uint64_t now)
 {
     uint64_t next = rkm04_next_event(&unit), latest = now + LED_TICKS;
     board_sleep_until(next < latest ? next + 1 : latest, rkm04_sending(&unit));
@@ -218,6 +218,6 @@ int main(void)
         receive();
         transmit();
         show_leds();
-        rest(now);
+        sleep_until_next(now);
     }
 }
