@@ -6,9 +6,9 @@
 #include <stdbool.h>
 
 
+#include "device/device.h"
 #include "line/line.h"
 #include "text/text.h"
-#include "device/device.h"
 #include "virtual_clock.h"
 
 #define BUS_LINES_MAX 256u

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "line/line.h"
 #include "file/file.h"
+#include "line/line.h"
 
 #define JSON_ENDING ".json"
 

@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "log.h"
 #include "file/file.h"
+#include "log.h"
 
 #define ERASED 0xff
 

@@ -10,8 +10,8 @@
 
 #include <rkm04/limits.h>
 
-#include "options/options.h"
 #include "client/client.h"
+#include "options/options.h"
 
 #define TIMEOUT_MS 1000
 #define TIMEOUT_MS_MAX 3600000
@@ -213,7 +213,7 @@ static enum exit_status do_request(struct options *options)
         return client_usage("%s goes to a unit on the bus: expected --port, --node and --motor", options->command);
     const char *node = getenv("RKM04_NODE");
     if (options->node == NULL && node != NULL && node[0] != '\0')
-        request->node = take_number("RKM04_NODE", node, 0, RKM04_NODE_MAX);
+        request->node = read_number("RKM04_NODE", node, 0, RKM04_NODE_MAX);
     request->json = options->json;
     request->words = options->words;
     request->count = options->count;

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/text.h"
 #include "plant_model.h"
+#include "text/text.h"
 
 #define SPEED_MAX 1000000
 #define ACCELERATION_MAX 1000000000

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/text.h"
 #include "record_line.h"
 #include "replay_inside.h"
+#include "text/text.h"
 
 #define TEXT_MAX 255u               /* bytes of a version text */
 #define KEY_SIZE 64u                /* bytes of a key */

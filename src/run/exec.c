@@ -9,13 +9,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "options/options.h"
-#include "text/text.h"
 #include "exec_inputs.h"
 #include "exec_report.h"
 #include "exec_run.h"
 #include "file/file.h"
+#include "options/options.h"
 #include "run.h"
+#include "text/text.h"
 #include "trace/trace.h"
 
 struct options {

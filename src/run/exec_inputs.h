@@ -8,9 +8,9 @@
 #include <stdbool.h>
 
 #include "device/device.h"
-#include "text/text.h"
 #include "exec_run.h"
 #include "stimulus.h"
+#include "text/text.h"
 
 /* A file of the command line. */
 struct exec_file {

@@ -8,15 +8,15 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "exec_inputs.h"
+#include "exec_run.h"
 #include "file/file.h"
 #include "options/options.h"
 #include "plot/plot.h"
 #include "record/record.h"
-#include "text/text.h"
-#include "exec_inputs.h"
-#include "exec_run.h"
 #include "run.h"
 #include "test_case.h"
+#include "text/text.h"
 
 #define COMMAND "rkm04 plot"
 #define WIDTH 800u

@@ -7,13 +7,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "options/options.h"
 #include "file/file.h"
+#include "options/options.h"
 #include "run.h"
-#include "text/text.h"
 #include "test_case.h"
 #include "test_readings.h"
 #include "test_report.h"
+#include "text/text.h"
 
 enum option_key { KEY_NO_RECORDS = 256, KEY_FORCE, KEY_READINGS, KEY_STRICT };
 

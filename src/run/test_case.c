@@ -10,8 +10,8 @@
 
 #include <rkm04/limits.h>
 
-#include "text/text.h"
 #include "file/file.h"
+#include "text/text.h"
 
 #define TEXT_MAX ((size_t)4 << 20) /* bytes of a file */
 #define FIRST_ROOM 4096

@@ -9,8 +9,8 @@
 
 #include <rkm04/readings.h>
 
-#include "text/text.h"
 #include "test_case.h"
+#include "text/text.h"
 
 #define TEST_READINGS_TEXT_SIZE 1024 /* bytes of a list of all of them, and of pairs */
 

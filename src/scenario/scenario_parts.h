@@ -5,9 +5,9 @@
 #define RKM04_SCENARIO_PARTS_H
 
 #include "condition/condition.h"
-#include "text/text.h"
 #include "scenario.h"
 #include "scenario_bytes.h"
+#include "text/text.h"
 
 enum scenario_action {
     ACTION_SET,     /* a program text */

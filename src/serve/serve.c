@@ -15,13 +15,13 @@
 #include "bus/bus.h"
 #include "control/control.h"
 #include "device/device.h"
+#include "file/file.h"
 #include "line/line.h"
 #include "notify.h"
-#include "file/file.h"
+#include "serve.h"
 #include "serve_options.h"
 #include "serve_report.h"
 #include "serve_sandbox.h"
-#include "serve.h"
 #include "text/text.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */

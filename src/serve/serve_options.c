@@ -7,13 +7,13 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "options/options.h"
+#include "file/file.h"
 #include "line/line.h"
 #include "notify.h"
+#include "options/options.h"
 #include "text/text.h"
-#include "file/file.h"
-#include "wire/wire.h"
 #include "trace/trace.h"
+#include "wire/wire.h"
 
 #define IDLE_DEFAULT 10u /* s */
 #define IDLE_MAX 86400   /* s */

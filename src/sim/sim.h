@@ -15,12 +15,12 @@
 
 #include <jansson.h>
 
+#include "device/device.h"
 #include "fault/fault.h"
 #include "plant/plant.h"
-#include "wire/wire.h"
-#include "device/device.h"
 #include "text/text.h"
 #include "watch.h"
+#include "wire/wire.h"
 
 struct sim;
 struct sim_snapshots;  /* of the room `record` */

@@ -2,8 +2,8 @@
 /* One JSON object a line: `begin` with what there is, every event as in event_json.h, `end`. */
 #include <stdlib.h>
 
-#include "text/text.h"
 #include "event_json.h"
+#include "text/text.h"
 #include "trace_writer.h"
 
 #define MOTOR_ROOM 200u

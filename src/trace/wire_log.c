@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_log.c: a line of text for every frame, or what was dropped of one. */
-#include "wire_format.h"
 #include "wire/wire.h"
+#include "wire_format.h"
 
 #define TIME_WIDTH 12      /* columns of a time: eleven days */
 #define DIRECTION_WIDTH 14 /* columns of most directions */

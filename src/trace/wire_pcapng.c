@@ -5,8 +5,8 @@
 
 #include <rkm04/limits.h>
 
-#include "wire_format.h"
 #include "wire/wire.h"
+#include "wire_format.h"
 
 /* Blocks. Numbers in them are little-endian. */
 #define BLOCK_SECTION 0x0A0D0D0Au

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "device/rkm04_device.h"
 #include "condition/condition.h"
 #include "core/rig.h"
+#include "device/rkm04_device.h"
 
 static struct sim *sim;
 static struct condition *condition;

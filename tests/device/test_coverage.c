@@ -5,9 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "device/coverage.h"
 #include "core/flash_fake.h"
 #include "core/store_rig.h"
+#include "device/coverage.h"
 
 #define TEXT_MAX 20000
 

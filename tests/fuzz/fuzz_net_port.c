@@ -14,8 +14,8 @@
 #include <unistd.h>
 
 #include "fuzz.h"
-#include "loop_machine.h"
 #include "line/net_port.h"
+#include "loop_machine.h"
 
 #define CLIENTS 4u
 #define ACTIONS 150u

@@ -3,8 +3,8 @@
  * report their state, and take the same text again or say why not. */
 #include <string.h>
 
-#include "device/rkm04_device.h"
 #include "command/command.h"
+#include "device/rkm04_device.h"
 #include "fuzz.h"
 
 static struct sim sim;

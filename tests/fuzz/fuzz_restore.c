@@ -5,8 +5,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "device/rkm04_device.h"
 #include "command/command.h"
+#include "device/rkm04_device.h"
 #include "fuzz.h"
 #include "record/snapshot.h"
 

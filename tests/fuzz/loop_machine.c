@@ -11,9 +11,9 @@
 #include <uv.h>
 
 #include "command/command.h"
-#include "record/snapshot.h"
 #include "fuzz.h"
 #include "line/log.h"
+#include "record/snapshot.h"
 #include "trace/trace_file.h"
 #include "trace/wire_file.h"
 

@@ -11,10 +11,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "disk_shim.h"
-#include "line/log.h"
-#include "file/output_file.h"
 #include "core/store_rig.h"
+#include "disk_shim.h"
+#include "file/output_file.h"
+#include "line/log.h"
 
 /* So many cuts at the least, if no case was chosen. */
 #define CUTS_SHORT 2000ul

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "wire/wire_monitor.h"
-#include "text/readings.h"
 #include "record/record.h"
+#include "text/readings.h"
+#include "wire/wire_monitor.h"
 
 static const char axis[] =
     "motors:\n"

@@ -5,11 +5,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "device/rkm04_device.h"
 #include "core/rig.h"
-#include "session_rig.h"
+#include "device/rkm04_device.h"
 #include "record/record.h"
 #include "record/snapshot.h"
+#include "session_rig.h"
 
 static struct session session;
 static char folder[32], path[64];

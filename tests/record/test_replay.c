@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include "core/rig.h"
-#include "session_rig.h"
 #include "record/record.h"
 #include "record/snapshot.h"
+#include "session_rig.h"
 
 #define HEAD "{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"timed\":true,\"turnaround\":521,\"seed\":\"1\"}\n"
 #define HEAD_OUT "{\"rkm04_record\":1,\"nodes\":[1],\"framing\":\"hdlc\",\"timed\":true,\"seed\":\"1\",\"outputs\":true}\n"

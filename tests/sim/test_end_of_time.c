@@ -5,13 +5,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "device/rkm04_device.h"
-#include "core/rig.h"
-#include "record/session_rig.h"
 #include "condition/condition.h"
+#include "core/rig.h"
+#include "device/rkm04_device.h"
 #include "record/record.h"
-#include "scenario/scenario.h"
+#include "record/session_rig.h"
 #include "record/snapshot.h"
+#include "scenario/scenario.h"
 
 static struct session session;
 

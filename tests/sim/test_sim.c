@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "device/rkm04_device.h"
-#include "core/rig.h"
 #include "command/command.h"
-#include "sim/sim.h"
+#include "core/rig.h"
 #include "core/story.h"
+#include "device/rkm04_device.h"
+#include "sim/sim.h"
 
 #define LINES_MAX 400000u /* bytes of what was seen */
 

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "core/rig.h"
-#include "record/session_rig.h"
 #include "record/record.h"
+#include "record/session_rig.h"
 #include "record/snapshot.h"
 
 #define SESSIONS 150u

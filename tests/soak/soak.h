@@ -7,8 +7,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#include "job.h"
 #include "command/command.h"
+#include "job.h"
 #include "sim/sim.h"
 
 #define SECOND ((uint64_t)RKM04_TICKS_PER_SECOND)

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "trace/wire_file.h"
 #include "core/rig.h"
+#include "trace/wire_file.h"
 #include "wire/wire_rig.h"
 
 #define sim (&wire_rig.sim)

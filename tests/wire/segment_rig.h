@@ -3,8 +3,8 @@
 #ifndef RKM04_TESTS_SEGMENT_RIG_H
 #define RKM04_TESTS_SEGMENT_RIG_H
 
-#include "wire/segment.h"
 #include "core/rig.h"
+#include "wire/segment.h"
 
 #define LINE_BYTES_MAX 60000
 #define REQUEST_MAX 64 /* bytes of a message of line_ask() */

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "wire/levels.h"
 #include "core/rig.h"
+#include "wire/levels.h"
 
 #define HEARD_MAX 4096
 #define BIT WIRE_BIT

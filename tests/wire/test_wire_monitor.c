@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/rig.h"
 #include "device/rkm04_device.h"
 #include "wire/wire_words.h"
-#include "core/rig.h"
 #include "wire_rig.h"
 
 #define sim (&wire_rig.sim)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* poll_host: a host that starts the same motion on all motors of all units of a line and then asks every unit for its
+/* poll_master: a host that starts the same motion on all motors of all units of a line and then asks every unit for its
  * positions, one after the other, as fast as it gets answers, until all have arrived.
  *
- *     poll_host PTY UNITS STEPS SECONDS
+ *     poll_master PTY UNITS STEPS SECONDS
  *
  * PTY: the line; UNITS: addresses 1..UNITS are there; STEPS: of every motor; SECONDS: of real time, after which it stops anyway.
  * Prints {"polls":…,"answers":…,"wrong":…,"arrived":…,"seconds":…}: how many polls were answered, how many of the answers were
@@ -124,7 +124,7 @@ int main(int argc, char **argv)
     static struct host host;
     char text[64];
     if (argc != 5 || !open_line(&host, argv[1])) {
-        fputs("usage: poll_host PTY UNITS STEPS SECONDS\n", stderr);
+        fputs("usage: poll_master PTY UNITS STEPS SECONDS\n", stderr);
         return 2;
     }
     unsigned units = (unsigned)atoi(argv[2]);
