@@ -87,7 +87,7 @@ static void see(void *context, const struct watch_event *event)
 void estimate_watch(struct estimate_run *run)
 {
     run->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_COMMAND) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_PLANT),
-                                    .see = see,
+                                    .on_event = see,
                                     .context = run};
     if (run->options->plant != NULL)
         run->watcher.kinds |= WATCH_BIT(WATCH_STEP); /* limit moves end somewhere */

@@ -55,7 +55,7 @@ json_t *handle_subscribe(struct handle *handle, const json_t *params, struct ref
         .sim = sim,
         .number = ++handle->subscribed,
         .filter = filter,
-        .watcher = {.kinds = filter.kinds, .see = see, .context = subscription},
+        .watcher = {.kinds = filter.kinds, .on_event = see, .context = subscription},
     };
     sim_watch(sim, &subscription->watcher);
     return json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription", (int)subscription->number);

@@ -37,7 +37,7 @@ static bool hand_over(struct handle *handle, uint8_t byte, uint64_t tick)
     while (sim_room(sim) == 0)
         if (!handle_advance(handle, sim_now(sim) + RKM04_SLOT_TICKS) || sim_time_is_over(sim))
             return false;
-    sim_take(sim, &byte, 1, tick > sim_now(sim) ? tick : sim_now(sim));
+    sim_queue_bytes(sim, &byte, 1, tick > sim_now(sim) ? tick : sim_now(sim));
     return true;
 }
 
@@ -70,12 +70,12 @@ bool handle_host_write(struct handle *handle, const uint8_t *bytes, size_t lengt
     for (size_t at = 0; at < length;) {
         size_t room = sim_room(sim), part = length - at < room ? length - at : room;
         if (part > 0)
-            sim_take(sim, bytes + at, part, sim_now(sim));
+            sim_queue_bytes(sim, bytes + at, part, sim_now(sim));
         else if (!handle_advance(handle, sim_now(sim) + RKM04_SLOT_TICKS) || sim_time_is_over(sim))
             return false;
         at += part;
     }
-    uint64_t passed = (sim->segment.master_free + WIRE_TICK - 1u) / WIRE_TICK;
+    uint64_t passed = (sim->segment.host_free + WIRE_TICK - 1u) / WIRE_TICK;
     handle->host.free = sim->segment.config.timed ? passed : sim_now(sim);
     return true;
 }

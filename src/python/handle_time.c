@@ -26,7 +26,7 @@ bool handle_advance(struct handle *handle, uint64_t tick)
     struct sim *sim = &handle->sim;
     tick = earlier(tick, SIM_TIME_MAX);
     if (tick <= sim_now(sim))
-        sim_settle(sim);
+        sim_finish_tick(sim);
     while (sim_now(sim) < tick) {
         sim_advance(sim, earlier(tick, slice_end(sim)));
         if (sim_now(sim) < tick && is_paused(handle))
@@ -50,7 +50,7 @@ bool handle_advance_to_bytes(struct handle *handle, uint64_t tick, size_t count,
     struct sim *sim = &handle->sim;
     size_t seen = 0;
     tick = earlier(tick, SIM_TIME_MAX);
-    sim_settle(sim);
+    sim_finish_tick(sim);
     while (!has_bytes(&handle->host, count, &seen, stop) && sim_now(sim) < tick) {
         uint64_t now = sim_now(sim), next = earlier(sim_due(sim), faults_next(&sim->faults));
         next = earlier(next > now ? next : now + 1, slice_end(sim));
@@ -66,7 +66,7 @@ bool handle_advance_until(struct handle *handle, struct condition *condition, ui
 {
     struct sim *sim = &handle->sim;
     condition_arm(condition);
-    sim_settle(sim);
+    sim_finish_tick(sim);
     *holds = condition_holds(condition);
     while (!*holds && sim_now(sim) < end) {
         *holds = condition_step(condition, earlier(end, slice_end(sim)));

@@ -331,7 +331,7 @@ static PyObject *sim_purge_(struct sim_object *self, PyObject *unused)
     if (!handle)
         return NULL;
     size_t number = sim_purge(&handle->sim);
-    handle->host.free = (handle->sim.segment.master_free + WIRE_TICK - 1u) / WIRE_TICK;
+    handle->host.free = (handle->sim.segment.host_free + WIRE_TICK - 1u) / WIRE_TICK;
     leave(self);
     return PyLong_FromSize_t(number);
 }
@@ -413,7 +413,7 @@ static PyObject *sim_events(struct sim_object *self, PyObject *value)
     struct handle *handle = number == -1 && PyErr_Occurred() ? NULL : enter(self);
     if (!handle)
         return NULL;
-    sim_settle(&handle->sim);
+    sim_finish_tick(&handle->sim);
     struct handle_subscription *subscription = number > 0 ? handle_subscription(handle, (unsigned)number) : NULL;
     PyObject *result = NULL;
     if (subscription)

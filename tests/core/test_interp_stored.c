@@ -373,7 +373,7 @@ END_TEST
 
 static Suite *interp_stored_suite(void)
 {
-    Suite *suite = suite_create("interp_stored");
+    Suite *suite = suite_create("interp_note_stored");
 
     TCase *hold = tcase_create("hold");
     tcase_add_checked_fixture(hold, setup, teardown);
