@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/syscall.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -35,9 +36,10 @@ static int last(const char *word)
     return 0;
 }
 
+/* The emulator's filter of system calls does not let it kill() even itself; the C library's abort() needs tgkill(). */
 static void end(void)
 {
-    kill(getpid(), SIGKILL);
+    syscall(SYS_tgkill, getpid(), getpid(), SIGKILL);
     for (;;)
         pause();
 }
