@@ -70,6 +70,7 @@ test_bytes_for_nobody_are_not_kept_for_the_next_client() {
 test_two_clients_share_the_line() {
     serve bus --baud 0
     exec 4<>"$folder/bus" # the first one stays there, silent
+    soon "the first client is seen" seen 'a client has opened the bus' 1
     exits 0 ctl bus version
     holds "$said" "$version" "the second client"
     soon "the user is warned" grep -q 'another client has opened the bus' "$folder/bus.err"
