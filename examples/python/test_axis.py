@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Tests of the host library. `pytest test_axis.py` runs them in virtual time; with --rkm04-transport=pty the same tests run over
-the pty of an `rkm04 serve`, in real time."""
+the pty of an `rkm04 serve`, where timeouts are real and motions take no time (--clock max)."""
 import pytest
 
 from rkm_host import Axis, NoAnswer, Unit, UnitError
 
-pytestmark = pytest.mark.rkm04(plant="axis.plant.yaml")
+pytestmark = pytest.mark.rkm04(plant="axis.plant.yaml", clock="max")
 
 
 @pytest.fixture

@@ -75,6 +75,7 @@ def rkm04_serve(request: pytest.FixtureRequest) -> Iterator[Any]:
     from . import serve
 
     with serve(**_settings(request.node)) as server:
+        request.node.stash.setdefault(_BUSES, []).append(server)
         yield server
 
 
@@ -83,10 +84,7 @@ def rkm04_bus(request: pytest.FixtureRequest) -> Iterator[Any]:
     """A fresh bus, in this process; with --rkm04-transport=pty or rfc2217 that of `rkm04_serve`. Settings: marker rkm04."""
     node = request.node
     if _transport(request) != "inprocess":
-        server = request.getfixturevalue("rkm04_serve")
-        bus = server.bus
-        node.stash.setdefault(_BUSES, []).append(bus)
-        yield bus
+        yield request.getfixturevalue("rkm04_serve")
         return
     from . import Bus
 

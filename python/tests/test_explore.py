@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Exploration: a test is run again with faults at every place."""
 
+import io
 import re
 import xml.etree.ElementTree as ElementTree
 
@@ -9,7 +10,7 @@ import serial
 
 import rkm04
 from helpers import VERSION, VERSION_ANSWER
-from rkm04._explore import KINDS, Facts, Fault, Options, Passed, format_faults, parse_faults, places, plan
+from rkm04._explore import KINDS, Facts, Fault, Options, Passed, Progress, format_faults, parse_faults, places, plan
 
 MOVE_TWICE = '''
 import rkm04, serial
@@ -216,6 +217,23 @@ def test_a_power_cycle_comes_while_the_program_waits():
     with pytest.raises(rkm04.ExplorationFailed) as failed:
         rkm04.explore(move, faults=["power cycle"])
     assert re.search(r"the power fails after answer 2 \(2 Set Command m1 -> flag 0\)", str(failed.value))
+
+
+def test_a_terminal_shows_how_far_it_is(monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    monkeypatch.delenv("PYTEST_XDIST_WORKER", raising=False)
+    terminal = Terminal()
+    progress = Progress("test_it", terminal)
+    progress.show(12, 48, 1)
+    assert terminal.getvalue() == "\rtest_it: [######                  ] 12/48 runs, 1 failed "
+    progress.end()
+    assert terminal.getvalue().endswith("\r\033[K")
+    silent = io.StringIO()
+    Progress("test_it", silent).show(12, 48, 1)
+    assert silent.getvalue() == ""
 
 
 # ---- Places ----
