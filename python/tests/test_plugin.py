@@ -98,8 +98,9 @@ def test_it(rkm04_bus):
         r"repeat it: rkm04 replay --wire bus.log --trace run.vcd traces/test_it.py-test_it.record",
     ])
     assert pytester.path.joinpath("traces/test_it.py-test_it.record").read_text().startswith('{"rkm04_record":1')
-    replay = [str(Path(rkm04.__file__).parent / "bin" / "rkm04"), "replay", "--wire", "bus.log", "traces/test_it.py-test_it.record"]
-    subprocess.run(replay, cwd=pytester.path, check=True, timeout=60, env={**os.environ, "LD_PRELOAD": ""})
+    program = Path(rkm04.__file__).parent / "bin" / "rkm04"
+    command = [program, "replay", "--wire", "bus.log", "traces/test_it.py-test_it.record"]
+    subprocess.run(command, cwd=pytester.path, check=True, timeout=60, env={**os.environ, "LD_PRELOAD": ""})
     assert '2 Set Command m1 "V1000 F100 R W5000"' in pytester.path.joinpath("bus.log").read_text()
     assert "$timescale" in pytester.path.joinpath("traces/test_it.py-test_it.vcd").read_text()
 
