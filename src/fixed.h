@@ -28,13 +28,13 @@ struct motion_state {
     struct rkm04_fixed y, w;
 };
 
-/* d ticks on along a slope, or back if d < 0. The way may pass 2^63, as y may that it is added to; their sum does not. */
+/* d ticks on along a slope, or back if d < 0. */
 static inline struct motion_state motion_moved(struct rkm04_fixed y, struct rkm04_fixed w, int64_t slope, int64_t d)
 {
     int64_t half = slope * d;
     struct wide part = wide_product(w.part, (uint64_t)d);
     uint64_t whole = d < 0 ? part.high - w.part : part.high; /* (uint64_t)d is 2^64 more than d */
-    struct rkm04_fixed way = {(int64_t)((uint64_t)d * (uint64_t)(w.whole + half) + whole), part.low};
+    struct rkm04_fixed way = {d * (w.whole + half) + (int64_t)whole, part.low};
     return (struct motion_state){fixed_sum(y, way), {w.whole + 2 * half, w.part}};
 }
 

@@ -118,16 +118,21 @@ static void compute_from_start(struct rkm04_ramp *ramp, struct rkm04_instant sta
     ramp->w = w;
 }
 
-/* The same for a falling leg that ends at ramp->end, or up to a tick before ramp->at, at `place` with speed w. */
+/* The same for a falling leg that ends at ramp->end at `place` with speed w. The products may pass 2^64; their difference
+ * does not. */
 static void compute_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, struct rkm04_fixed w)
 {
-    const uint64_t fall = (uint32_t)-ramp->slope;
-    const struct wide places = {ramp->end.high, ramp->end.low};
+    if (ramp->end.tick < ramp->at) /* shorter than a tick: as if it had begun before */
+        ramp->at = ramp->end.tick;
+    const uint64_t fall = (uint32_t)-ramp->slope, ticks = ramp->end.tick - ramp->at;
+    const struct wide places = {ramp->end.high, ramp->end.low}, part = wide_product(w.part, ticks);
+    const struct rkm04_fixed w_whole = {(int64_t)((uint64_t)w.whole + 2 * fall * ticks), w.part};
+    struct rkm04_fixed way = {(int64_t)((uint64_t)w.whole * ticks + fall * ticks * ticks + part.high), part.low};
+    way = fixed_sum(way, times(fixed_sum(w_whole, scaled(fall, places)), places));
     struct rkm04_fixed y = y_of_part(ramp, place);
     y.whole = (int64_t)((uint64_t)y.whole + (uint64_t)ramp->step * (ramp->left - UINT64_C(1)));
-    const struct motion_state then = motion_moved(y, w, ramp->slope, (int64_t)(ramp->at - ramp->end.tick));
-    ramp->y = fixed_difference(then.y, times(fixed_sum(then.w, scaled(fall, places)), places));
-    ramp->w = fixed_sum(fixed_sum(then.w, scaled(2 * fall, places)), LAST_PLACE);
+    ramp->y = fixed_difference(y, way);
+    ramp->w = fixed_sum(fixed_sum(w_whole, scaled(2 * fall, places)), LAST_PLACE);
 }
 
 static void begin_pulses(struct rkm04_ramp *ramp, const struct rkm04_profile *profile)

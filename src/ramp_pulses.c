@@ -217,7 +217,7 @@ static inline int64_t curve_term(uint32_t steep, uint64_t a, uint64_t inverse)
 static void set_cubic(struct rkm04_ramp *ramp, int64_t middle)
 {
     const bool down = ramp->slope < 0;
-    const uint32_t steep = (uint32_t)size_of(ramp->slope);
+    const uint32_t steep = down ? 0 - (uint32_t)ramp->slope : (uint32_t)ramp->slope;
     const struct motion_state there = ramp_moved(ramp, middle);
     const uint64_t speed = (uint64_t)there.w.whole, inverse = ((UINT64_C(1) << 63) + speed / 2) / speed;
     const uint64_t c = quotient((uint64_t)ramp->step, inverse); /* ticks from pulse to pulse there */
