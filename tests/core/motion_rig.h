@@ -77,6 +77,9 @@ void motion_trying_segments(unsigned start_speed, const struct ref_segment *segm
 void motion_expect(const struct motion_rig *rig, const struct ref_track *track, uint64_t begin, uint64_t first, uint64_t from,
                    unsigned slack);
 
+/* Of all pulses that motion_expect() has seen, at most one in 10 000 is off at all. */
+void motion_expect_few_off(void);
+
 /* ---- Random parameters ---- */
 
 /* RKM04_TEST_SEED, or a fixed number. */
