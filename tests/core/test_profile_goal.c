@@ -133,11 +133,14 @@ END_TEST
 
 START_TEST(a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on)
 {
-    uint64_t at = cruise(true);
-    ck_assert_int_eq(go(at, PROFILE_TO_PLACE, 120 + 1000 * _i, 1000), PROFILE_MOVES);
+    const int thousands = _i / 2, way = 120 + 1000 * thousands;
+    const bool forward = _i % 2 == 0;
+    uint64_t at = cruise(forward);
+    ck_assert_int_eq(go(at, PROFILE_TO_PLACE, forward ? way : -way, 1000), PROFILE_MOVES);
+    ck_assert(motion.forward == forward);
     run(RKM04_NEVER - 1);
-    ck_assert_uint_eq(pulses, 120 + 1000 * (unsigned)_i);
-    expect_pulse(pulses, at + 200000 + 1000000 * (uint64_t)_i, 1);
+    ck_assert_uint_eq(pulses, (unsigned)way);
+    expect_pulse(pulses, at + 200000 + 1000000 * (uint64_t)thousands, 1);
 }
 END_TEST
 
@@ -236,7 +239,7 @@ int main(void)
     tcase_add_loop_test(goal, a_motion_for_ever_keeps_its_speed, 0, 2);
     tcase_add_loop_test(goal, a_speed_in_the_same_direction_is_taken_on_the_way, 0, 2);
     tcase_add_loop_test(goal, a_stop_on_the_way_takes_the_deceleration, 0, 2);
-    tcase_add_loop_test(goal, a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on, 0, 3);
+    tcase_add_loop_test(goal, a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on, 0, 6);
     tcase_add_loop_test(goal, a_place_ahead_that_is_too_near_is_reached_by_a_turn, 0, 2);
     tcase_add_loop_test(goal, a_place_behind_or_passed_is_reached_by_a_turn, 0, 2);
     tcase_add_loop_test(goal, a_speed_in_the_other_direction_is_reached_by_a_turn, 0, 2);
