@@ -485,9 +485,7 @@ static void set_goal(struct rkm04_motion *motion, const struct profile_goal *goa
     motion->segment[0] = (struct rkm04_segment){.speed = (uint16_t)size_of(goal->speed),
                                                 .acceleration = goal->acceleration,
                                                 .deceleration = goal->deceleration};
-    motion->total = 0;
-    if (goal->kind == PROFILE_TO_PLACE)
-        motion->total = (uint32_t)size_of(goal->way);
+    motion->total = (uint32_t)size_of(goal->way); /* counts in a motion of steps only */
     motion->segment[0].steps = motion->total;
     motion->profile.count = motion->profile.leg = 0;
 }

@@ -270,7 +270,7 @@ static size_t block_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *ti
         due1 += due2;
         due2 += due3;
     } while (i < n);
-    for (; n > 1 && tick[n - 1] > limit; n--) {
+    for (; tick[n - 1] > limit; n--) { /* the first one is due */
         next = tick[n - 1];
         due2 -= due3;
         due1 -= due2;
@@ -279,7 +279,7 @@ static size_t block_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *ti
     ramp->due = due;
     ramp->due1 = due1;
     ramp->due2 = due2;
-    ramp->interval = next > tick[n - 1] ? (int32_t)(next - tick[n - 1]) : 1;
+    ramp->interval = (int32_t)(next - tick[n - 1]);
     ramp->next = next;
     ramp->left -= (uint32_t)n;
     ramp->sent = (uint8_t)(ramp->sent + n);
