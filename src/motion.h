@@ -37,7 +37,7 @@ void motion_check_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor);
 /* Go on with the rest of a held motion (C3). */
 void motion_resume(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
-/* Stop at once, without a ramp (C1). The motion is forgotten. */
+/* Stop at once, without a ramp (C1). The motion is dropped. */
 void motion_abort(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
 /* First tick at which the next command or motion may begin: the last pulse has ended (K4, R7). */

@@ -3,7 +3,7 @@
  *
  *   speed                    A leg lies between two break points. On it, with y = 2 * rate^2 * (position - next pulse) and
  *     |      ____            w = 2 * rate * speed, d ticks later: y + d * (w + slope * d). A pulse is due at the first
- *     |     /    \           tick with y >= 0. A rising or level leg is reckoned from its beginning, a falling one from its
+ *     |     /    \           tick with y >= 0. A rising or level leg is computed from its beginning, a falling one from its
  *     |    /      \          end, so that the last step of a motion is as exact as the first.
  *     |___/        \____
  *     +--0--1------2-----3-- position: break points 0, 1, 2, and 3, the end */
@@ -40,7 +40,7 @@ void ramp_continue(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint6
  * on. Returns their number; there are more while ramp->next <= limit. */
 size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t limit, uint64_t *tick, size_t room);
 
-/* Pass over pulses that nobody wants to see one by one: most of those of the present leg that are due up to `limit`, which the
+/* Skip pulses that are not reported one by one: most of those of the present leg that are due up to `limit`, which the
  * next one is, but not more than `most`. At least one of those due up to `limit` is left for ramp_pulses(). The number of
  * operations grows with the logarithm of the number of pulses. Returns how many were passed over; 0: not worth it. */
 uint32_t ramp_skip(struct rkm04_ramp *ramp, uint64_t limit, uint32_t most);

@@ -212,7 +212,7 @@ static inline int64_t curve_term(uint32_t steep, uint64_t a, uint64_t inverse)
     return (int64_t)((product.high * steep + low.high) << 9 | low.low >> 55);
 }
 
-/* The pulses behind the present one, at which y and w stand, reckoned from `middle` ticks on: the cubic's value at the first,
+/* The pulses behind the present one, at which y and w stand, computed from `middle` ticks on: the cubic's value at the first,
  * RAMP_NEAR too late, and its differences. */
 static void set_cubic(struct rkm04_ramp *ramp, int64_t middle)
 {

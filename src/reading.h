@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* reading.h: the readings that a unit obeys (specification section 10). */
+/* reading.h: the readings of a unit (specification section 10). */
 #ifndef RKM04_SRC_READING_H
 #define RKM04_SRC_READING_H
 

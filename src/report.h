@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* report.h: telling the port what happened. Callbacks that the port does not have are passed over. */
+/* report.h: reports to the port what happened. Callbacks that the port does not have are passed over. */
 #ifndef RKM04_SRC_REPORT_H
 #define RKM04_SRC_REPORT_H
 
@@ -28,7 +28,7 @@ static inline bool pulses_are_seen(const struct rkm04_unit *unit)
  * and deserves the registers. */
 void report_single_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick, size_t count);
 
-/* The next `count` steps of the present motion, at these ticks, if somebody wants to see them. */
+/* The next `count` steps of the present motion, at these ticks, if the port takes them. */
 static inline void report_steps(const struct rkm04_unit *unit, const struct rkm04_motor *motor, const uint64_t *tick,
                                 size_t count)
 {

@@ -110,7 +110,7 @@ static unsigned block_of(const struct slot *slot, int half)
     return 2 * (slot->motor - 1) + (unsigned)half;
 }
 
-/* Could this command stand in a memory? `\`, K and C75 are obeyed at once and never stored. */
+/* Could this command stand in a memory? `\`, K and C75 are executed at once and never stored. */
 static bool is_storable(struct rkm04_command command)
 {
     return rkm04_command_valid(command) && command.op != '\\' && command.op != 'K' &&
@@ -225,7 +225,7 @@ static int write_commands(const struct slot *slot, unsigned block, const struct 
 }
 
 /* Erase a block and write a record there. Returns 0, or 1 if it does not stand there as it should; then no record does, as
- * far as the flash obeys. */
+ * far as the flash works. */
 static int write_record(const struct slot *slot, unsigned block, uint32_t generation, const struct rkm04_program *program)
 {
     uint8_t bytes[HEADER_SIZE];
@@ -240,7 +240,7 @@ static int write_record(const struct slot *slot, unsigned block, uint32_t genera
         read_record(slot, block, &found, NULL) == CONTENT_RECORD && found.check == header.check &&
         found.generation == generation)
         return 0;
-    /* Whoever was told that the store failed must not find its program there after the next power-up. */
+    /* A store that was reported as failed must not leave its program there after the next power-up. */
     (void)slot->port->flash_erase(slot->context, block);
     return 1;
 }

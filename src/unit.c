@@ -141,7 +141,7 @@ void rkm04_set_inputs(struct rkm04_unit *unit, uint8_t mask)
 
 /* ---- Line (section 4) --------------------------------------------------------------------------------------------------- */
 
-/* Is the frame in the buffer a request for this unit? Answers of other units, which SNode 1..16 tells, are not (L1). */
+/* Is the frame in the buffer a request for this unit? Answers of other units, recognised by SNode 1..16, are not (L1). */
 static bool is_for(const struct rkm04_unit *unit)
 {
     const struct rkm04_receiver *receiver = &unit->receiver;

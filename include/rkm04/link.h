@@ -42,7 +42,7 @@ struct rkm04_framing {
     const char *name; /* "hdlc", "plain" */
 
     /* Take one byte that arrived at tick `now`. The message gathers in buffer[0..room).
-     * Returns true when a whole, well-checked message stands there: dnode, snode, length are set and stay, with the
+     * Returns true when a whole message with a correct check value is there: dnode, snode, length are set and stay, with the
      * buffer, until the next call. Anything wrong is dropped and counted, never reported. */
     bool (*receive)(struct rkm04_receiver *receiver, uint8_t byte, uint64_t now, uint8_t *buffer, size_t room);
 

@@ -39,7 +39,7 @@ struct rkm04_readings {
     uint8_t reset_t41;         /* C1: `\` 0 leaves T41 alone, 1 switches it off */
     uint8_t negative_position; /* section 5: `=-5` is 0 right, 1 a bad value */
     uint8_t input_filter;      /* U2: ms 0..100, an input counts when it has been constant for this time */
-    uint16_t speed_change;     /* C4: ms 0..2000 until a change of speed is obeyed */
+    uint16_t speed_change;     /* C4: ms 0..2000 until a change of speed takes effect */
     uint16_t planning;         /* R1: ms 0..2000 from the slot of a motion's command to that in which it begins */
     uint16_t store_time;       /* P6: ms 0..1000 until Store Flash is answered; no motor executes a command meanwhile */
 };

@@ -68,7 +68,7 @@ enum rkm04_event {
 
 /* What a unit asks of its surroundings. All are called from within rkm04_init, _receive, _send or _advance. The calls about one
  * motor come in the order of time; those about two motors only from slot to slot: sort by tick to merge them. A pointer may be
- * NULL: then nobody is told (flash: stores fail, slots are empty). `motor` is 1..4, `tick` the tick of the happening.
+ * NULL: then it is not reported (flash: stores fail, slots are empty). `motor` is 1..4, `tick` the tick of the happening.
  * None may call back into the unit. */
 struct rkm04_port {
     /* A step pulse begins (10 us wide, R7). position: of the counter after it. Not called in simulation mode (T41). Must be
@@ -270,8 +270,8 @@ void rkm04_advance(struct rkm04_unit *unit, uint64_t ticks);
  * Doing nothing until then and advancing past it is the same as advancing all along. */
 uint64_t rkm04_next_event(const struct rkm04_unit *unit);
 
-/* The same, but pulses do not count while nobody sees them (no `step` and `steps` in the port, or T41): up to then nothing is
- * reported, and only counters change. */
+/* The same, but pulses do not count while they are not reported (no `step` and `steps` in the port, or T41): up to then nothing
+ * is reported, and only counters change. */
 uint64_t rkm04_next_report(const struct rkm04_unit *unit);
 
 /* What can be seen of a motor. */

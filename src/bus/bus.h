@@ -9,7 +9,7 @@
  *
  * Nothing of a motion is seen outside except in answers, so a line sleeps until a byte is to be moved or comes in, and its units
  * catch up then. Only in order that this never takes long it also wakes now and then while something is going on, and more often
- * while somebody watches or waits. */
+ * while there are watchers or waiters. */
 #ifndef RKM04_BUS_H
 #define RKM04_BUS_H
 
@@ -30,7 +30,7 @@ struct bus_unit {
     bool open;
 };
 
-/* What a line tells the program. */
+/* What a bus reports to the program. */
 struct bus_calls {
     void (*failed)(void *context);   /* the line is lost (reported) */
     void (*presence)(void *context); /* a client has come or gone, or bytes came */
@@ -67,8 +67,8 @@ bool bus_start(struct bus *bus);
 /* Open the files that are written about the bus. Failures are reported. Returns false if it did not work. */
 bool bus_begin_files(struct bus *bus);
 
-/* Close everything: first the link, so that nobody follows it to a pty that is gone. The handles are gone when the loop has run
- * out; then bus_free(). Returns false if a flash image, trace or record could not be written (reported). */
+/* Close everything: first the link, so that no client follows it to a pty that is gone. The handles are gone when the loop has
+ * run out; then bus_free(). Returns false if a flash image, trace or record could not be written (reported). */
 bool bus_end(struct bus *bus);
 void bus_free(struct bus *bus);
 
@@ -84,16 +84,16 @@ void bus_changed(struct bus *bus);
 void bus_wait(struct bus *bus, struct bus_waiter *waiter);
 void bus_cancel_wait(struct bus *bus, struct bus_waiter *waiter);
 
-/* A clock that stands: let time run to where the waiter is done. Returns false if the clock goes by itself, or somebody else is
- * moving it. */
+/* A clock that stands: let time run to where the waiter is done. Returns false if the clock goes by itself, or another client
+ * is advancing it. */
 bool bus_advance(struct bus *bus, struct bus_waiter *waiter);
 bool bus_is_stepped(const struct bus *bus);
 
 /* Another clock from now on, as with --clock. Returns false: refused. */
 bool bus_set_clock(struct bus *bus, const char *text, struct refusal *refusal);
 
-/* The present tick, for the log and for bytes that arrive now. The units may be behind it while nobody looks; when they have too
- * much to do for their clock, it is the one they have reached: they hear what comes at once. */
+/* The present tick, for the log and for bytes that arrive now. The units may be behind it while nothing reads them; when they
+ * have too much to do for their clock, it is the one they have reached: they receive bytes at once. */
 uint64_t bus_present(const struct bus *bus);
 
 #endif

@@ -6,8 +6,8 @@
 #include "device/device.h"
 #include "wire/wire.h"
 
-/* A message has passed (WATCH_MESSAGE). Requests count if a unit may obey them, answers if they are whole: what a collision
- * leaves of one is dropped, where the framing can tell. */
+/* A message has passed (WATCH_MESSAGE). Requests count if a unit may execute them, answers if they are whole: what a collision
+ * leaves of one is dropped, where the framing can detect it. */
 void bus_coverage_message(struct coverage *coverage, const struct wire_message *message);
 
 #endif

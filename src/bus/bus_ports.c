@@ -43,7 +43,7 @@ static struct line_settings present_settings(const struct bus_ports *ports)
     return settings;
 }
 
-/* Look what the client has set, and tell what is new. */
+/* Log the settings of the client if they have changed. */
 static void apply_new_settings(struct bus_ports *ports)
 {
     char change[LINE_SETTINGS_CHANGE_MAX];
@@ -56,7 +56,7 @@ static void apply_new_settings(struct bus_ports *ports)
 
 /* ---- To the units --------------------------------------------------------------------------------------------------- */
 
-/* Bytes of the client that can be taken. Each may be heard as several, and one more when it falls silent. */
+/* Bytes of the client that can be taken. Each may be received as several, and one more when it falls silent. */
 static size_t free_room(const struct bus_ports *ports)
 {
     size_t most = ports->calls->room(ports->context);
@@ -252,7 +252,7 @@ static const char *on_net_owner(void *context)
 {
     struct bus_ports *ports = context;
     if (ports->line.watch)
-        line_watch_update(ports->line.watch); /* somebody may have closed the pty just now */
+        line_watch_update(ports->line.watch); /* a client may have closed the pty just now */
     if (ports->options->pty && ports->line.clients > 0)
         return "a client of the pty";
     const char *owner = ports->tcp ? net_port_client(ports->tcp) : NULL;
@@ -273,7 +273,7 @@ static uint64_t collect_unread(struct bus_ports *ports)
     return unread;
 }
 
-/* Whoever knocks without an end must not fill the log. */
+/* Clients that try again and again must not fill the log. */
 static void log_refused(struct bus_ports *ports, const char *peer)
 {
     if (++ports->refused <= REFUSED_LOGGED)

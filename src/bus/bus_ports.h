@@ -82,13 +82,13 @@ unsigned bus_ports_clients(const struct bus_ports *ports);
 /* Send to everybody who is there. */
 void bus_ports_send(struct bus_ports *ports, const uint8_t *bytes, size_t length);
 
-/* The units are silent: what a strict line has heard in part is heard to its end. */
+/* The units are silent: what a strict line has received in part is received to its end. */
 void bus_ports_silence(struct bus_ports *ports);
 
 /* Listen while there is room for what comes. */
 void bus_ports_listen(struct bus_ports *ports);
 
-/* Bytes for nobody, and bytes that a client did not read. */
+/* Bytes without a client, and bytes that a client did not read. */
 uint64_t bus_ports_dropped(const struct bus_ports *ports);
 
 #endif

@@ -12,15 +12,15 @@
 
 #define NS_PER_MS 1000000u
 #define NS_PER_SECOND 1000000000u
-#define REST (100u * NS_PER_MS)  /* longest sleep while motors or programs run */
-#define REST_WATCHED (10u * NS_PER_MS) /* while somebody watches what they do */
-#define LATE (500u * NS_PER_MS)  /* so much behind, and the process was stopped */
-#define LONG_BEHIND NS_PER_SECOND /* without having caught up once, and it is told */
-#define HEARTBEAT (250u * NS_PER_MS) /* --late skip: longest sleep, so that it is noticed when the process was stopped */
-#define STINT (5u * NS_PER_MS)   /* longest time without a look at the line and at signals */
-#define STEP 100000u             /* ticks that the units are advanced at once while they are at work */
-#define LEAP 10000u              /* ticks: shortest leap of --clock max; less would cost more than it shows */
-#define CUTS_TOLD 100u           /* units that were cut off from answering one another, in the log */
+#define REST (100u * NS_PER_MS)          /* longest sleep while motors or programs run */
+#define REST_WATCHED (10u * NS_PER_MS)   /* while there are watchers */
+#define LATE (500u * NS_PER_MS)          /* so much behind, and the process was stopped */
+#define LONG_BEHIND NS_PER_SECOND        /* without having caught up once, after which it is logged */
+#define HEARTBEAT (250u * NS_PER_MS)     /* --late skip: longest sleep, so that it is noticed when the process was stopped */
+#define STINT (5u * NS_PER_MS)           /* longest time without a look at the line and at signals */
+#define STEP 100000u                     /* ticks that the units are advanced at once while they are at work */
+#define LEAP 10000u                      /* ticks: shortest leap of --clock max; less would cost more than it shows */
+#define CUTS_TOLD 100u                   /* units that were cut off from answering one another, in the log */
 #define FRAME_SILENCE (100u * NS_PER_MS) /* --clock max: how long the rest of a frame is waited for (L2) */
 
 bool bus_time_is_stepped(const struct bus_time *time)
@@ -58,7 +58,7 @@ static void remove_waiter(struct bus_time *time, struct bus_waiter *waiter)
     }
 }
 
-/* Tell those who have waited long enough. A waiter who is told may wait again, or take others off. */
+/* Call the waiters that are done. A waiter may wait again or remove others in its call. */
 static void serve_waiters(struct bus_time *time)
 {
     for (struct bus_waiter *waiter = time->waiters; waiter;) {
@@ -73,7 +73,7 @@ static void serve_waiters(struct bus_time *time)
     }
 }
 
-/* The tick up to which nobody who waits has to look. */
+/* The tick up to which no waiter can be done. */
 static uint64_t next_waiter_tick(const struct bus_time *time)
 {
     uint64_t next = DEVICE_NEVER, now = sim_now(time->sim);
@@ -161,8 +161,8 @@ static void report_cuts(struct bus_time *time)
     time->cuts = counters.cuts;
 }
 
-/* One step towards `tick`: a span in which nothing happens, or STEP, and no further than somebody waits for. Anything may be
- * reached in one call of the sim, but then nobody would look at the line and at signals for a long while. */
+/* One step towards `tick`: a span in which nothing happens, or STEP, and no further than a waiter waits for. Anything may be
+ * reached in one call of the sim, but then the line and signals would not be served for a long time. */
 static void advance_sim(struct bus_time *time, uint64_t tick)
 {
     uint64_t end = sim_now(time->sim) + STEP, wanted = next_waiter_tick(time);
@@ -232,7 +232,7 @@ static void handle_late_wake(struct bus_time *time, uint64_t now)
                                      : "the units catch up (--late catch-up)");
 }
 
-/* Whoever has chosen the clock should know that it is too fast. */
+/* Report a clock that is too fast for the machine. */
 static void log_if_behind(struct bus_time *time, uint64_t now, bool behind)
 {
     if (!behind || time->behind == 0)
@@ -269,7 +269,7 @@ void bus_time_catch_up(struct bus_time *time)
     time->calls->before_sleep(time->context);
     time->busy = false;
     if (bus_time_is_stepped(time))
-        tick = time->goal; /* whoever it was advanced for may be content */
+        tick = time->goal; /* its waiter may be done */
     uint64_t wake = sim_now(time->sim) < tick ? now : next_wake_time(time, now);
     if (time->options->late_skips && !bus_time_is_stepped(time) && (wake == 0 || wake > now + HEARTBEAT))
         wake = now + HEARTBEAT;

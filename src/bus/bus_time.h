@@ -13,7 +13,7 @@
 #include "sim/sim.h"
 #include "virtual_clock.h"
 
-/* Somebody who waits for something on the bus. */
+/* A waiter for a condition or a time on the bus. */
 struct bus_waiter {
     struct condition *condition; /* armed; NULL: time alone */
     uint64_t limit;              /* tick up to which it is waited for */
@@ -36,7 +36,7 @@ struct bus_time {
     void *context;
     struct sim *sim;
     bool timed;           /* bytes take their time unless the clock stands */
-    uint32_t own_kinds;   /* of watch.h, what the bus itself watches: nobody waits for that */
+    uint32_t own_kinds;   /* of watch.h, what the bus itself watches, not for a client */
 
     struct virtual_clock clock;
     char clock_text[16];  /* as it was set */

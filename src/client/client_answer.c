@@ -26,7 +26,7 @@ static enum exit_status report_malformed(const struct client_answer *answer)
     return STATUS_FAILURE;
 }
 
-/* Bytes of a unit as text; those that are not printable ASCII as \xNN, so that no terminal obeys them. */
+/* Bytes of a unit as text; those that are not printable ASCII as \xNN, so that no terminal interprets them. */
 static void print_text(const uint8_t *bytes, size_t length)
 {
     for (size_t i = 0; i < length; i++) {

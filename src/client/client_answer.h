@@ -17,7 +17,7 @@ struct client_answer {
     bool json;
 };
 
-/* Print a JSON object in one line on stdout and let go of it. NULL: out of memory, reported. Returns the exit status. */
+/* Print a JSON object in one line on stdout and release it. NULL: out of memory, reported. Returns the exit status. */
 enum exit_status client_print_json(json_t *object);
 
 /* Bytes of a unit as a JSON string; those above 7F stand for the characters of that number. Returns NULL without memory. */

@@ -251,7 +251,7 @@ static json_t *bits_term(const struct reader *reader, const struct term *term, c
     return no_memory(reader, json_pack("{s:{s:i}}", key, digits, bit));
 }
 
-/* A message that passes; `from` NULL: whoever sent it. */
+/* A message that passes; `from` NULL: from any sender. */
 static json_t *message_term(const struct reader *reader, const struct term *term, const char *from)
 {
     int64_t number;

@@ -147,7 +147,7 @@ bool client_job_members(json_t *params, const char *const *words, size_t count)
 
 /* ---- Commands without much to them ------------------------------------------------------------------------------------ */
 
-/* Call a method whose result nobody needs to see. */
+/* Call a method without printing its result. */
 static enum exit_status call_without_result(struct client_job *job, const char *method, json_t *params, bool of_unit)
 {
     json_t *result;

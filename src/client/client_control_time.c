@@ -88,7 +88,7 @@ static enum exit_status call_wait(struct client_job *job, const char *method, js
     return status == STATUS_SUCCESS ? show_waited(job, result) : status;
 }
 
-/* Does the clock stand until somebody advances it? Returns the exit status. */
+/* Is the clock stopped until a client advances it? Returns the exit status. */
 static enum exit_status check_stopped(struct client_job *job, bool *stopped)
 {
     json_t *result;
@@ -219,7 +219,7 @@ static json_t *read_subscription(const struct client_job *job, uint64_t *count)
     return params;
 }
 
-/* Ask to be told when --limit is over: a wait for what never is. */
+/* Have an answer when --limit is over: a wait for what never is. */
 static bool set_limit(struct client_job *job)
 {
     json_t *never = json_pack("{s:{s:{s:i}}, s:o}", "until", "t", "<", 0, "limit", read_time(job->limit));

@@ -227,7 +227,7 @@ static bool fill_pieces(struct cutter *c)
     return true;
 }
 
-/* A `]` that arrives before the rest would let go too early. */
+/* A `]` that arrives before the rest would release too early. */
 static void hold_inner_ends(struct client_cut *cut)
 {
     for (size_t i = 0; i < cut->commands; i++) {

@@ -142,7 +142,7 @@ static enum client_outcome send_frame(const struct dialogue *d)
     return CLIENT_SENT;
 }
 
-/* To all units: nobody says when it has arrived. */
+/* To all units: no answer shows when it has arrived. */
 static void wait_until_sent(const struct dialogue *d)
 {
     uint64_t end = d->begun + line_time(d->frame) + CLOSE_GRACE_US;
@@ -212,7 +212,7 @@ static bool process_bytes(struct dialogue *d, const uint8_t *bytes, size_t lengt
     return false;
 }
 
-/* What the bytes that came tell about the cause. Returns whether there is anything to tell. */
+/* Print causes that the received bytes suggest. Returns whether there are any. */
 static bool print_causes(const struct dialogue *d)
 {
     const struct client *client = d->client;

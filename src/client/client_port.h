@@ -13,7 +13,7 @@ uint64_t client_now(void);
 bool client_port_valid(const char *port);
 
 /* Open the line `port`, which has to be valid: a terminal raw with 19200 baud, 8N1 (U7), locked against other programs that
- * lock, what has come before forgotten. A lock, a name server and a connection are waited for up to `timeout_ms` each. Failures
+ * lock, what has come before dropped. A lock, a name server and a connection are waited for up to `timeout_ms` each. Failures
  * are reported on stderr. Returns a non-blocking descriptor, or -1. */
 int client_port_open(const char *port, unsigned timeout_ms);
 

@@ -88,7 +88,7 @@ static const char *connect_advice(const char *path, int error)
     }
 }
 
-/* Is it an emulator of another user? Somebody may have made the folder of our default before us. */
+/* Is it an emulator of another user? Another user may have made the default folder before us. */
 static bool is_foreign(const struct client_rpc *rpc)
 {
     struct ucred peer;

@@ -83,7 +83,7 @@ static bool is_refusal(int flag)
 }
 
 /* What the unit said, then where: the errors that can be seen from here. If there is none, the unit knows other commands or
- * ranges than we do, and the character has to tell the place. */
+ * ranges than we do, and the character has to show the place. */
 static void report_refusal(const struct sending *s)
 {
     fprintf(stderr, "%s: the unit refuses the text: %s ", program_invocation_short_name,

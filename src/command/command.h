@@ -35,7 +35,7 @@ struct command_method {
     bool changes; /* something: the journal takes it down */
 };
 
-/* Let `sim` obey the methods of a table, too, which must stay; after sim_begin(). Does nothing if they are attached already.
+/* Attach the methods of a table, too, which must stay; after sim_begin(). Does nothing if they are attached already.
  * Returns false if SIM_COMMAND_TABLES are attached. */
 bool command_attach(struct sim *sim, const struct command_method *methods);
 

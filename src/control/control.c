@@ -196,7 +196,7 @@ static const struct connection_calls connection_calls = {
     .closed = on_closed,
 };
 
-/* Returns NULL if out of memory, or nobody is there. */
+/* Returns NULL if out of memory, or there is no client. */
 static struct control_client *accept_client(struct control *control, uv_stream_t *listener)
 {
     struct control_client *client = calloc(1, sizeof *client);

@@ -144,7 +144,7 @@ static void write_out(struct connection *connection)
     }
 }
 
-/* Is it to be let go: has it ended its sending, and got all that it may wait for? */
+/* Is it to be closed: has it ended its sending, and got all that it may wait for? */
 static bool is_done(const struct connection *connection)
 {
     return connection->leaving && unread_length(&connection->in) == 0 && connection_unread(connection) == 0 &&
@@ -260,7 +260,7 @@ static bool is_blank(const char *line, size_t length)
     return length == 0;
 }
 
-/* Deal with one line. Returns false if there is none that could be obeyed now. */
+/* Handle one line. Returns false if there is none that could be executed now. */
 static bool serve_line(struct connection *connection)
 {
     const char *begin = NULL, *end = NULL;

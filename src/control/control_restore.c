@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* restore with a file: its recording is replayed in pieces between the turns of the loop, so that however long it lasts nobody
- * waits for it but the client that wants it. One goes on at a time. */
+/* restore with a file: its recording is replayed in pieces between the turns of the loop, so that however long it lasts only
+ * the client that requests it waits. One goes on at a time. */
 #include "control_inside.h"
 #include "record/record.h"
 

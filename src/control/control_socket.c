@@ -31,7 +31,7 @@ static bool is_socket(const char *path, uintmax_t device, uintmax_t inode)
     return lstat(path, &found) == 0 && S_ISSOCK(found.st_mode) && found.st_dev == device && found.st_ino == inode;
 }
 
-/* Does nobody listen any more? */
+/* Does no process listen any more? */
 static bool is_dead(const struct sockaddr_un *address)
 {
     int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);

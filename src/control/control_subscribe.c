@@ -67,7 +67,7 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     context->later = true;
     control_answer(client, context->request->id, json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription",
                                                          (int)subscription->number));
-    bus_changed(context->bus); /* it looks more often while somebody watches */
+    bus_changed(context->bus); /* it advances the units more often while there are watchers */
     return NULL;
 }
 
@@ -86,7 +86,7 @@ json_t *control_unsubscribe(struct control_context *context, struct refusal *ref
     int64_t number;
     if (!params_known(params, names, refusal) || !param_integer(params, "subscription", 1, INT32_MAX, &number, refusal))
         return NULL;
-    bus_sim(context->bus); /* what has happened so far is told */
+    bus_sim(context->bus); /* what has happened so far is delivered */
     for (struct subscription **at = &context->client->subscriptions; *at; at = &(*at)->next) {
         if ((*at)->number == number) {
             struct sim *sim = &(*at)->bus->sim;

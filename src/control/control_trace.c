@@ -31,7 +31,7 @@ json_t *control_trace_start(struct control_context *context, struct refusal *ref
     struct control *control = context->client->control;
     json_t *result = trace_set_start(&control->traces, bus_sim(context->bus), context->request->params, refusal);
     if (result)
-        bus_changed(context->bus); /* it looks more often while somebody watches */
+        bus_changed(context->bus); /* it advances the units more often while there are watchers */
     return result;
 }
 

@@ -19,7 +19,7 @@ enum address { TO_UNIT, TO_ALL_MOTORS, TO_ONE_MOTOR, BROADCAST };
 static const struct message {
     const char *name;
     bool has_motor;
-    bool broadcast; /* is obeyed when it goes to all units; the others do nothing then (P10) */
+    bool broadcast; /* is executed when it goes to all units; the others do nothing then (P10) */
     bool error;     /* may be answered with ERROR COMMAND! (P4, P5) */
 } messages[] = {
     [UNKNOWN] = {"unknown message", false, false, false},
@@ -43,7 +43,7 @@ __attribute__((format(printf, 4, 5))) static struct coverage_item *add(struct co
                                                                        uint32_t key, const char *name, ...)
 {
     if (coverage->items == COVERAGE_ITEMS_MAX)
-        return &coverage->item[COVERAGE_ITEMS_MAX - 1]; /* the table of commands has outgrown the list: a test tells */
+        return &coverage->item[COVERAGE_ITEMS_MAX - 1]; /* the table of commands has outgrown the list: a test fails */
     struct coverage_item *item = &coverage->item[coverage->items++];
     va_list arguments;
     *item = (struct coverage_item){.group = (uint8_t)group, .key = key};

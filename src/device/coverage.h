@@ -23,7 +23,7 @@ enum coverage_group {
     COVERAGE_MOTORS,   /* 1..4, in whatever message */
     COVERAGE_COMMANDS, /* each in each of its forms, in a text that the unit took */
     COVERAGE_FLAGS,    /* of answers to Set Command (P1) */
-    COVERAGE_ERRORS,   /* what answers tell about errors: Store Flash, ERROR COMMAND! */
+    COVERAGE_ERRORS,   /* errors reported in answers: Store Flash, ERROR COMMAND! */
     COVERAGE_FAULTS,   /* enum rkm04_fault */
     COVERAGE_GROUPS
 };
@@ -32,12 +32,12 @@ enum coverage_group {
 enum coverage_place { COVERAGE_ANYWHERE, COVERAGE_ALONE, COVERAGE_INSIDE };
 
 struct coverage_item {
-    uint8_t group; /* enum coverage_group */
-    uint8_t place; /* commands: enum coverage_place */
-    uint8_t level; /* I: 0 = L, 1 = H */
-    uint32_t key;  /* commands: the character; others: what tells the items of the group apart */
+    uint8_t group;     /* enum coverage_group */
+    uint8_t place;     /* commands: enum coverage_place */
+    uint8_t level;     /* I: 0 = L, 1 = H */
+    uint32_t key;      /* commands: the character; others: what distinguishes the items of the group */
     int64_t low, high; /* commands: of the argument; I: of the bit */
-    uint64_t count; /* how often */
+    uint64_t count;    /* how often */
     char name[COVERAGE_NAME_MAX];
 };
 

@@ -10,7 +10,7 @@
  * which the linker finds; a program that does not define it has the kinds of the table alone.
  *
  * Time. Everything around a unit counts in us. A unit may count finer: `ticks_per_us` of its ticks make one us. `now`, `advance`,
- * `next_event` and `next_report` are in us since its power-up; the ticks that a unit tells its port are its own. */
+ * `next_event` and `next_report` are in us since its power-up; the ticks that a unit reports to its port are its own. */
 #ifndef RKM04_DEVICE_H
 #define RKM04_DEVICE_H
 
@@ -60,11 +60,11 @@ enum device_event {
     DEVICE_EVENT_POSITION  /* value: counter, as two's complement, that no step led to */
 };
 
-/* What a unit tells and asks; called from within begin, receive, send and advance. `axis` from 1, `tick` of the unit. What
+/* What a unit reports and asks; called from within begin, receive, send and advance. `axis` from 1, `tick` of the unit. What
  * concerns one axis comes in the order of time. Any may be NULL. None may call back into the unit. */
 struct device_port {
     /* `count` >= 1 steps of an axis at tick[0] to tick[count - 1]; position: of the counter after the first, each further one
-     * counts it up (forward) or down. A device that drives coils tells a step for each row of its table; the levels are
+     * counts it up (forward) or down. A device that drives coils reports a step for each row of its table; the levels are
      * outputs. */
     void (*steps)(void *context, unsigned axis, const uint64_t *tick, size_t count, int32_t position, bool forward);
     void (*direction)(void *context, uint64_t tick, unsigned axis, bool forward);
@@ -245,7 +245,7 @@ struct device_kind {
      * message. NULL: it takes no texts. */
     int (*set_text)(struct device_unit *unit, unsigned axis, const char *text, size_t length, char error[DEVICE_ERROR_SIZE]);
 
-    /* Does `text` have anything that a unit with these settings refuses? Then it is reported on `out` (NULL: nobody), as
+    /* Does `text` have anything that a unit with these settings refuses? Then it is reported on `out` (NULL: none), as
      * NAME:LINE:COLUMN: error: … NULL: it takes no texts. */
     bool (*check_text)(const struct device_config *config, const char *name, const char *text, size_t length, FILE *out);
 
@@ -277,7 +277,7 @@ struct device_kind {
     const struct rkm04_framing *(*framing)(const struct device_config *config);
 
     /* Does the state repeat, so that it does for ever? Called again and again with `memory`, `repeat_size` bytes, zero at first.
-     * Returns after how many us it has repeated; 0: it has not. repeat_size 0: that cannot be told. */
+     * Returns after how many us it has repeated; 0: it has not. repeat_size 0: that is not known. */
     size_t repeat_size;
     uint64_t (*find_repeat)(void *memory, const struct device_unit *unit);
 

@@ -21,7 +21,7 @@ enum { KEY_DEVICE = 0x1000, KEY_OPTION, KEY_FIRST }; /* KEY_FIRST + n: row n of 
 
 /* ---- The table -------------------------------------------------------------------------------------------------------- */
 
-/* What argp is told: it keeps pointers. */
+/* What argp gets: it keeps pointers. */
 static struct {
     struct argp_option row[ROWS_MAX + 1u];
     const char *switches[ROWS_MAX]; /* name of the option with the key KEY_FIRST + its place */

@@ -29,7 +29,7 @@ enum fault_kind {
     FAULT_FLIP,        /* bits of a byte are inverted: `number` is the mask */
     FAULT_DUPLICATE,   /* a byte is there twice */
     FAULT_INSERT,      /* byte `number` is there before a byte */
-    FAULT_ECHO,        /* the host hears its own byte, too (two-wire adapter) */
+    FAULT_ECHO,        /* the host receives its own byte, too (two-wire adapter) */
     FAULT_DELAY,       /* the answer sets out `ticks` later */
     FAULT_NO_ANSWER,   /* the answer is not sent; the unit believes that it was */
     FAULT_WRONG_FCS,   /* hdlc: the check value of the answer is wrong, everything else is right */
@@ -110,7 +110,7 @@ struct faults {
     uint32_t last_id;
     uint64_t random;   /* state of the generator, seeded */
     uint32_t kinds;    /* there are some of these: bit n is kind n */
-    bool unplugged;    /* calls.adapter has been told so */
+    bool unplugged;    /* calls.adapter has been called for it */
     uint32_t dying;    /* bit n: unit n has lost its power in the middle of an operation, and is to be switched off */
     unsigned count;
     struct fault fault[FAULTS_MAX]; /* in order of their ids */

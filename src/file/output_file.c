@@ -76,7 +76,7 @@ static bool is_open_at(int fd, const struct stat *status)
     return fstat(fd, &open) == 0 && open.st_dev == status->st_dev && open.st_ino == status->st_ino;
 }
 
-/* Is the regular file used by nobody else? `written`: only files that are written count. */
+/* Is the regular file used for nothing else? `written`: only files that are written count. */
 static bool check_free(const struct stat *status, const char *path, bool written, char **why)
 {
     static const char same_file[] = "it is the same file as %s, which is %s: choose another name";
@@ -140,7 +140,7 @@ static bool check_kind(int fd, const struct output_kind *kind, unsigned flags, c
                    flags & OUTPUT_REQUESTED ? "`force': true (rkmctl --force)" : "--force");
 }
 
-/* Traces, logs of the wires and recordings tell all that a host does: they are made for their owner alone, whatever the umask.
+/* Traces, logs of the wires and recordings show all that a host does: they are made for their owner alone, whatever the umask.
  * Make a file of that name. Returns -1 if there is one already, or errno says why not. */
 static int make_output(const char *path, int how, const struct output_kind *kind)
 {
@@ -150,7 +150,7 @@ static int make_output(const char *path, int how, const struct output_kind *kind
     return fd;
 }
 
-/* Regular files are opened for reading, too, to look at their kind; a pipe must not be, or nobody would have to read it. */
+/* Regular files are opened for reading, too, to look at their kind; a pipe must not be, or it would need no reader. */
 static int open_output(const char *path, const struct output_kind *kind, unsigned flags)
 {
     struct stat there;

@@ -14,7 +14,7 @@ enum output_flag {
     OUTPUT_FORCE = 1,     /* overwrite a file of another kind, too */
     OUTPUT_MAY_WAIT = 2,  /* pipes are allowed, which may make the caller wait for a reader */
     OUTPUT_KEEP = 4,      /* leave what is in the file until output_file_empty() */
-    OUTPUT_REQUESTED = 8, /* by a control client, who is told how one forces there */
+    OUTPUT_REQUESTED = 8, /* by a control client, whose message names its way to force */
 };
 
 /* Open `path` for writing from its beginning, making it if it is not there. To be called when all inputs are read and valid.

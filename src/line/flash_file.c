@@ -113,7 +113,7 @@ static int make_private(const char *path, int flags)
     return fd;
 }
 
-/* Open the file, or make it; what is made is a file of that very name, never one that somebody's link leads to. */
+/* Open the file, or make it; what is made is a file of that very name, never one that a link leads to. */
 static int open_or_make(const char *path)
 {
     const int flags = O_RDWR | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
@@ -154,7 +154,7 @@ bool flash_file_sync(struct flash_file *flash)
     flash->unsynced = -1;
     if (fdatasync(flash->fd) == 0)
         return true;
-    /* The system may now take for written what is not: it is only told once. */
+    /* The system may now take for written what is not: it is reported only once. */
     flash->lost[block] = true;
     log_error("cannot write the flash image %s: %s", flash->path, strerror(errno));
     return false;

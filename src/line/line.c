@@ -36,7 +36,7 @@ ssize_t line_read(struct line *line, uint8_t *bytes, size_t room)
     if (length > 0)
         return length;
     if (length < 0 && errno == EIO && line->watch && line->slave < 0)
-        return 0; /* a pty on which nobody is, nor are we (line_pty.c) */
+        return 0; /* a pty without a client, closed by us, too (line_pty.c) */
     return length < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
 }
 

@@ -2,7 +2,7 @@
 /* line.h: the ways in and out of the process; the face of the room.
  *
  *     line (here)                  the serial end: a pty of its own (line_pty.c) or a device (line_serial.c)
- *     line_settings                what a client has set, and how bytes of another speed are heard
+ *     line_settings                what a client has set, and how bytes of another speed are received
  *     net_port, rfc2217            TCP, raw or with the settings of a port
  *     net_address                  where it listens
  *     link_path, lock_file         the link to the pty, and who owns it
@@ -20,12 +20,12 @@
 #include <sys/types.h>
 #include <termios.h>
 
-/* What line_pty.c tells about clients. */
+/* What line_pty.c reports about clients. */
 enum line_event {
     LINE_DETACHED, /* the last client has closed the line */
     LINE_ATTACHED, /* the first client has opened it */
     LINE_SHARED,   /* one more client has opened it */
-    LINE_FAILED    /* nobody is there, and nobody can open the pty any more: it is to be closed, but not within the call */
+    LINE_FAILED    /* there is no client, and no client can open the pty any more: it is to be closed, but not within the call */
 };
 typedef void line_notify(void *context, enum line_event event);
 
@@ -45,21 +45,21 @@ enum line_rts {
 };
 
 struct line {
-    int fd;           /* for bytes: master of the pty, or the device; non-blocking; -1: neither */
-    int slave;        /* held open, so that the master never sees a hang-up; -1: a device, or a client keeps us out */
+    int fd;                   /* for bytes: master of the pty, or the device; non-blocking; -1: neither */
+    int slave;                /* held open, so that the master never sees a hang-up; -1: a device, or a client keeps us out */
     struct line_watch *watch; /* NULL: a device */
-    struct line *next; /* being watched */
-    int mark;         /* inotify's, for this pty; -1: none, it is looked at now and then */
-    bool left;        /* by a client: its settings have not been looked at yet */
-    bool doubtful;    /* notices were lost, or came too fast: `clients` may be wrong */
-    bool certain;     /* one of `clients` is there for certain: whoever comes now is another one */
-    unsigned looks;   /* at this line that are still needed to be certain */
-    unsigned closings; /* notices of clients that have closed it, not counted yet */
-    unsigned clients; /* have the line open; a device counts as one */
-    uint64_t dropped; /* bytes that nobody was there for, or that a client did not read in time */
-    char path[64];    /* of the pty's slave; "" for a device */
-    bool is_wire;     /* a device with a real line: bytes take their time there */
-    bool rs485_set;   /* the driver's RS485 mode is ours, `rs485` is what it was */
+    struct line *next;        /* being watched */
+    int mark;                 /* inotify's, for this pty; -1: none, it is looked at now and then */
+    bool left;                /* by a client: its settings have not been looked at yet */
+    bool doubtful;            /* notices were lost, or came too fast: `clients` may be wrong */
+    bool certain;             /* one of `clients` is there for certain: a client that comes now is another one */
+    unsigned looks;           /* at this line that are still needed to be certain */
+    unsigned closings;        /* notices of clients that have closed it, not counted yet */
+    unsigned clients;         /* have the line open; a device counts as one */
+    uint64_t dropped;         /* bytes without a client, or that a client did not read in time */
+    char path[64];            /* of the pty's slave; "" for a device */
+    bool is_wire;             /* a device with a real line: bytes take their time there */
+    bool rs485_set;           /* the driver's RS485 mode is ours, `rs485` is what it was */
     struct serial_rs485 rs485;
     bool toggles, raised; /* LINE_RTS_TOGGLES, and RTS is on */
     line_notify *notify;
@@ -71,8 +71,8 @@ struct line {
 bool line_watch_open(struct line_watch *watch);
 void line_watch_close(struct line_watch *watch);
 
-/* Follow what clients of any line did since the last call: count them, forget what the last one left unread, make a line raw that
- * it left cooked. */
+/* Follow what clients of any line did since the last call: count them, discard what the last one left unread, make a line raw
+ * that it left cooked. */
 void line_watch_update(struct line_watch *watch);
 
 /* A line that is not open. */
@@ -97,7 +97,7 @@ void line_serial_restore(struct line *line);
 /* Read up to `room` bytes. Returns their number; 0: none now; -1: the line is gone (errno says why; 0: hung up). */
 ssize_t line_read(struct line *line, uint8_t *bytes, size_t room);
 
-/* Send. Bytes for nobody and bytes that do not fit are dropped and counted: a line has no memory. Never blocks.
+/* Send. Bytes without a client and bytes that do not fit are dropped and counted: a line has no memory. Never blocks.
  * Returns the number of dropped ones. */
 size_t line_write(struct line *line, const uint8_t *bytes, size_t length);
 

@@ -3,18 +3,18 @@
  * poll() return at once, for ever) and the settings stay within reach; inotify reports who opens and closes it.
  *
  * inotify merges equal notices that follow each other, so counting them may err when two clients come or go together. Hence
- * whether a client is left is looked up whenever one closes it: with our own slave closed for a moment, the master tells by a
- * hang-up whether anybody else has the slave open. Our own close and open give notices, too: our slave can only be read, and
+ * whether a client is left is looked up whenever one closes it: with our own slave closed for a moment, the master shows by a
+ * hang-up whether another process has the slave open. Our own close and open give notices, too: our slave can only be read, and
  * notices of another kind stand around that of its opening, so that they are not merged with those of clients. A look with more
  * than our two notices is repeated, in the next turn of the loop if need be; and the system gives notice of a client that closes
  * the pty before it has closed it, so that the look may still find it. Hence a client that comes is called another one only if
- * it is certain that somebody is there: by the notice of its opening, or by looks for a second. A client that takes the pty for
+ * it is certain that one is there: by the notice of its opening, or by looks for a second. A client that takes the pty for
  * itself (TIOCEXCL) while our slave is closed keeps us out until it has gone: then the line is without one, and the master's
  * hang-up is taken for nothing to read.
  *
  * Settings are as on a serial port: they outlive the client. The next client may open the pty and make its own settings at any
- * moment, and one tcsetattr() cannot be told from another, so nothing that a client may have meant is ever reset. Only a line
- * that was left cooked is made raw again, and only while no notice of another client has come. */
+ * moment, and one tcsetattr() cannot be distinguished from another, so nothing that a client may have meant is ever reset. Only
+ * a line that was left cooked is made raw again, and only while no notice of another client has come. */
 #include "line.h"
 
 #include <errno.h>
@@ -45,7 +45,7 @@ static bool set_flags(int fd)
     return fcntl(fd, F_SETFD, FD_CLOEXEC) == 0 && fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK) == 0;
 }
 
-/* The settings of a pty nobody has touched: raw, 19200 baud, reads return what is there. */
+/* The settings of a new pty: raw, 19200 baud, reads return what is there. */
 static void set_initial_settings(struct termios *settings)
 {
     line_make_raw(settings);
@@ -168,7 +168,7 @@ bool line_pty_open(struct line *line, struct line_watch *watch, line_notify *not
 
 /* ---- Who comes and goes --------------------------------------------------------------------------------------------- */
 
-/* Nobody listens any more: what the unit sent and nobody read is lost, as on a line. */
+/* There is no client any more: what the unit sent and no client has read is lost, as on a line. */
 static void drop_unread(struct line *line)
 {
     uint8_t bytes[1024];
@@ -269,7 +269,8 @@ static bool is_hung_up(const struct line *line)
     return poll(&master, 1, 0) > 0 && (master.revents & POLLHUP);
 }
 
-/* Does anybody else have the slave open? Returns 1 or 0; -1: our own slave cannot be had any more, and nobody else is there. */
+/* Does anybody else have the slave open? Returns 1 or 0; -1: our own slave cannot be had any more, and there is no other
+ * client. */
 static int check_other_clients(struct line *line)
 {
     if (line->slave >= 0)
@@ -287,7 +288,7 @@ static int check_other_clients(struct line *line)
     return -1;
 }
 
-/* Was the look at the line undisturbed? Our own close and open give a notice each; if there are more, somebody came or went
+/* Was the look at the line undisturbed? Our own close and open give a notice each; if there are more, a client came or went
  * meanwhile. A client that keeps us out came, at most. `closed`: times that we have closed our slave. */
 static bool is_undisturbed(const struct line *line, const struct notices *notices, unsigned closed)
 {
@@ -296,7 +297,7 @@ static bool is_undisturbed(const struct line *line, const struct notices *notice
     return line->slave >= 0 ? notices->all == closed + 1 : notices->all - notices->opens == closed;
 }
 
-/* A client has the pty for itself, or has left it so. Then nobody but root could open it since, and of a client that was alone
+/* A client has the pty for itself, or has left it so. Then only root could open it since, and of a client that was alone
  * the notices are enough: to look would let the next one lock us out. One that opened it together with the one that locked it,
  * so that there was one notice, is found when it sends. Returns true if they were enough. */
 static bool count_exclusive(struct line *line)
@@ -316,7 +317,7 @@ static bool count_exclusive(struct line *line)
     return true;
 }
 
-/* Somebody is there, as far as the look tells: the system gives notice of a client that closes the line before it has closed it.
+/* There seems to be a client: the system gives notice of a client that closes the line before it has closed it.
  * `closing`: there were such notices. Certain is only who is still there after more looks. */
 static void start_looks(struct line *line, bool closing)
 {
@@ -370,7 +371,7 @@ void line_pty_recount(struct line *line)
         start_looks(line, closings > 0 || counted.all - counted.opens > closed);
 }
 
-/* A client that has gone may have left the line cooked. Made raw as long as nobody has come, who might have meant it. */
+/* A client that has gone may have left the line cooked. Made raw as long as no client has come that might have meant it. */
 static void make_raw_again(struct line *line)
 {
     struct termios settings;

@@ -10,7 +10,7 @@
 
 #include "log.h"
 
-/* Raw, 19200 baud, 8N1; what came before us is forgotten. */
+/* Raw, 19200 baud, 8N1; what came before is discarded. */
 static bool set_up(int fd, const char *path)
 {
     struct termios settings;
@@ -42,7 +42,7 @@ static bool set_driver(struct line *line)
     return line->rs485_set;
 }
 
-/* See that somebody turns the line round. A pty has nothing to turn. */
+/* Check that the driver of the line is switched. A pty has nothing to turn. */
 static bool set_rts(struct line *line, const char *path, enum line_rts rts)
 {
     int modem;

@@ -120,7 +120,7 @@ static uint64_t half_bit_received(const struct line_receiver *receiver)
     return receiver->from.baud;
 }
 
-/* The sample in the stop bit ends the character. Returns the number of bytes heard. */
+/* The sample in the stop bit ends the character. Returns the number of bytes received. */
 static size_t end_character(struct line_receiver *receiver, bool level, struct line_received *received)
 {
     receiver->phase = level ? AWAITS_START : AWAITS_IDLE;
@@ -131,7 +131,7 @@ static size_t end_character(struct line_receiver *receiver, bool level, struct l
     return 1;
 }
 
-/* Take the sample that is due. Returns the number of bytes heard. */
+/* Take the sample that is due. Returns the number of bytes received. */
 static size_t take_sample(struct line_receiver *receiver, bool level, struct line_received *received)
 {
     unsigned bit = receiver->bit++;
@@ -146,7 +146,7 @@ static size_t take_sample(struct line_receiver *receiver, bool level, struct lin
     return 0;
 }
 
-/* The line stays at `level` until `until`. Within a level at most one character can end. Returns the number of bytes heard. */
+/* The line stays at `level` until `until`. Within a level at most one character can end. Returns the number of bytes received. */
 static size_t track_level(struct line_receiver *receiver, bool level, uint64_t until, struct line_received *received)
 {
     size_t count = 0;

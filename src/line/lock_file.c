@@ -20,8 +20,8 @@ static bool is_same_file(int fd, const char *path)
     return fstat(fd, &ours) == 0 && lstat(path, &there) == 0 && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
 }
 
-/* Is it a file that we have made? In a folder of everybody, somebody else may have put another one there, or a second name of
- * a file that must not be written to; and what stands in it would tell us what to remove. */
+/* Is it a file that we have made? In a folder that all may write to, another user may have put another one there, or a second
+ * name of a file that must not be written to; and its content would tell us what to remove. */
 static bool is_own_file(int fd)
 {
     struct stat found;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* lock_file.h: a file beside something that one process holds, a link or a socket: the kernel frees its lock however the holder
- * ends, and what stands in it tells who that was and what was his. */
+ * ends, and its content names the holder and its files. */
 #ifndef RKM04_LINE_LOCK_FILE_H
 #define RKM04_LINE_LOCK_FILE_H
 
@@ -10,7 +10,8 @@
 #define LOCK_RECORD_MAX 128 /* bytes of the text, its end included */
 
 /* Open, making it if it is not there, and lock `path`; its first line goes to `record`. Returns a descriptor; -1: errno says
- * why. EWOULDBLOCK: somebody else holds it, `record` is his. EPERM: it is another user's, no file, or has several names. */
+ * why. EWOULDBLOCK: another process holds it, `record` is its record. EPERM: it is another user's, no file, or has several
+ * names. */
 int lock_file_take(const char *path, char record[LOCK_RECORD_MAX]);
 
 /* Why it could not be taken, for people. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* log.h: what the emulator tells on stderr. Nobody who reads it slowly, or not at all, holds anything up: a terminal may be
+/* log.h: the log of the emulator on stderr. A slow reader, or none, does not hold anything up: a terminal may be
  * stopped with Ctrl-S, a pipe may be full.
  *
  * O_NONBLOCK belongs to the open file, which is shared with the shell and all that it has started; and poll() promises room for

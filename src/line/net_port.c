@@ -8,7 +8,7 @@
  *     net_port_send() --> to_client --+--pump--> wire --> client
  *
  * transfer() does all of it until nothing moves any more. Commands of RFC 2217 overtake data that wait for room, as they do on a
- * serial port; replies that the client does not read stop it from being heard, so that none is lost. */
+ * serial port; replies that the client does not read stop the port from reading it, so that none is lost. */
 #include "net_port.h"
 
 #include <errno.h>
@@ -350,7 +350,7 @@ static void attach_client(struct net_port *port, struct net_connection *connecti
     transfer(port);
 }
 
-/* The text of the refusal has to arrive, so what the peer sends is read until it has closed its side, or for a while. */
+/* The text of the refusal has to arrive, so what the client sends is read until it has closed its side, or for a while. */
 static void refuse_client(struct net_port *port, struct net_connection *connection, const char *owner)
 {
     connection->state = CONNECTION_REFUSED;
@@ -393,7 +393,7 @@ const char *net_port_client(struct net_port *port)
     return port->client && port->client->state == CONNECTION_CLIENT ? port->client->name : NULL;
 }
 
-/* A place for one more. NULL: there is one as soon as somebody has been closed. */
+/* A place for one more. NULL: there is one as soon as a connection has been closed. */
 static struct net_connection *find_free_connection(struct net_port *port)
 {
     struct net_connection *oldest = NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* net_port.h: a line over TCP: raw, or a serial port by RFC 2217. It listens; one client at a time has the line, a further one is
- * told so and sent away. All calls back come from the loop, or from within net_port_wake(), never from net_port_send(). */
+ * refused with a message. All calls back come from the loop, or from within net_port_wake(), never from net_port_send(). */
 #ifndef RKM04_LINE_NET_PORT_H
 #define RKM04_LINE_NET_PORT_H
 
@@ -15,7 +15,7 @@
 #define NET_IN 1024u         /* bytes read from a client at once */
 #define NET_TO_LINE 4096u    /* bytes of a client that wait for room() */
 #define NET_TO_CLIENT 20480u /* bytes that wait for a client to read; as many as with a pty */
-#define NET_REPLIES 1024u    /* bytes of RFC 2217 that wait likewise; when they are many, the client is not heard */
+#define NET_REPLIES 1024u    /* bytes of RFC 2217 that wait likewise; when they are many, the client is not read */
 #define NET_WIRE 2048u       /* bytes that have been given to the system */
 #define NET_CONNECTIONS 8u   /* connections at a time: the client and those being refused; for one more, the one refused first
                                 is closed at once, so that no client waits */
@@ -31,15 +31,15 @@ enum net_event {
     NET_REFUSED   /* a further client came and was sent away */
 };
 
-/* What the owner of the line is told. All but `bytes` and `event` may be NULL. */
+/* What is reported to the owner of the line. All but `bytes` and `event` may be NULL. */
 struct net_port_calls {
     /* Data for the units, at most room() bytes; all of them are taken. */
     void (*bytes)(void *context, const uint8_t *data, size_t length);
     /* How many bytes can be taken now; NULL: any number. See net_port_wake(). */
     size_t (*room)(void *context);
-    /* `peer`: "127.0.0.1:40123". */
+    /* `client`: "127.0.0.1:40123". */
     void (*event)(void *context, enum net_event event, const char *client);
-    /* Who else has the line (by another way than this port), so that a client has to be refused; NULL: nobody. */
+    /* Who else has the line (by another way than this port), so that a client has to be refused; NULL: none. */
     const char *(*owner)(void *context);
     /* RFC 2217: the client has changed its port. A client that attaches has 19200 8N1 and sets one thing after the other: what
      * counts is what stands when bytes come. parity: N O E M S; stop_bits: 1, 2, or 3 for 1.5. */
@@ -48,7 +48,7 @@ struct net_port_calls {
     void (*line_break)(void *context, bool on);
     /* RFC 2217: the client has changed DTR or RTS; both are on when it attaches. */
     void (*lines)(void *context, bool dtr, bool rts);
-    /* RFC 2217: bytes that have been handed to bytes() and are not on the wire yet are to be forgotten. */
+    /* RFC 2217: bytes that have been handed to bytes() and are not on the wire yet are to be discarded. */
     void (*purge)(void *context);
 };
 
@@ -74,8 +74,8 @@ struct net_connection {
 struct net_port {
     char address[NET_NAME_SIZE]; /* where it listens, with the real port: "127.0.0.1:40123", "[::1]:40123" */
     bool attached;               /* a client has the line */
-    uint64_t dropped;            /* bytes that nobody was there for, or that a client did not read in time */
-    uint64_t unread;             /* bytes that the last client has sent and nobody will hear: it gave way to another one */
+    uint64_t dropped;            /* bytes without a client, or that a client did not read in time */
+    uint64_t unread;             /* bytes that the last client has sent and no unit will receive: it gave way to another one */
     struct rfc2217 rfc2217;      /* of the client; read only */
 
     /* Inside. */
@@ -108,21 +108,21 @@ struct net_port {
 bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, enum net_kind kind,
                    const struct net_port_calls *calls, void *context);
 
-/* The name of the client that has the line; NULL: nobody, or one that has closed its own side and gives way to any other. That it
+/* The name of the client that has the line; NULL: none, or one that has closed its own side and gives way to any other. That it
  * has done so is looked up, even if more has come from it than there is room for. Not to be called from within bytes(). */
 const char *net_port_client(struct net_port *port);
 
 /* There may be room() again. Not needed after bytes(). */
 void net_port_wake(struct net_port *port);
 
-/* Send to the client; one that has closed its own side only still gets what follows within a second. Bytes for nobody and bytes
- * that do not fit are dropped and counted: a line has no memory. Never blocks. Returns the number of dropped ones. */
+/* Send to the client; one that has closed its own side only still gets what follows within a second. Bytes without a client and
+ * bytes that do not fit are dropped and counted: a line has no memory. Never blocks. Returns the number of dropped ones. */
 size_t net_port_send(struct net_port *port, const uint8_t *bytes, size_t length);
 
-/* The cable of the device server is pulled out: the client is hung up, and so is whoever comes; or put in again. */
+/* The cable of the device server is pulled out: the client is hung up, and so is every new client; or put in again. */
 void net_port_plug(struct net_port *port, bool plugged);
 
-/* Stop listening and let go of the client, without an event. The handles are closed when the loop has run out. A port that was
+/* Stop listening and close the client, without an event. The handles are closed when the loop has run out. A port that was
  * never opened, or is closed, is left alone. */
 void net_port_close(struct net_port *port);
 

@@ -125,7 +125,7 @@ static void handle_option(struct rfc2217 *port, uint8_t verb, uint8_t option)
     if (before == (on ? OFF : ON))
         reply_option(port, on ? yes : no, option);
     if (on && option == COM_PORT && !port->reported_lines) {
-        port->reported_lines = true; /* pyserial knows nothing of the lines before it is told */
+        port->reported_lines = true; /* pyserial does not know the lines before they are reported */
         answer_byte(port, NOTIFY_MODEMSTATE, MODEM_STATE);
     }
 }
@@ -195,7 +195,7 @@ static enum rfc2217_event set_control(struct rfc2217 *port, uint8_t value)
     if (value >= ASK_RTS && value <= RTS_OFF)
         return set_line(port, &port->rts, ASK_RTS, value, RFC2217_LINES);
     if (value > FLOW_DSR)
-        return RFC2217_NOTHING; /* reserved: there is no value to tell */
+        return RFC2217_NOTHING; /* reserved: there is no value to report */
     bool inbound = (value >= ASK_FLOW_IN && value <= FLOW_IN_HARDWARE) || value == FLOW_DTR;
     uint8_t *flow = inbound ? &port->flow_in : &port->flow_out;
     if (value != ASK_FLOW_OUT && value != ASK_FLOW_IN)
@@ -226,7 +226,7 @@ static enum rfc2217_event purge(struct rfc2217 *port, uint8_t value)
     return RFC2217_PURGE;
 }
 
-/* A signature with a text tells us the client's, which nobody wants to know. */
+/* A signature with a text is the client's, which is not needed. */
 static void answer_signature(struct rfc2217 *port, size_t length)
 {
     if (length == 0)
@@ -353,7 +353,7 @@ static enum rfc2217_event handle_sub_verb(struct rfc2217 *port, uint8_t byte)
         return RFC2217_NOTHING;
     }
     if (byte != SE)
-        return handle_verb(port, byte); /* its end is missing: forget it */
+        return handle_verb(port, byte); /* its end is missing: discard it */
     port->state = AT_DATA;
     return handle_command(port);
 }

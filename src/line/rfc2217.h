@@ -22,7 +22,7 @@ enum rfc2217_event {
     RFC2217_LINES,       /* dtr or rts has changed */
     RFC2217_BREAK,       /* `breaking` has changed */
     RFC2217_BREAK_PULSE, /* a break of no given length */
-    RFC2217_PURGE,       /* `purge` says what is to be forgotten */
+    RFC2217_PURGE,       /* `purge` says what is to be discarded */
     RFC2217_FLOW         /* `suspended` has been set */
 };
 

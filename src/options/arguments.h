@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* arguments.h: reading a command line, with an end for --help and --version that tells whether they could be printed. */
+/* arguments.h: reading a command line, with an end for --help and --version that reports whether they could be printed. */
 #ifndef RKM04_OPTIONS_ARGUMENTS_H
 #define RKM04_OPTIONS_ARGUMENTS_H
 

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <time.h>
 
-/* Shared by who asks and the thread; whoever is the last to need it frees it. */
+/* Shared by who asks and the thread; the last one to need it frees it. */
 struct search {
     pthread_mutex_t mutex;
     pthread_cond_t over;

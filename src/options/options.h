@@ -4,7 +4,7 @@
  *     arguments        reading a command line, with --help and --version
  *     host_address     the address of a host by its name, found within a time
  *     program_argument [M=]FILE, a program and its motor
- *     process          what a program must not inherit from whoever starts it
+ *     process          what a program must not inherit from its starter
  *     readings_option  --readings
  *     socket_address   the address of a Unix socket
  *

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* process.h: what a program must not inherit from whoever starts it. */
+/* process.h: what a program must not inherit from its starter. */
 #ifndef RKM04_OPTIONS_PROCESS_H
 #define RKM04_OPTIONS_PROCESS_H
 

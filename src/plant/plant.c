@@ -42,7 +42,7 @@ __attribute__((format(printf, 5, 6))) static void report(struct plant *plant, ui
                                                          const char *format, ...)
 {
     va_list list;
-    if (plant->reports == PLANT_REPORTS) /* nobody takes them: the newest matter */
+    if (plant->reports == PLANT_REPORTS) /* not taken: the newest ones matter */
         drop_report(plant);
     struct plant_report *entry = &plant->report[plant->reports++];
     *entry = (struct plant_report){.tick = tick, .motor = (uint8_t)(at + 1u), .news = (uint8_t)news};

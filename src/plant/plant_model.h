@@ -67,7 +67,7 @@ struct plant_switch {
     uint8_t input, motor; /* from 1 */
     bool normally_closed; /* the input is 0 while it is actuated */
     int64_t low, high;    /* actuated from low to high; with `turn` also the other way round */
-    int64_t hysteresis;   /* steps beyond that until it lets go */
+    int64_t hysteresis;   /* steps beyond that until it is released */
     uint64_t bounce;      /* ticks */
 
     bool on;              /* actuated */
@@ -80,8 +80,8 @@ struct plant_switch {
 struct plant {
     unsigned switches;
     struct plant_switch contact[PLANT_SWITCHES];
-    uint32_t mask, levels; /* as told */
-    uint64_t now;         /* everything before it is done */
+    uint32_t mask, levels; /* as reported */
+    uint64_t now;          /* everything before it is done */
     unsigned reports;
     struct plant_report report[PLANT_REPORTS];
     unsigned axes;

@@ -16,7 +16,7 @@ static const struct device_kind *kind_of(const struct collector *collector)
 
 /* ---- A look ----------------------------------------------------------------------------------------------------------- */
 
-/* The first leg of a plan, told in us of the line. */
+/* The first leg of a plan, in us of the bus. */
 struct leg {
     double us, speed, position, slope; /* steps/s, steps/s a us */
 };

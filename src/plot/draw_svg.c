@@ -229,7 +229,7 @@ static void draw_band(const struct drawing *drawing, const struct plot_band *ban
     fprintf(drawing->out, " %.6g s</title></rect>\n", (band->to - band->from) * 1e-6);
 }
 
-/* More than so many cannot be told from each other: those of one px are drawn once. */
+/* More than so many cannot be distinguished: those of one px are drawn once. */
 static void draw_bands(struct drawing *drawing, const struct plot_motor *motor)
 {
     double drawn = -1;

@@ -6,7 +6,7 @@
 
 #include "check_inside.h"
 
-/* One command in one situation; each warning is told once for a command. */
+/* One command in one situation; each warning is reported once for a command. */
 struct look {
     struct check *check;
     const struct check_motor *motor;

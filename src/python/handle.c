@@ -174,7 +174,7 @@ static json_t *method_advance(struct handle *handle, const json_t *params, struc
     return until_read_advance(&until, &handle->sim, params, refusal) ? do_until(handle, &until, refusal) : NULL;
 }
 
-/* Nobody else moves this clock, so time passes. */
+/* No other client advances this clock, so time passes. */
 static json_t *method_wait(struct handle *handle, const json_t *params, struct refusal *refusal)
 {
     struct until until;

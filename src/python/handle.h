@@ -16,7 +16,7 @@
 #define HANDLE_EVENTS_MAX (64u << 20)   /* bytes of JSON that a subscription keeps until they are taken; then events are lost */
 #define HANDLE_HEARD_MAX (1u << 20)     /* bytes that the host keeps until they are read; then bytes are lost */
 
-/* What somebody has subscribed to, as lines of JSON. */
+/* The events of a subscription, as lines of JSON. */
 struct handle_subscription {
     struct sim *sim;
     unsigned number; /* 0: this place is free */
@@ -53,7 +53,7 @@ struct handle {
     FILE *record_stream;
     char *record_path;
     struct handle_host host;
-    bool (*paused)(void *context); /* asked now and then while time passes: true ends the call. NULL: nobody */
+    bool (*paused)(void *context); /* asked now and then while time passes: true ends the call. NULL: none */
     void *paused_context;
 };
 
@@ -80,7 +80,7 @@ bool handle_advance_until(struct handle *handle, struct condition *condition, ui
 
 /* ---- The host at the end of the bus ------------------------------------------------------------------------------------ */
 
-/* Speed and characters of the host's port. They need not be those of the units: both then hear what comes of it. */
+/* Speed and characters of the host's port. They need not be those of the units: both then receive what comes of it. */
 void handle_host_configure(struct handle *handle, struct line_settings settings);
 
 /* Send bytes from the present tick on, behind those under way. Time passes only while more are under way than the bus takes.
@@ -93,7 +93,7 @@ size_t handle_host_read(struct handle *handle, struct handle_byte *bytes, size_t
 /* For the config of the sim: bytes that reach the host. */
 void handle_host_hear(void *context, const uint8_t *bytes, size_t length);
 
-/* What is under way to the host in characters of its own is heard to its end, if the bus is at rest. */
+/* What is under way to the host in characters of its own is received to its end, if the bus is at rest. */
 void handle_host_settle(struct handle *handle);
 
 /* ---- Events ------------------------------------------------------------------------------------------------------------ */

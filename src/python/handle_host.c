@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The host at the end of the bus: what it sends and hears, at its own speed. */
+/* The host at the end of the bus: what it sends and receives, at its own speed. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,7 +49,7 @@ static bool hand_over_heard(struct handle *handle, const struct line_received *h
     return true;
 }
 
-/* Bytes that are heard as others, if at all. */
+/* Bytes that are received as others, if at all. */
 static bool write_otherwise(struct handle *handle, const uint8_t *bytes, size_t length)
 {
     struct handle_host *host = &handle->host;

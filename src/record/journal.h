@@ -15,15 +15,15 @@ struct journal_page; /* a piece of the past */
 struct journal *journal_begin(struct sim *sim);
 void journal_free(struct journal *journal);
 
-/* Somebody who was there before this journal is no more; `next` was before him. */
+/* A journal in front of this one has been removed; `next` was in front of it. */
 void journal_skip(struct journal *journal, const struct sim_journal *gone, const struct sim_journal *next);
 
 /* The past up to now; to be given back. NULL: out of memory. */
 struct journal_page *journal_mark(struct journal *journal);
 void journal_page_free(struct journal_page *page);
 
-/* The past is that page from now on, `later` ticks ago. page NULL: what the text of a record tells (it is copied). Returns false
- * if out of memory: the past is unknown then. */
+/* The past is that page from now on, `later` ticks ago. page NULL: what the text of a recording contains (it is copied).
+ * Returns false if out of memory: the past is unknown then. */
 bool journal_turn(struct journal *journal, struct journal_page *page, const char *text, size_t length, uint64_t later);
 
 /* Why the journal cannot be written: "…"; NULL: it can. */

@@ -11,7 +11,7 @@
 
 struct record;
 
-/* Begin to take down what comes in and goes out, on `out`, which stays the caller's. To be called at tick 0, when the plant is
+/* Begin to record what comes in and goes out, on `out`, which stays the caller's. To be called at tick 0, when the plant is
  * there and before anything has come in. Every line is flushed as it is written. Returns NULL if out of memory or a flash image
  * cannot be read. */
 struct record *record_begin(struct sim *sim, FILE *out);

@@ -12,7 +12,7 @@
 #define RECORD_LINE_MAX (2u << 20)         /* bytes */
 #define RECORD_EMBEDDED_MAX (16u << 20)    /* bytes of a file within a record, and of the journal */
 
-/* The configuration, flash and plant: `outputs` says whether what goes out will be taken down, too. Returns false if memory is
+/* The configuration, flash and plant: `outputs` says whether what goes out will be recorded, too. Returns false if memory is
  * short or a flash image cannot be read. */
 bool record_line_head(FILE *out, struct sim *sim, bool outputs);
 
@@ -21,7 +21,7 @@ void record_line_purge(FILE *out, uint64_t now);
 void record_line_break(FILE *out, uint64_t now, bool on);
 void record_line_timed(FILE *out, uint64_t now, bool timed);
 
-/* A command that was obeyed. Returns false if out of memory. */
+/* A command that was executed. Returns false if out of memory. */
 bool record_line_command(FILE *out, uint64_t now, const char *method, const json_t *params);
 
 /* "hex":"…" without the name. */

@@ -12,7 +12,7 @@
 #define KEYS_MAX 64u                /* of a head */
 #define PLANT_MAX (1u << 20)        /* bytes */
 
-/* ---- Flash: memory, all bytes inverted, so that what nobody touches costs nothing ------------------------------------- */
+/* ---- Flash: memory, all bytes inverted, so that untouched memory costs nothing ------------------------------------- */
 
 static uint8_t *flash_at(void *context, unsigned number, unsigned block, unsigned offset, unsigned length)
 {

@@ -28,7 +28,7 @@ struct replay {
     uint64_t until;
     bool (*interrupted)(void *context);
     void *context;
-    bool paused;                /* interrupted() has said so: the present line is obeyed anew when the replay goes on */
+    bool paused;                /* interrupted() has returned true: the present line is executed again when the replay goes on */
     uint64_t checked;           /* tick of the last line that was checked */
 
     /* The present line. */

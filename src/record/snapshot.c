@@ -16,7 +16,7 @@ struct snapshot {
     char *plant_text;
 };
 
-/* What people can see of a motor, to tell the watchers what has changed. */
+/* The visible state of a motor, to report changes to the watchers. */
 struct look_motor {
     bool forward, moving;
     uint8_t led, fault;

@@ -52,7 +52,7 @@ bool restore_go_on(struct restore *restore, bool (*interrupted)(void *context), 
 uint64_t restore_timeout(const struct restore *restore);
 void restore_is_late(struct restore *restore);
 
-/* It has come to its end: obey the command at the present tick. Returns its result; NULL: refused. Frees it. */
+/* It has come to its end: execute the command at the present tick. Returns its result; NULL: refused. Frees it. */
 json_t *restore_end(struct restore *restore, struct refusal *refusal);
 
 /* Give it up: nothing has changed. NULL: nothing. */
@@ -60,7 +60,7 @@ void restore_cancel(struct restore *restore);
 
 /* ---- What a sim has ------------------------------------------------------------------------------------------------------ */
 
-/* Let `sim` obey the commands snapshot and restore. After sim_begin(). Its snapshots are freed at sim_end(). Returns false if
+/* Attach the commands snapshot and restore. After sim_begin(). Its snapshots are freed at sim_end(). Returns false if
  * there is no place for the table (command_attach()). */
 bool snapshots_attach(struct sim *sim);
 

@@ -21,7 +21,7 @@ struct sim_snapshots {
     struct journal *journal; /* NULL: none is kept */
     size_t count;
     struct named_snapshot named[SNAPSHOTS_MAX];
-    char *text;              /* the file that the restore being obeyed has read, for records; NULL: none */
+    char *text;              /* the file that the restore being executed has read, for records; NULL: none */
     size_t length;
 };
 
@@ -42,7 +42,8 @@ json_t *snapshots_put(struct sim_snapshots *store, const struct snapshot *snapsh
 struct restore *restore_open(struct sim *sim, const char *name, const char *text, size_t length, unsigned depth,
                              struct refusal *refusal);
 
-/* It has come to its end: make the sim like it, if it is well. Returns the result of the command; NULL: refused. Frees it. */
+/* It has come to its end: put the sim into its state, if it is valid. Returns the result of the command; NULL: refused. Frees
+ * it. */
 json_t *restore_put(struct restore *restore, struct refusal *refusal);
 
 /* All of it, as far as the timeout and the sim's interrupted() let it. Likewise. */

@@ -40,7 +40,7 @@ struct tally {
     bool short_of_memory;
     struct tally_stream stream[TALLY_UNITS][TALLY_MOTORS];
     struct watcher watcher;
-    size_t told, count, room; /* bytes: those that have been told */
+    size_t told, count, room; /* bytes: those that have been reported */
     struct tally_byte *heard;
     struct sim_config config; /* of the sim, before we listened */
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exec_report.h: what a run of `rkm04 exec` tells at its end, for people or as JSON. */
+/* exec_report.h: what a run of `rkm04 exec` reports at its end, for people or as JSON. */
 #ifndef RKM04_RUN_EXEC_REPORT_H
 #define RKM04_RUN_EXEC_REPORT_H
 

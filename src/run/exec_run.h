@@ -29,7 +29,7 @@ struct exec_run {
     bool progress;                  /* show a line on stderr while it takes long */
     /* Called with what the unit answered to a message of the stimulus; length 0: nothing. */
     void (*answered)(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);
-    void (*advanced)(void *context); /* called after each advance; NULL: nobody */
+    void (*advanced)(void *context); /* called after each advance; NULL: none */
     void *context;
 
     uint64_t period;  /* out, EXEC_ENDLESS: the state repeats after so many ticks */

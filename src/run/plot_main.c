@@ -298,7 +298,7 @@ static bool has_ending(const char *path, const char *ending)
     return length > end && strcmp(path + length - end, ending) == 0;
 }
 
-/* Scenarios are told by their name, traces and recordings by their first bytes. */
+/* Scenarios are recognised by their name, traces and recordings by their first bytes. */
 static enum source source_of(const char *path, FILE *in)
 {
     if (has_ending(path, ".yaml") || has_ending(path, ".yml"))

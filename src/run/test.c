@@ -157,7 +157,7 @@ static void catch_signals(void)
     signal(SIGPIPE, SIG_IGN); /* a closed pipe is a failed write, which is reported */
 }
 
-/* Read all files, to tell all their errors. Returns 0 or the exit status. */
+/* Read all files, to report all their errors. Returns 0 or the exit status. */
 static int read_all(struct test_case *tests, const struct options *options)
 {
     int status = STATUS_SUCCESS;

@@ -45,7 +45,7 @@ struct test_case {
     struct test_readings *under; /* what came of it under other readings; NULL: it was run once */
 };
 
-/* Where a run tells a person how far it is. */
+/* How far a run is, for people. */
 struct test_progress {
     bool wanted, shown;
     size_t at, count;         /* this one, of so many */

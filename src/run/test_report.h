@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_report.h: what `rkm04 test` tells: a line a scenario for people, JSON for programs, JUnit XML for CI servers. */
+/* test_report.h: what `rkm04 test` reports: a line a scenario for people, JSON for programs, JUnit XML for CI servers. */
 #ifndef RKM04_RUN_TEST_REPORT_H
 #define RKM04_RUN_TEST_REPORT_H
 

@@ -56,7 +56,7 @@ struct scenario_result {
     int record_error;         /* errno with which writing the record has failed; 0: it has not */
 };
 
-/* Run it from power-up. `record`: where the record goes, which stays the caller's; NULL: nobody wants it. `interrupted`: NULL,
+/* Run it from power-up. `record`: where the record goes, which stays the caller's; NULL: not needed. `interrupted`: NULL,
  * or asked now and then with the line's tick: true ends the run. */
 enum scenario_end scenario_run(const struct scenario *scenario, FILE *record, bool (*interrupted)(void *context, uint64_t tick),
                                void *context, struct scenario_result *result);

@@ -176,7 +176,7 @@ static bool check_answer(struct running *running, const struct scenario_step *st
     uint64_t now = sim_now(running->sim);
     if (step->answer == ANSWER_NONE)
         return running_failed(running, step, now, wanted_text(step), text_with(&answer, "the answer %s"));
-    if (step->unit > 0 && from > 0 && from != address_of(running, step->unit)) /* 0: the framing does not tell */
+    if (step->unit > 0 && from > 0 && from != address_of(running, step->unit)) /* 0: the framing does not name it */
         return running_failed(running, step, now, wanted_text(step), running_text("an answer from address %u", from));
     if (step->action == ACTION_SET)
         return check_program_answer(running, step);

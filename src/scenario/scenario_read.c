@@ -259,7 +259,7 @@ bool scenario_begin_inputs(const struct scenario *scenario, struct sim *sim, str
     return true;
 }
 
-/* A plant in the middle of the scenario has no lines of its own: its first error is told at its node. */
+/* A plant in the middle of the scenario has no lines of its own: its first error is reported at its node. */
 static bool try_power_up(struct scenario_reader *reader, const struct config_node *root, FILE *errors)
 {
     char *said = NULL;

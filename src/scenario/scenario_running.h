@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* scenario_running.h: a scenario while it runs. Inside: scenario_run.c has time and stimuli, scenario_do.c the steps,
- * scenario_host.c what the host sends and hears. */
+ * scenario_host.c what the host sends and receives. */
 #ifndef RKM04_SCENARIO_RUNNING_H
 #define RKM04_SCENARIO_RUNNING_H
 
@@ -68,7 +68,7 @@ bool running_advance(struct running *running, uint64_t limit, struct condition *
 /* Do a step, or what a stimulus has to do. Returns false if the run is over. */
 bool running_do_step(struct running *running, const struct scenario_step *step);
 
-/* The master's ear, for sim_config.out. */
+/* The host's receiver, for sim_config.out. */
 void running_receive(void *context, const uint8_t *bytes, size_t length);
 
 /* Send what the step says and judge the answer. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* sandbox.h: what the emulator gives up when it is ready, so that whoever should find a fault in it cannot use it for more than
+/* sandbox.h: what the emulator gives up when it is ready, so that an attacker who finds a fault in it cannot use it for more than
  * the emulator itself does (docs/SECURITY.md): access to files outside some folders (Landlock), and system calls (seccomp). Both
  * are Linux's; a kernel without them leaves things as they are. */
 #ifndef RKM04_SANDBOX_H

@@ -27,7 +27,7 @@
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
 #define FILES_A_LINE 8u  /* descriptors, beside those of flash images */
 #define FILES_SPARE 8u   /* descriptors that are still free when all is open: for clients, traces, an adapter plugged in again */
-#define LOG_WAIT_MS 200u /* how long it is waited for whoever reads the log, at the start and at the end */
+#define LOG_WAIT_MS 200u /* how long to wait for the reader of the log, at the start and at the end */
 #define NAME_WAIT_MS 30000u /* how long a name server may take: as long as the resolver tries by default */
 #define FILES_BESIDE 64u /* descriptors that have nothing to do with lines */
 
@@ -84,7 +84,7 @@ static json_t *on_ready(void *context)
     return serve_report_json(&serve->options, serve->bus, control_path(serve->control));
 }
 
-/* Somebody has come or gone, or used a device. */
+/* A client has come or gone, or a device has been used. */
 static void on_presence(void *context)
 {
     struct serve *serve = context;
@@ -312,7 +312,7 @@ static bool start_serve(struct serve *serve)
         return false;
     serve_sandbox_files(options, serve->bus, control_path(serve->control));
     log_start_thread();
-    log_flush(LOG_WAIT_MS); /* before READY, if somebody reads both */
+    log_flush(LOG_WAIT_MS); /* before READY, for readers of both */
     if (!serve_report_ready(options, serve->bus, control_path(serve->control)))
         return false;
     serve_sandbox_calls(options);

@@ -118,7 +118,7 @@ static int on_flash_program(void *context, unsigned block, unsigned offset, cons
     return faults_flash_program(&unit->sim->faults, unit->number, block, offset, data, length);
 }
 
-/* Pulses cost time: they are asked for while somebody wants them. */
+/* Pulses cost time: they are requested while a watcher wants them. */
 static void update_step_reports(struct sim *sim)
 {
     for (unsigned number = 1; number <= sim->segment.units; number++) {
@@ -178,7 +178,7 @@ static void add_plant_events(struct sim *sim, const struct sim_unit *unit)
     }
 }
 
-/* The plants' changes up to the present tick. They are told with the tick at which they came about. */
+/* The plants' changes up to the present tick. They are reported with the tick at which they happened. */
 static void apply_plant_changes(struct sim *sim)
 {
     struct plant_change change;
@@ -309,7 +309,7 @@ static uint64_t slot_after(const struct sim *sim, unsigned number, uint64_t tick
     return since + ((tick - since) / slot + 1u) * slot;
 }
 
-/* The end of the next leap on the way to `tick`: where a fault begins or ends, and with pulses to be told of, the slot after
+/* The end of the next leap on the way to `tick`: where a fault begins or ends, and with pulses to be reported, the slot after
  * something happens; a switch that bounces in a slot is seen in it. Where a byte may take a unit's power (FAULT_POWER), the
  * leap ends with it: when the power comes back is not known before. */
 static uint64_t leap_end(const struct sim *sim, uint64_t tick)

@@ -36,13 +36,13 @@ struct sim_flash {
     void *context;
 };
 
-/* Somebody who takes down everything that comes in from outside, in the order in which it does (record.h). `now` is sim_now(). */
+/* A journal: records everything that comes in from outside, in the order in which it does (record.h). `now` is sim_now(). */
 struct sim_journal {
     void (*bytes)(void *context, uint64_t now, uint64_t tick, const uint8_t *bytes, size_t length); /* sim_queue_bytes() */
     void (*purge)(void *context, uint64_t now);
     void (*line_break)(void *context, uint64_t now, bool on);
     void (*timed)(void *context, uint64_t now, bool timed);
-    void (*command)(void *context, uint64_t now, const char *method, const json_t *params); /* obeyed */
+    void (*command)(void *context, uint64_t now, const char *method, const json_t *params); /* executed */
     void *context;
 };
 
@@ -54,8 +54,8 @@ struct sim_config {
     uint32_t turnaround;           /* ticks (segment.h) */
     uint64_t seed;                 /* of faults with a probability */
     struct sim_flash flash;        /* all NULL: memory that lives as long as the sim */
-    segment_out *out;              /* bytes that reach the host; NULL: nobody */
-    void (*adapter)(void *context, bool plugged); /* the fault `unplugged` begins or ends; NULL: nobody wants to know */
+    segment_out *out;              /* bytes that reach the host; NULL: none */
+    void (*adapter)(void *context, bool plugged); /* the fault `unplugged` begins or ends; NULL: not reported */
     void *context;                 /* of `out` and `adapter` */
 };
 
@@ -63,7 +63,7 @@ struct sim_unit {
     struct sim *sim;
     unsigned number;            /* on the line, 1..16 */
     char name[NODE_NAME_SIZE];  /* its address, as in "3"; with a suffix if it is not the only one with it, "3-2" */
-    struct device_port port;    /* `steps` is set while somebody wants pulses */
+    struct device_port port;    /* `steps` is set while a watcher wants pulses */
     uint32_t di;                /* inputs set by hand: DI 01 in bit 0 */
     uint32_t forward;           /* direction outputs: motor 1 in bit 0 */
     struct plant *plant;        /* NULL: none. Who changes it calls sim_update_inputs() */
@@ -99,7 +99,7 @@ void sim_end(struct sim *sim);
 
 uint64_t sim_now(const struct sim *sim);
 
-/* Has time come to its end? It does not go on then; commands are obeyed. */
+/* Has time come to its end? It does not go on then; commands are executed. */
 bool sim_time_is_over(const struct sim *sim);
 
 /* Do all ticks before `tick`, but none from SIM_TIME_MAX on, move every byte due by then, and hand out what happened before. */
@@ -116,7 +116,7 @@ uint64_t sim_due(const struct sim *sim);
  * DEVICE_NEVER: nothing ever does. */
 uint64_t sim_next_event(const struct sim *sim);
 
-/* The same, without pulses that nobody sees: for who does not look at counters on the way. */
+/* The same, without pulses that are not reported: for callers that do not read counters on the way. */
 uint64_t sim_next_report(const struct sim *sim);
 
 /* ---- The host ------------------------------------------------------------------------------------------------------- */
@@ -157,7 +157,7 @@ void sim_power(struct sim *sim, unsigned number, bool on);
 /* Inputs set by hand, mask of DI. What the plant drives or a fault holds comes before it. */
 void sim_set_di(struct sim *sim, unsigned number, uint32_t mask);
 
-/* Set the inputs of a unit anew from what is set by hand, driven by the plant, held by a fault. To be called by whoever changed
+/* Set the inputs of a unit anew from what is set by hand, driven by the plant, held by a fault. To be called after a change of
  * one of these. */
 void sim_update_inputs(struct sim *sim, unsigned number);
 

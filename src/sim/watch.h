@@ -2,7 +2,7 @@
 /* watch.h: what happens on a line, for everybody who wants to know: traces, logs, clients of the control socket, recorders.
  *
  * Happenings are gathered as they come, put in the order of time (K2 within a tick), and handed to the watchers when nothing
- * earlier can come any more: at the end of each sim_advance(), and at least every slot while somebody wants pulses. The order
+ * earlier can come any more: at the end of each sim_advance(), and at least every slot while a watcher wants pulses. The order
  * does not depend on how time was cut into pieces. */
 #ifndef RKM04_SIM_WATCH_H
 #define RKM04_SIM_WATCH_H
@@ -83,7 +83,7 @@ const char *watch_kind_name(enum watch_kind kind);
 enum watch_kind watch_kind_named(const char *name);
 
 /* Gather one; `event->order` is set here. A message or text must be a copy of its own, from malloc(): it is freed after the
- * watchers have seen it, or at once if nobody wants it. */
+ * watchers have seen it, or at once if there is no watcher for it. */
 void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event event);
 
 /* Hand everything before `tick` to the watchers, in order. */

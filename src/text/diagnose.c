@@ -90,7 +90,7 @@ static void print_found(const struct rkm04_reader *reader, FILE *out)
         fprintf(out, "'%.*s'", (int)bytes, text + at);
 }
 
-/* Which part of `I 01 H 20` does not fit: what precedes it tells. */
+/* Which part of `I 01 H 20` does not fit: what precedes it decides. */
 static void print_jump_if(const struct rkm04_reader *reader, const struct rkm04_range ranges[RKM04_RANGES_MAX], FILE *out)
 {
     bool number = false, level = false;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* nearest.h: what somebody may have meant who has mistyped a name. */
+/* nearest.h: the name that was probably meant by a mistyped one. */
 #ifndef RKM04_TEXT_NEAREST_H
 #define RKM04_TEXT_NEAREST_H
 

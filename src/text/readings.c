@@ -21,7 +21,7 @@ struct reading {
 #define MEMBER(name) .member = offsetof(struct rkm04_readings, name), .size = sizeof((struct rkm04_readings *)0)->name
 
 /* Times are tried at one slot, which shows whether a result depends on the exact slot, at one or two values that a real unit
- * may well have, and at the most that there is. */
+ * probably has, and at the most that there is. */
 static const struct reading table[READINGS] = {
     {"label", {"wait", "fault"}, MEMBER(label), .clause = "C7", .about = "a jump or call to a label not in memory is a fault"},
     {"fault-exit", {"reset", "new"}, MEMBER(fault_exit), .clause = "C3, E1",

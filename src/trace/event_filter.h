@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* event_filter.h: which events somebody wants to see, from the parameters of `subscribe` (docs/CONTROL.md). */
+/* event_filter.h: which events a client wants, from the parameters of `subscribe` (docs/CONTROL.md). */
 #ifndef RKM04_TRACE_EVENT_FILTER_H
 #define RKM04_TRACE_EVENT_FILTER_H
 

@@ -50,7 +50,7 @@ void wire_news_words(struct wire_text *out, const struct sim *sim, const struct 
     }
 }
 
-/* An entry goes out whole and at once: messages are rare for a machine, and whoever looks on wants to see the last one. */
+/* An entry goes out whole and at once: messages are rare for a machine, and a reader wants to see the last one. */
 static void write_entry(struct wire_file *file, const struct wire_text *entry)
 {
     if (file->error != 0)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_pcapng.c: a capture file for Wireshark (draft-ietf-opsawg-pcapng), link type 250, RTAC serial: every packet begins with 12
- * bytes that tell time, direction, and the state of the control lines. What the messages mean stands in packet comments. */
+ * bytes with time, direction, and the state of the control lines. What the messages mean stands in packet comments. */
 #include <string.h>
 
 #include <rkm04/limits.h>

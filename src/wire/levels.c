@@ -75,7 +75,7 @@ static uint64_t end_of_own_signal(const struct wire *wire, unsigned station, uin
     return DEVICE_NEVER;
 }
 
-/* Find the beginning of the next byte that an ear hears: one during which it does not send itself. */
+/* Find the beginning of the next byte that a receiver receives: one during which it does not send itself. */
 static void find_next_byte(struct wire *wire, unsigned receiver)
 {
     uint64_t from = wire->receiver[receiver].from, fall = DEVICE_NEVER, end;
@@ -109,8 +109,8 @@ static void drop_signal(struct wire *wire, unsigned at)
     memmove(&wire->signal[at], &wire->signal[at + 1u], (wire->count - at) * sizeof wire->signal[0]);
 }
 
-/* Forget signals that ended before `time` and before anything that is being heard. Nothing fell until they ended, so the ears
- * need not look there again. */
+/* Forget signals that ended before `time` and before anything that is being received. Nothing fell until they ended, so the
+ * receivers need not look there again. */
 static void drop_old_signals(struct wire *wire, uint64_t time)
 {
     for (unsigned receiver = 0; receiver < WIRE_RECEIVERS; receiver++)
@@ -233,7 +233,7 @@ void wire_shift(struct wire *wire, uint64_t parts)
 
 /* ---- Hearing -------------------------------------------------------------------------------------------------------- */
 
-/* The ear that hears a byte next. */
+/* The receiver that receives a byte next. */
 static unsigned next_receiver(const struct wire *wire)
 {
     unsigned next = 0;
@@ -258,7 +258,7 @@ static uint32_t senders(const struct wire *wire, uint64_t start, uint64_t end)
     return mask;
 }
 
-/* What an ear makes of the line from its fall on. Returns false if that was no start bit. */
+/* What a receiver makes of the line from its fall on. Returns false if that was no start bit. */
 static bool sample(const struct wire *wire, unsigned receiver, struct wire_byte *received)
 {
     uint64_t start = wire->receiver[receiver].fall;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* wire.h: two wires of RS485 at 19200 baud 8N1 (U7), bit by bit: what each station hears of what all of them send. Pure: no
+/* wire.h: two wires of RS485 at 19200 baud 8N1 (U7), bit by bit: what each station receives of what all of them send. Pure: no
  * file, no clock.
  *
  * The level is 0 while anyone sends a 0. A station listens as a UART does: it waits for the line to fall, samples the middle of
  * the start bit, of the eight bits and of the stop bit, and has the byte when ten bits are over. A start bit that is gone in its
- * middle was none; a byte without its stop bit is lost and counted. Who sends does not hear meanwhile, and joins in the middle
- * of things if others are still at it. So a byte that nobody disturbs is heard as it was sent, and the rest comes out of the
+ * middle was none; a byte without its stop bit is lost and counted. Who sends does not receive meanwhile, and joins in the middle
+ * of things if others are still at it. So a byte without a disturbance is received as it was sent, and the rest comes out of the
  * bits.
  *
  * Times are parts, WIRE_TICK to a tick: a bit is 625/12 us, so nothing is ever rounded. */
@@ -23,7 +23,7 @@
 
 #define WIRE_HOST 0u                          /* station 0; 1..16 are units */
 #define WIRE_STATIONS 17u /* the host, and sixteen units */
-#define WIRE_MONITOR WIRE_STATIONS              /* an ear that never sends: it hears everything */
+#define WIRE_MONITOR WIRE_STATIONS              /* a receiver that never sends: it receives everything */
 #define WIRE_RECEIVERS (WIRE_STATIONS + 1u)
 #define WIRE_NOISE WIRE_RECEIVERS                    /* no station: something that disturbs the line, for wire_hold() */
 #define WIRE_SIGNALS 80u /* signals that matter at a time: of each station those of the last three bytes' time, and spare ones */
@@ -53,13 +53,13 @@ struct wire {
     struct wire_receiver receiver[WIRE_RECEIVERS];
 };
 
-/* What an ear has heard. */
+/* What a receiver has received. */
 struct wire_byte {
     uint64_t start, end; /* parts: of the ten bits */
     unsigned receiver;   /* station 0..16, or WIRE_MONITOR */
     uint32_t senders;    /* who was sending meanwhile: bit n is station n; several: a collision */
     uint8_t byte;
-    bool lost;           /* framing error: told to the monitor alone, with the bits as they were */
+    bool lost;           /* framing error: reported to the monitor alone, with the bits as they were */
 };
 
 /* An idle wire without stations. */
@@ -79,10 +79,10 @@ void wire_hold(struct wire *wire, unsigned station, bool on, uint64_t time);
 /* Make all times later by `parts`. */
 void wire_shift(struct wire *wire, uint64_t parts);
 
-/* When the next byte will have been heard if nobody sends anything more; DEVICE_NEVER: never. */
+/* When the next byte will have been received if nothing more is sent; DEVICE_NEVER: never. */
 uint64_t wire_due(const struct wire *wire);
 
-/* Fetch the next byte heard by `until`; those of the same time come in the order of their ears. Returns false if there is
+/* Fetch the next byte received by `until`; those of the same time come in the order of their ears. Returns false if there is
  * none. */
 bool wire_receive(struct wire *wire, uint64_t until, struct wire_byte *byte);
 

@@ -172,7 +172,7 @@ static uint64_t next_start(const struct segment *segment, unsigned *station)
     return start;
 }
 
-/* The master's bytes have to wait until `time`: those behind them, too, as far as there is no gap. */
+/* The host's bytes have to wait until `time`: those behind them, too, as far as there is no gap. */
 static void push_queue(struct segment *segment, uint64_t time)
 {
     for (size_t i = 0; i < segment->count; i++) {
@@ -247,7 +247,7 @@ static void end_byte(struct segment *segment, const struct wire_byte *received)
     } else if (!is_receiving(segment, received->receiver, senders)) {
         return;
     } else if (received->receiver == WIRE_HOST) {
-        if (!segment->config.echo) /* with an echo it hears what the monitor hears */
+        if (!segment->config.echo) /* with an echo it receives what the monitor receives */
             deliver_to_host(segment, &received->byte, 1);
     } else {
         struct segment_unit *unit = &segment->unit[received->receiver - 1u];
@@ -277,7 +277,8 @@ static void advance_timed(struct segment *segment, uint64_t until)
 
 /* ---- Bytes that take no time ---------------------------------------------------------------------------------------- */
 
-/* Let the byte of a station be heard by the units in `ears` (bit n: unit n), the monitor, and the host if it is a unit's. */
+/* Let the byte of a station be received by the units in `receivers` (bit n: unit n), the monitor, and the host if it is a
+ * unit's. */
 static void pass_byte(struct segment *segment, unsigned station, uint32_t receivers, uint8_t byte)
 {
     uint32_t sender = UINT32_C(1) << station;

@@ -5,22 +5,22 @@
  *     segment_begin(&segment, &config);
  *     number = segment_add_unit(&segment, &unit_config, &port, context);  // power-up; 1, 2, …
  *     segment_queue_bytes(&segment, bytes, length, tick);                // the host sends, length <= segment_room()
- *     segment_advance(&segment, segment_due(&segment));           // config.out gets what the host hears
+ *     segment_advance(&segment, segment_due(&segment));           // config.out gets what the host receives
  *
  * With `timed`, bytes take the time they take at 19200 baud (U7): ten bits, 3125/6 us, in either direction. One of the host
  * sets out when it is handed over or when the one before has passed; every unit gets it at the tick at which its stop bit ends
  * (K4), so byte k of a burst has arrived at ceil(k * 3125 / 6) after its beginning. Gaps stay. The first start bit of an answer
  * follows the end of the request after the turnaround; the bytes of an answer follow one another without a gap.
- *   Every station hears every other one: units hear the answers of other units too, and leave them alone (L1). Nobody hears while
- * it sends itself. Nobody waits for a free line either: who begins while another is sending collides with it, and what is heard
- * comes out of the levels, bit by bit (wire.h). So two units of the same address answer at once; where their answers are the same
- * nobody can tell, otherwise the check sum fails at the host.
- *   P10: a request heard during a unit's turnaround is taken when the last byte of the answer before has set out. What else comes
- * in until then is lost, as it is on a line where nobody can be made to wait; see segment_counters.overruns.
+ *   Every station receives every other one: units receive the answers of other units too, and leave them alone (L1). No station
+ * receives while it sends. No station waits for an idle bus: a station that begins while another sends collides with it, and
+ * the bytes received come out of the levels, bit by bit (wire.h). So two units of the same address answer at once; where their
+ * answers are the same the collision cannot be detected, otherwise the check sum fails at the host.
+ *   P10: a request received during a unit's turnaround is taken when the last byte of the answer before has set out. What else
+ * comes in until then is lost, as it is on a line where no sender can be made to wait; see segment_counters.overruns.
  *
  * Without `timed`, bytes take no time: a byte of the host reaches all units at the tick at which it is handed over, an answer
  * goes out in the tick of its request, whole, and the next byte of the host comes after it (P10). No turnaround, no
- * collisions: of several answers at once the lower number's comes first, and those who answer do not hear one another.
+ * collisions: of several answers at once the lower number's comes first, and those who answer do not receive one another.
  *
  * Order within a tick: bytes, then what the units do (K2). What a segment does depends on the bytes handed over and their ticks
  * alone, not on how segment_advance cuts the time. */
@@ -40,13 +40,13 @@
 #define SEGMENT_UNASKED_MAX 1000u       /* without time: more answers than this without a byte of the host are cut off */
 #define SEGMENT_TURNAROUND_MAX 1000000u /* ticks */
 
-/* A byte on the line, for a monitor that hears everything. */
+/* A byte on the line, for a monitor that receives everything. */
 struct segment_byte {
     uint64_t start;   /* tick at which its start bit began, rounded down */
     uint64_t tick;    /* at which it had passed, rounded up: the present one */
     uint32_t senders; /* bit 0: the host; bit n: unit n; several bits: a collision; none: segment_disturb() */
-    uint8_t byte;     /* as heard by someone who sends nothing */
-    bool lost;        /* framing error: nobody has got it */
+    uint8_t byte;     /* as received by a station that sends nothing */
+    bool lost;        /* framing error: not received */
 };
 
 /* Gets the bytes that reach the host, at the tick segment_now(). Must not call back into the segment, but for reading. */
@@ -57,7 +57,7 @@ typedef void segment_monitor(void *context, const struct segment_byte *byte);
 
 #define SEGMENT_CHANGED_MAX 4u /* bytes that may be sent in place of one */
 
-/* What may go wrong, for somebody who wants it to. Any may be NULL. All are called at the tick segment_now(), and must not call
+/* What may go wrong, by injected faults. Any may be NULL. All are called at the tick segment_now(), and must not call
  * back into the segment, but for reading. */
 struct segment_hooks {
     /* Unit `number` is to begin with its answer now. Returns by how many ticks later it will, at most SEGMENT_DELAY_MAX. */
@@ -67,10 +67,10 @@ struct segment_hooks {
     size_t (*send)(void *context, unsigned station, uint8_t byte, uint8_t *bytes);
     /* Does `station` get what `senders` (as in struct segment_byte) have sent? */
     bool (*is_receiving)(void *context, unsigned station, uint32_t senders);
-    /* Does the host hear this byte, which it has sent itself? */
+    /* Does the host receive this byte, which it has sent itself? */
     bool (*has_echo)(void *context, uint8_t byte);
-    /* Unit `number` has looked at a byte, or fetched one to send: it may have obeyed a request. This one may switch the unit off
-     * or on (segment_power()). */
+    /* Unit `number` has looked at a byte, or fetched one to send: it may have executed a request. This one may switch the unit
+     * off or on (segment_power()). */
     void (*processed)(void *context, unsigned number);
 };
 
@@ -78,11 +78,11 @@ struct segment_hooks {
 
 struct segment_config {
     bool timed;             /* false: bytes take no time (--baud 0) */
-    bool echo;              /* the host hears its own bytes, too (a two-wire adapter with local echo) */
+    bool echo;              /* the host receives its own bytes, too (a two-wire adapter with local echo) */
     uint32_t turnaround;    /* ticks, 0..SEGMENT_TURNAROUND_MAX, from the end of a request to the start bit of the answer */
     const struct device_kind *kind; /* of all units; NULL: the RKM04 */
-    segment_out *out;       /* NULL: nobody */
-    segment_monitor *monitor; /* NULL: nobody */
+    segment_out *out;       /* NULL: none */
+    segment_monitor *monitor; /* NULL: none */
     void *context;          /* of these two */
     const struct segment_hooks *hooks; /* NULL: nothing goes wrong */
     void *hooks_context;
@@ -96,7 +96,7 @@ struct segment_unit {
     void *context;          /* of the port */
     uint64_t since;         /* tick of the segment at which it was powered up */
     bool powered;
-    bool in_frame;          /* what it has heard so far does not end with a whole frame */
+    bool in_frame;          /* what it has received so far does not end with a whole frame */
     uint32_t frames;        /* seen by the unit */
     bool begun;             /* its answer has begun to go out: the hook has been asked */
     uint64_t next;          /* parts (wire.h): start bit of the next byte of its answer; DEVICE_NEVER: no answer goes out */
@@ -128,14 +128,14 @@ struct segment {
     struct wire wire;
     uint64_t quiet_bytes;    /* sent, without time */
     uint64_t overruns;
-    unsigned unasked;        /* answers without time since the master's last byte */
-    uint64_t asked;          /* tick of that byte, or of the last cut */
+    unsigned unasked;         /* answers without time since the host's last byte */
+    uint64_t asked;           /* tick of that byte, or of the last cut */
     uint64_t cuts, cut_ticks; /* as in struct segment_counters */
-    uint64_t again;          /* without time: tick at which units answer without being asked again; DEVICE_NEVER: they do not */
-    bool disturbed, held;    /* segment_disturb(), segment_break() */
-    uint64_t more_start;     /* parts: start bit of the next of the master's more[0] */
+    uint64_t again;           /* without time: tick at which units answer without being asked again; DEVICE_NEVER: they do not */
+    bool disturbed, held;     /* segment_disturb(), segment_break() */
+    uint64_t more_start;      /* parts: start bit of the next of the host's more[0] */
     struct segment_more more[WIRE_STATIONS];
-    uint64_t host_free;    /* parts: when the master's last byte will have passed */
+    uint64_t host_free;    /* parts: when the host's last byte will have passed */
     size_t head, count;    /* of the queue */
     struct {
         uint64_t start;      /* parts */
@@ -152,7 +152,7 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
 void segment_end(struct segment *segment);
 
 /* Add a unit and power it up at the present tick. config, port, context: as for device_kind.begin; all units of a line should
- * have the same framing. The ticks that the port is told are the unit's own: add segment_since(). Several units may have the same
+ * have the same framing. The ticks that the port gets are the unit's own: add segment_since(). Several units may have the same
  * address. Returns its number on the line, 1..16 in the order of adding; 0: no place is left, or
  * memory is short. */
 unsigned segment_add_unit(struct segment *segment, const struct device_config *config, const struct device_port *port,
@@ -231,7 +231,7 @@ uint64_t segment_next_event(const struct segment *segment);
 /* Has the host left a frame unfinished: did the bytes passed so far end in the middle of one, as the units see it? */
 bool segment_in_frame(const struct segment *segment);
 
-/* The same, without pulses that nobody sees (device_kind.next_report). */
+/* The same, without pulses that are not reported (device_kind.next_report). */
 uint64_t segment_next_report(const struct segment *segment);
 
 /* Is the line at rest: no byte under way, no answer to come? (Motors may run: segment_next_event().) */

@@ -10,8 +10,8 @@
 #define HDLC_FLAG 0x7E
 #define HDLC_ESCAPE 0x7D
 #define SILENCE (US_PER_SECOND / 10u) /* L2 */
-#define ASTRAY_MAX 256u /* bytes without a frame that are told of at a time */
-#define REASON_MAX 120u /* characters of a reason put together */
+#define ASTRAY_MAX 256u               /* bytes without a frame that are reported at a time */
+#define REASON_MAX 120u               /* characters of a reason put together */
 
 static const char *const fates[] = {
     [WIRE_WHOLE] = NULL,
@@ -29,7 +29,7 @@ static const char *const fates[] = {
     [WIRE_BREAK] = "break",
 };
 
-/* ---- Why nobody obeys ----------------------------------------------------------------------------------------------- */
+/* ---- Why no unit executes a request -------------------------------------------------------------------------------------- */
 
 static void ignored_for_address(struct wire_text *out, const struct segment *segment, uint8_t dnode)
 {
@@ -50,7 +50,7 @@ static void ignored_for_address(struct wire_text *out, const struct segment *seg
     }
 }
 
-/* Why a whole request is obeyed by nobody. Nothing if somebody may obey it. */
+/* Why no unit executes a complete request. Writes nothing if a unit may execute it. */
 static void words_ignored(struct wire_text *out, const struct segment *segment, const struct wire_frame *frame)
 {
     const struct rkm04_receiver *head = &frame->receiver;
@@ -75,7 +75,7 @@ static const uint8_t *append_bytes(struct wire_message *message, size_t *used, c
     return place;
 }
 
-/* A message out of what stands in the ear. Returns NULL if out of memory. */
+/* A message from the frame. Returns NULL if out of memory. */
 static struct wire_message *make_message(const struct segment *segment, const struct wire_frame *frame,
                                          enum wire_fate fate)
 {
@@ -127,7 +127,7 @@ static void empty_frame(struct wire_frame *frame)
     frame->overruns = 0;
 }
 
-/* What stands in the ear has come to an end. */
+/* The frame has ended. */
 static void report(const struct wire_monitor *monitor, struct wire_frame *frame, uint64_t tick, enum wire_fate fate)
 {
     const struct wire_monitor_calls *calls = &monitor->calls;
@@ -136,7 +136,7 @@ static void report(const struct wire_monitor *monitor, struct wire_frame *frame,
     empty_frame(frame);
 }
 
-/* A byte that nobody has got. */
+/* A byte that was not received. */
 static void report_lost(const struct wire_monitor *monitor, const struct segment_byte *byte, bool answer)
 {
     uint8_t raw = byte->byte;
@@ -183,8 +183,8 @@ static enum verdict receive_frame_byte(const struct rkm04_framing *framing, stru
     return frame->receiver.too_long != too_long ? TOO_LONG : UNDECIDED;
 }
 
-/* A flag ends what goes before it, frames or what is none. What is astray is told of after a silence, too, so that a client that
- * never sends a flag is not passed over. */
+/* A flag ends what goes before it, frames or what is none. Bytes without a frame are reported after a silence, too, so that a
+ * client that never sends a flag is not passed over. */
 static void receive_hdlc(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
 {
     bool flag = byte->byte == HDLC_FLAG;
@@ -260,7 +260,7 @@ static void receive_other(const struct wire_monitor *monitor, struct wire_frame 
         report(monitor, frame, byte->tick, fate_of[verdict]);
 }
 
-/* Is there anything in the ear that makes a message? */
+/* Is there anything in the frame that makes a message? */
 static bool holds_something(const struct wire_frame *frame)
 {
     return frame->raw_total > 1 || (frame->raw_total == 1 && frame->raw[0] != HDLC_FLAG);

@@ -32,7 +32,7 @@ struct wire_frame {
 
 /* Who gets the messages. */
 struct wire_monitor_calls {
-    /* Does anybody want messages now? NULL: nobody. */
+    /* Does a watcher want messages now? NULL: none. */
     bool (*is_wanted)(void *context);
     /* A message was completed or dropped at `tick`; it is the callee's, from malloc(). NULL: memory was short for it. */
     void (*message)(void *context, uint64_t tick, struct wire_message *message);
@@ -53,15 +53,15 @@ bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing
                         struct wire_monitor_calls calls);
 void wire_monitor_end(struct wire_monitor *monitor);
 
-/* Make `to` like `from`, what is half heard included, all times later by `later` ticks (mod 2^64). Both have been begun, with the
- * same framing; segment and calls stay. For snapshots. */
+/* Make `to` like `from`, what is half received included, all times later by `later` ticks (mod 2^64). Both have been begun,
+ * with the same framing; segment and calls stay. For snapshots. */
 void wire_monitor_copy(struct wire_monitor *to, const struct wire_monitor *from, uint64_t later);
 
 /* A byte has passed: report the message that it completes, if any. */
 void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_byte *byte);
 
-/* What has been heard of a request, or of an answer, that is not complete. Returns NULL if there is nothing (or out of memory),
- * otherwise a message to be freed. */
+/* What has been received of a request, or of an answer, that is not complete. Returns NULL if there is nothing (or out of
+ * memory), otherwise a message to be freed. */
 struct wire_message *wire_monitor_rest(const struct wire_monitor *monitor, bool answer);
 
 #endif

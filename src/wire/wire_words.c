@@ -262,7 +262,7 @@ static void put_reason(struct wire_text *out, const char *what, const char *why)
 void wire_words_story(struct wire_text *out, const struct wire_names *names, const struct wire_message *message)
 {
     if (message->dropped) {
-        wire_text_string(out, message->fate == WIRE_UNFINISHED ? "" : "dropped: "); /* that may have gone on well */
+        wire_text_string(out, message->fate == WIRE_UNFINISHED ? "" : "dropped: "); /* that may have succeeded */
         wire_text_string(out, message->dropped);
     } else {
         wire_words_message(out, message->message, message->length, message->answer);

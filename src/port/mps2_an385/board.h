@@ -17,7 +17,7 @@
 #define BOARD_TICK_CYCLES 25u
 #endif
 
-/* Priorities, 0 is the most urgent: a pulse waits for nobody; a byte waits for pulses (it has 521 us). */
+/* Priorities, 0 is the most urgent: a pulse does not wait; a byte waits for pulses (it has 521 us). */
 #define BOARD_PRIORITY_PULSES 0x00u
 #define BOARD_PRIORITY_LINE 0x80u
 #define BOARD_PRIORITY_INPUTS 0xc0u

@@ -262,6 +262,6 @@ int main(void)
     } else {
         try_all();
     }
-    (void)semihosting(0x18, (const void *)0x20026); /* the program has ended well */
+    (void)semihosting(0x18, (const void *)0x20026); /* the program has ended without an error */
     return 0;
 }

@@ -7,7 +7,7 @@
 #include "uart.h"
 
 /* How far the unit runs ahead, in ticks. It must be more than planning takes, and as little as possible else: commands and
- * inputs take effect later by as much, and an answer tells of a time as much ahead. */
+ * inputs take effect later by as much, and an answer is ahead by as much. */
 #define AHEAD 7000u
 #define AHEAD_LEAST 6000u /* with so much left before the next event it is advanced again */
 #define LED_TICKS 100000u /* how often the LEDs are looked at, at least */

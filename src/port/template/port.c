@@ -7,7 +7,7 @@
  * Who runs when: everything runs in the main loop, rkm04_* are never called from an interrupt, and no callback calls back into
  * the unit. Interrupts only fill and empty the queues of the serial line and end the pulses.
  *
- * Exact pulses: a callback is told the tick of its happening, and is called when the main loop gets there, some microseconds
+ * Exact pulses: a callback gets the tick of the event, and is called when the main loop gets there, some microseconds
  * later. A board that wants its pulses exact to the microsecond lets the unit run ahead by a few slots, puts the callbacks'
  * happenings into a queue with their ticks, and plays the queue from a timer interrupt; inputs then act later by as much.
  * ../mps2_an385 does so; ../riscv_virt is this file filled in. docs/PORTING.md goes through it step by step. */
@@ -15,7 +15,7 @@
 
 /* What the callbacks need to know of the board; handed to them as `context`. */
 struct board {
-    uint8_t outputs; /* DO, as last told */
+    uint8_t outputs; /* DO, as last reported */
 };
 
 /* ---- BOARD: clock, terminals, line ---------------------------------------------------------------------------------- */
