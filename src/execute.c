@@ -49,7 +49,7 @@ static void jump_to_label(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (find_label(motor))
         return;
-    if (READING(unit, label) == RKM04_LABEL_FAULT)
+    if (READING(unit, label))
         stop_with_fault(unit, motor, RKM04_FAULT_NO_LABEL);
     else
         motor->state = RKM04_WAIT;
@@ -181,6 +181,14 @@ COMMAND(home)
     motion_begin_steps(unit, motor, steps, forward);
 }
 
+/* There is no motion that does what the segments say. */
+static void refuse_motion(struct rkm04_unit *unit, struct rkm04_motor *motor)
+{
+    motor->segments = 0;
+    stop_with_fault(unit, motor, RKM04_FAULT_MOTION);
+    write_led(unit, motor, unit->now, RKM04_LED_BLINK);
+}
+
 COMMAND(run)
 {
     UNUSED(n);
@@ -189,14 +197,13 @@ COMMAND(run)
     } else if (motion_compound_possible(motor)) {
         motion_begin_compound(unit, motor);
     } else {
-        motor->segments = 0;
-        stop_with_fault(unit, motor, RKM04_FAULT_MOTION);
-        write_led(unit, motor, unit->now, RKM04_LED_BLINK);
+        refuse_motion(unit, motor);
     }
 }
 
 COMMAND(segment)
 {
+    UNUSED(n);
     if (motor->segments == 0) {
         motor->segments_forward = motor->forward;
         motor->segments_bad = false;
@@ -211,8 +218,8 @@ COMMAND(segment)
                                                                  .deceleration = motor->acceleration};
     if (motor->segments <= RKM04_SEGMENTS_MAX)
         motor->segments++;
-    if (READING(unit, y_eleventh) == RKM04_Y_ELEVENTH_Y && motor->segments > RKM04_SEGMENTS_MAX)
-        do_run(unit, motor, n); /* which cannot compute them */
+    if (READING(unit, y_eleventh) && motor->segments > RKM04_SEGMENTS_MAX)
+        refuse_motion(unit, motor);
 }
 
 COMMAND(limit_forward)

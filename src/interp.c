@@ -69,7 +69,7 @@ void interp_reset(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->functions = 0;
     motor->keep = false;
     motor->guard_m = motor->guard_n = motor->guard_x = 0;
-    if (READING(unit, reset_t41) == RKM04_RESET_T41_CLEAR)
+    if (READING(unit, reset_t41))
         execute_simulate(unit, false);
     if (motor->fault != RKM04_FAULT_NONE) {
         motor->fault = RKM04_FAULT_NONE;
@@ -111,8 +111,8 @@ static bool is_started_by_new(const struct rkm04_unit *unit, const struct rkm04_
     if (motor->state == RKM04_ENDED || (moving && motor->after == RKM04_AFTER_END))
         return true;
     if (motor->state == RKM04_FAULTY)
-        return READING(unit, fault_exit) == RKM04_FAULT_EXIT_NEW;
-    if (READING(unit, hold_exit) == RKM04_HOLD_EXIT_LATCH)
+        return READING(unit, fault_exit);
+    if (READING(unit, hold_exit))
         return false;
     if (motor->pendings > 0)
         return motor->pending[motor->pendings - 1] == 'K';
@@ -122,7 +122,7 @@ static bool is_started_by_new(const struct rkm04_unit *unit, const struct rkm04_
 void interp_note_stored(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint64_t first)
 {
     if (motor->fresh != RKM04_NEVER) { /* those before run first */
-        if (READING(unit, hold_exit) == RKM04_HOLD_EXIT_NEW)
+        if (!READING(unit, hold_exit))
             motor->hold_fresh = false;
     } else if (is_started_by_new(unit, motor)) {
         motor->fresh = first;
@@ -171,7 +171,7 @@ static void apply_total_stop(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (motor->guard_x == 0 || !input_is_high(unit, motor->guard_x) || !has_work(motor))
         return;
-    if (READING(unit, x_after) == RKM04_X_AFTER_ONCE)
+    if (READING(unit, x_after))
         motor->guard_x = 0;
     motor->fresh = RKM04_NEVER;
     motor->resume = false;

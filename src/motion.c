@@ -63,7 +63,7 @@ void motion_abort(struct rkm04_unit *unit, struct rkm04_motor *motor)
  * `guard-start`). */
 static bool use_guards(const struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
-    if (READING(unit, guard_start) == RKM04_GUARD_START_STEP && !motor->motion.moving)
+    if (READING(unit, guard_start) && !motor->motion.moving)
         return false;
     bool m = motor->guard_m != 0 && input_is_high(unit, motor->guard_m);
     bool n = motor->guard_n != 0 && !input_is_high(unit, motor->guard_n);
@@ -106,7 +106,7 @@ static void start_outputs(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motion->stopping = false;
     motor->after = RKM04_AFTER_GO_ON;
     motor->state = RKM04_MOVING;
-    if (READING(unit, guard_start) == RKM04_GUARD_START_STEP)
+    if (READING(unit, guard_start))
         unit->touched = true; /* the next slot looks at M and N */
 }
 

@@ -46,20 +46,20 @@ static enum flag check_text(const struct rkm04_unit *unit, const uint8_t *bytes,
         enum rkm04_read found = rkm04_read(&reader, &command);
         if (found == RKM04_READ_END)
             return FLAG_RIGHT;
-        if (found == RKM04_READ_COMMAND && READING(unit, negative_position) == RKM04_NEGATIVE_POSITION_NO &&
-            command.op == '=' && command.argument > INT32_MAX)
-            found = RKM04_READ_BAD_VALUE;
         if (found != RKM04_READ_COMMAND) {
             text->character = bytes[reader.start];
             return found == RKM04_READ_BAD_VALUE ? FLAG_BAD_VALUE : FLAG_UNKNOWN;
         }
         text->commands++;
-        if (READING(unit, v_alone) == RKM04_V_ALONE_FIRST && (reader.start != 0 || reader.at != length))
+        if (READING(unit, v_alone) && (reader.start | (length - reader.at)) != 0) /* blanks, or another command */
             text->commands++;
         text->sole = command;
         if (command.op == '\\') {
             text->reset = true;
             text->program = reader;
+        } else if (READING(unit, negative_position) && command.op == '=' && command.argument > INT32_MAX) {
+            text->character = '=';
+            return FLAG_BAD_VALUE;
         }
     }
 }

@@ -103,15 +103,19 @@ static void begin_slot(struct rkm04_unit *unit)
     bool counting = unit->busy > 0;
     if (counting)
         unit->busy--;
-    for (unsigned i = 0; unit->touched && i < RKM04_INPUTS; i++) {
-        uint8_t differing = (uint8_t)((unit->inputs ^ unit->seen) & 1u << i);
-        if (differing != 0 && unit->differs[i] < READING(unit, input_filter)) {
-            unit->differs[i]++;
-            counting = true;
-        } else {
-            unit->differs[i] = 0;
-            unit->seen ^= differing;
+    if (unit->touched) {
+        unsigned changed = unit->inputs ^ unit->seen;
+        uint8_t *differs = unit->differs;
+        for (unsigned bit = 1; bit < 1u << RKM04_INPUTS; bit <<= 1, differs++) {
+            unsigned slots = *differs;
+            *differs = 0;
+            if ((changed & bit) != 0 && slots < READING(unit, input_filter)) {
+                *differs = (uint8_t)(slots + 1);
+                changed -= bit;
+                counting = true;
+            }
         }
+        unit->seen = (uint8_t)(unit->seen ^ changed);
     }
     unit->touched = counting;
 }
