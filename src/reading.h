@@ -5,8 +5,8 @@
 
 #include <rkm04/unit.h>
 
-/* The value of a reading, 0: the default; in a port without readings always the default, so that the other one costs nothing. Of a
- * reading with two values it is the condition for what the other one does: a comparison with its name costs flash. */
+/* The value of a reading, 0: the default; in a port without readings always the default, so that the other one costs nothing. Of
+ * a reading with two values it is the condition for what the other one does: a comparison with its name costs flash. */
 #define READING(unit, name) (RKM04_READINGS ? (unit)->config.readings.name : 0u)
 
 #endif

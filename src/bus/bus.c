@@ -353,6 +353,11 @@ bool bus_start(struct bus *bus)
     return true;
 }
 
+bool bus_reserve_files(const struct bus *bus)
+{
+    return bus_files_reserve(bus->options, bus->log.number);
+}
+
 bool bus_begin_files(struct bus *bus)
 {
     return bus_files_begin(&bus->files, bus->options, bus->log.number, &bus->sim);

@@ -61,6 +61,9 @@ struct bus {
 bool bus_begin(struct bus *bus, unsigned number, const struct bus_options *options, uv_loop_t *loop, struct line_watch *watch,
                struct coverage *coverage, const struct bus_calls *calls, void *context);
 
+/* See that the files of the options can be written; nothing is changed yet. Returns false if one cannot (reported). */
+bool bus_reserve_files(const struct bus *bus);
+
 /* Everything is ready: make the link, and let time begin. Returns false if it did not work (reported). */
 bool bus_start(struct bus *bus);
 

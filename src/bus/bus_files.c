@@ -9,9 +9,9 @@
 #include "line/line.h"
 
 /* The name for this line; NULL: too long (reported). */
-static const char *path_of(const struct bus_files *files, const char *pattern, char path[PATH_MAX])
+static const char *path_of(unsigned number, const char *pattern, char path[PATH_MAX])
 {
-    if (name_expand(pattern, NULL, files->number, path))
+    if (name_expand(pattern, NULL, number, path))
         return path;
     log_error("%s: the path is too long", pattern);
     return NULL;
@@ -32,12 +32,37 @@ static bool report_error(char *error)
     return false;
 }
 
+static bool reserve(const struct bus_options *options, unsigned number, const char *pattern, const struct output_kind *kind)
+{
+    char path[PATH_MAX], *why;
+    if (!path_of(number, pattern, path))
+        return false;
+    if (output_file_reserve(path, kind, options->output_flags, &why))
+        return true;
+    log_error("cannot write %s: %s", path, why ? why : strerror(ENOMEM));
+    free(why);
+    return false;
+}
+
+bool bus_files_reserve(const struct bus_options *options, unsigned number)
+{
+    if (options->record && !reserve(options, number, options->record, &output_recording))
+        return false;
+    for (unsigned i = 0; i < BUS_FILES_MAX && options->trace[i]; i++)
+        if (!reserve(options, number, options->trace[i], trace_file_kind(trace_file_format(options->trace[i]))))
+            return false;
+    for (unsigned i = 0; i < BUS_FILES_MAX && options->wire[i]; i++)
+        if (!reserve(options, number, options->wire[i], wire_file_kind(options->wire[i])))
+            return false;
+    return true;
+}
+
 static bool begin_record(struct bus_files *files)
 {
     char path[PATH_MAX], *why;
     if (!files->options->record)
         return true;
-    if (!path_of(files, files->options->record, path))
+    if (!path_of(files->number, files->options->record, path))
         return false;
     files->record_stream = output_file_open(path, &output_recording, files->options->output_flags, &why);
     if (!files->record_stream) {
@@ -58,14 +83,14 @@ bool bus_files_begin(struct bus_files *files, const struct bus_options *options,
     if (!begin_record(files))
         return false;
     for (unsigned i = 0; i < BUS_FILES_MAX && options->trace[i]; i++) {
-        if (!path_of(files, options->trace[i], path))
+        if (!path_of(files->number, options->trace[i], path))
             return false;
         files->trace[i] = trace_file_begin(files->sim, path, options->output_flags, &error);
         if (!files->trace[i])
             return report_error(error);
     }
     for (unsigned i = 0; i < BUS_FILES_MAX && options->wire[i]; i++) {
-        if (!path_of(files, options->wire[i], path))
+        if (!path_of(files->number, options->wire[i], path))
             return false;
         files->wire[i] = wire_file_begin(files->sim, path, options->output_flags, &error);
         if (!files->wire[i])

@@ -22,6 +22,10 @@ struct bus_files {
     bool failed;           /* one could not be written (reported) */
 };
 
+/* See that the files which the options ask for can be written, before anything is changed (output_file_reserve()). Failures are
+ * reported. Returns false if one cannot. */
+bool bus_files_reserve(const struct bus_options *options, unsigned number);
+
 /* Open what the options ask for, about bus `number`, which is *sim. Failures are reported. Returns false if it did not work. */
 bool bus_files_begin(struct bus_files *files, const struct bus_options *options, unsigned number, struct sim *sim);
 

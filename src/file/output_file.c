@@ -13,7 +13,9 @@
 struct use {
     dev_t device;
     ino_t inode;
-    int fd;     /* open for writing; -1: spared */
+    int fd;    /* open for writing; -1: spared */
+    bool made; /* it was not there before */
+    const struct output_kind *reserved; /* output_file_reserve() with that kind; NULL: not */
     char *path; /* "-": standard input */
     struct use *next;
 };
@@ -151,11 +153,12 @@ static int make_output(const char *path, int how, const struct output_kind *kind
 }
 
 /* Regular files are opened for reading, too, to look at their kind; a pipe must not be, or it would need no reader. */
-static int open_output(const char *path, const struct output_kind *kind, unsigned flags)
+static int open_output(const char *path, const struct output_kind *kind, unsigned flags, bool *made)
 {
     struct stat there;
     int how = O_CLOEXEC | O_NOCTTY | (flags & OUTPUT_MAY_WAIT ? 0 : O_NONBLOCK);
-    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
+    *made = stat(path, &there) != 0;
+    if (!*made && !S_ISREG(there.st_mode))
         return open(path, how | O_WRONLY);
     int fd = make_output(path, how, kind);
     if (fd < 0 && errno == EEXIST)
@@ -185,22 +188,105 @@ static bool take_output(int fd, const char *path, const struct output_kind *kind
     return add_use(&status, fd, path);
 }
 
+/* Returns a descriptor of a file that is ours, or -1. */
+static int open_and_take(const char *path, const struct output_kind *kind, unsigned flags, char **why)
+{
+    bool made;
+    int fd = open_output(path, kind, flags, &made);
+    if (fd < 0) {
+        explain_error(why, errno);
+        return -1;
+    }
+    if (take_output(fd, path, kind, flags, why)) {
+        if (made)
+            output_file_made(fd);
+        return fd;
+    }
+    close(fd);
+    return -1;
+}
+
+static struct use *find_use(int fd)
+{
+    struct use *use = uses;
+    while (use && use->fd != fd)
+        use = use->next;
+    return use;
+}
+
+void output_file_made(int fd)
+{
+    struct use *use = find_use(fd);
+    if (use)
+        use->made = true;
+}
+
+bool output_file_reserve(const char *path, const struct output_kind *kind, unsigned flags, char **why)
+{
+    *why = NULL;
+    int fd = open_and_take(path, kind, flags | OUTPUT_KEEP, why);
+    struct use *use = fd >= 0 ? find_use(fd) : NULL;
+    if (use)
+        use->reserved = kind;
+    else if (fd >= 0)
+        close(fd); /* a device */
+    return fd >= 0;
+}
+
+/* The descriptor of a reserved file, which is emptied now, or -1. */
+static int take_reserved(const char *path, const struct output_kind *kind, unsigned flags, char **why)
+{
+    struct use *use = uses;
+    while (use && !(use->reserved == kind && strcmp(use->path, path) == 0))
+        use = use->next;
+    if (!use)
+        return -1;
+    if (!(flags & OUTPUT_KEEP) && ftruncate(use->fd, 0) != 0) {
+        explain_error(why, errno);
+        return -1;
+    }
+    use->reserved = NULL;
+    return use->fd;
+}
+
 FILE *output_file_open(const char *path, const struct output_kind *kind, unsigned flags, char **why)
 {
     *why = NULL;
-    int fd = open_output(path, kind, flags);
-    if (fd < 0) {
-        explain_error(why, errno);
+    int fd = take_reserved(path, kind, flags, why);
+    if (fd < 0 && !*why)
+        fd = open_and_take(path, kind, flags, why);
+    if (fd < 0)
         return NULL;
-    }
-    bool taken = take_output(fd, path, kind, flags, why);
-    FILE *file = taken ? fdopen(fd, "w") : NULL;
+    FILE *file = fdopen(fd, "w");
     if (file)
         return file;
-    if (taken)
-        output_file_release(fd);
+    output_file_release(fd);
     close(fd);
     return NULL;
+}
+
+static void remove_file(const struct use *use)
+{
+    struct stat there;
+    char *real = realpath(use->path, NULL); /* a link may have been there before */
+    if (real && stat(real, &there) == 0 && is_file(use, &there))
+        unlink(real);
+    free(real);
+}
+
+void output_files_undo(void)
+{
+    struct use *next;
+    for (struct use *use = uses; use; use = next) {
+        int fd = use->fd;
+        next = use->next;
+        if (use->made)
+            remove_file(use);
+        if (!use->reserved)
+            continue;
+        output_file_release(fd);
+        close(fd);
+    }
 }
 
 bool output_file_empty(FILE *file)

@@ -22,6 +22,13 @@ enum output_flag {
  * Returns NULL if it did not work; *why is the reason for a message then, to be freed, NULL if out of memory. */
 FILE *output_file_open(const char *path, const struct output_kind *kind, unsigned flags, char **why);
 
+/* Open `path` for an output_file_open() to come, of the same `path` and `kind`, which then cannot refuse it; what is in it stays.
+ * So several files are checked before the first of them changes. Returns false if it did not work; *why as above. */
+bool output_file_reserve(const char *path, const struct output_kind *kind, unsigned flags, char **why);
+
+/* What was to be written is refused: remove the files that were made for it, and give reserved ones back. */
+void output_files_undo(void);
+
 /* Drop what is in a file opened with OUTPUT_KEEP. Returns false if it did not work; errno says why. */
 bool output_file_empty(FILE *file);
 
@@ -43,5 +50,8 @@ bool output_file_spare(const char *path);
  * before it is closed. Returns false if it is used otherwise; *why as above. */
 bool output_file_claim(int fd, const char *path, char **why);
 void output_file_release(int fd);
+
+/* The claimed file was made by its owner: output_files_undo() removes it. */
+void output_file_made(int fd);
 
 #endif

@@ -114,25 +114,30 @@ static int make_private(const char *path, int flags)
 }
 
 /* Open the file, or make it; what is made is a file of that very name, never one that a link leads to. */
-static int open_or_make(const char *path)
+static int open_or_make(const char *path, bool *made)
 {
     const int flags = O_RDWR | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
     int fd = open(path, flags);
-    if (fd < 0 && errno == ENOENT)
-        fd = make_private(path, flags);
+    *made = fd < 0 && errno == ENOENT && (fd = make_private(path, flags)) >= 0;
     return fd < 0 && errno == EEXIST ? open(path, flags) : fd; /* another emulator has made it just now */
 }
 
 bool flash_file_open(struct flash_file *flash, const char *path, unsigned blocks, unsigned block_size)
 {
     *flash = (struct flash_file){.path = path, .blocks = blocks, .block_size = block_size, .unsynced = -1};
-    flash->fd = open_or_make(path);
+    bool made;
+    flash->fd = open_or_make(path, &made);
     if (flash->fd < 0) {
         log_error("cannot open the flash image %s: %s", path, strerror(errno));
         return false;
     }
-    if (check_image(flash))
+    if (check_image(flash)) {
+        if (made)
+            output_file_made(flash->fd);
         return true;
+    }
+    if (made)
+        unlink(path);
     output_file_release(flash->fd);
     close(flash->fd);
     flash->fd = -1;

@@ -183,12 +183,12 @@ static bool start_watch(struct serve *serve)
            check_uv("watch the line", uv_poll_start(&serve->notices, UV_READABLE, on_notice));
 }
 
-/* When all inputs are read and valid. */
-static bool start_files(struct serve *serve)
+/* When all inputs are read and valid: see that all files can be written, while none is changed. */
+static bool reserve_files(struct serve *serve)
 {
     const struct bus_options *options = &serve->options;
     for (unsigned i = 0; i < options->lines; i++)
-        if (!bus_begin_files(serve->bus[i]))
+        if (!bus_reserve_files(serve->bus[i]))
             return false;
     return !options->coverage || coverage_open(&serve->coverage_files, options->coverage, options->output_flags);
 }
@@ -205,8 +205,15 @@ static bool start_buses(struct serve *serve)
         if (!bus_begin(serve->bus[i], i, &serve->options, &serve->loop, &serve->watch, coverage, &calls, serve))
             return false;
     }
-    if (!start_files(serve))
-        return false;
+    return true;
+}
+
+/* Nothing is refused any more: begin the files, and time. */
+static bool run_buses(struct serve *serve)
+{
+    for (unsigned i = 0; i < serve->options.lines; i++)
+        if (!bus_begin_files(serve->bus[i]))
+            return false;
     serve_report_start(&serve->options, serve->bus);
     for (unsigned i = 0; i < serve->options.lines; i++)
         if (!bus_start(serve->bus[i]))
@@ -308,7 +315,7 @@ static bool start_serve(struct serve *serve)
     }
     serve->idle.data = serve;
     if (!check_uv("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
-        !start_control(serve) || !has_spare_files())
+        !reserve_files(serve) || !start_control(serve) || !has_spare_files() || !run_buses(serve))
         return false;
     serve_sandbox_files(options, serve->bus, control_path(serve->control));
     log_start_thread();
@@ -375,6 +382,8 @@ static enum exit_status run_serve(struct serve *serve)
             serve_report_end(serve->bus[i]);
         if (is_coverage_wanted(serve))
             report_coverage(serve);
+    } else {
+        output_files_undo();
     }
     end_serve(serve);
     free(serve->options.plant_text);

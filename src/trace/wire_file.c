@@ -36,6 +36,11 @@ bool wire_file_named(const char *path)
     return format_of(path) != NULL;
 }
 
+const struct output_kind *wire_file_kind(const char *path)
+{
+    return &format_of(path)->kind;
+}
+
 void wire_news_words(struct wire_text *out, const struct sim *sim, const struct watch_event *event)
 {
     if (event->kind == WATCH_POWER) {

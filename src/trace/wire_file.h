@@ -14,6 +14,9 @@ struct wire_file;
 /* Does the name end with one of WIRE_FILE_EXPECTED? */
 bool wire_file_named(const char *path);
 
+/* The kind of file that it makes; `path`: so named. */
+const struct output_kind *wire_file_kind(const char *path);
+
 /* Open `path`, with `flags` of output_file_open(), and begin to watch. Returns NULL if it did not work; *error is what to say
  * then ("cannot write FILE: …"), to be freed, or NULL if out of memory. */
 struct wire_file *wire_file_begin(struct sim *sim, const char *path, unsigned flags, char **error);

@@ -221,6 +221,33 @@ test_one_file_is_written_once() {
     cmp -s s.record kept || fail "the recording was overwritten"
 }
 
+# refusal COMMAND...: the command is refused; the folder `work` is as `before`.
+refusal() {
+    exits 1 timeout "$limit" "$@"
+    diff -r before work >"$folder/diff.err" || fail "'$*': a file has changed, or is new"
+}
+
+# Whatever is wrong with the last of them, or with what comes behind them.
+test_a_refused_serve_changes_no_file() {
+    cd "$folder" || exit 1
+    serve bus --trace a.csv --record old.record --trace old.csv
+    kill "$started"
+    status_of "$started"
+    for file in a.csv old.csv old.record; do echo "of before" >>"$file"; done
+    mkdir before work
+    cp a.csv old.csv old.record before
+    cp before/* work
+    local -a serve=("$RKM04" serve --link ../link)
+    refusal env -C work "${serve[@]}" --trace a.csv --trace ./a.csv
+    refusal env -C work "${serve[@]}" --trace new.csv --trace ./new.csv
+    refusal env -C work "${serve[@]}" --record old.record --trace old.csv --wire new.log --trace a.csv --wire ./new.log
+    refusal env -C work "${serve[@]}" --flash new.flash --trace ./old.csv --record old.record --coverage ./old.csv
+    refusal env -C work "${serve[@]}" --flash new.vcd --trace ./new.vcd
+    refusal env -C work "${serve[@]}" --trace a.csv --coverage new.txt --record new.txt.json
+    refusal env -C work "${serve[@]}" --trace a.csv --record new.record --flash new.flash --control missing/control
+    refusal env -C work "${serve[@]}" --trace new.csv --trace a.csv --flash new.flash --tcp 127.0.0.1:0 --rfc2217 192.0.2.1:0
+}
+
 test_a_plant_is_never_overwritten() {
     cd "$folder" || exit 1
     printf 'motors:\n  1:\n    stops: {low: 0, high: 5000}\n' >axis.yaml
