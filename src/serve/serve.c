@@ -25,11 +25,15 @@
 #include "text/text.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
-#define FILES_A_LINE 8u  /* descriptors, beside those of flash images */
+#define FILES_LOOP 8u     /* descriptors: of the event loop */
+#define FILES_WATCH 2u    /* of the watch for clients of ptys */
+#define FILES_SERIAL 3u   /* of a pty or device, beside the timer of its bus */
+#define FILES_CONTROL 2u  /* of the control socket */
+#define FILES_COVERAGE 2u /* of the reports */
 #define FILES_SPARE 8u   /* descriptors that are still free when all is open: for clients, traces, an adapter plugged in again */
 #define LOG_WAIT_MS 200u /* how long to wait for the reader of the log, at the start and at the end */
 #define NAME_WAIT_MS 30000u /* how long a name server may take: as long as the resolver tries by default */
-#define FILES_BESIDE 64u /* descriptors that have nothing to do with lines */
+#define FILES_BESIDE 64u /* as many more if the system allows: for more clients and traces */
 
 static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
 #define END_SIGNALS (sizeof end_signals / sizeof end_signals[0])
@@ -144,32 +148,39 @@ static bool start_signals(struct serve *serve)
     return true;
 }
 
-/* Many lines need more files than a process gets unasked. */
-static void allow_files(const struct bus_options *options)
+/* Descriptors that are open for good when the emulator is ready. */
+static rlim_t count_files(const struct bus_options *options)
 {
-    struct rlimit limit;
-    rlim_t wanted = options->lines * (FILES_A_LINE + (options->flash ? options->nodes.count : 0)) + FILES_BESIDE;
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted)
-        return;
-    limit.rlim_cur = wanted < limit.rlim_max ? wanted : limit.rlim_max;
-    setrlimit(RLIMIT_NOFILE, &limit);
+    rlim_t line = 1u + (options->pty || options->port ? FILES_SERIAL : 0) + (options->tcp != NULL) + (options->rfc2217 != NULL) +
+                  (options->record != NULL) + (options->flash ? options->nodes.count : 0);
+    for (unsigned i = 0; i < BUS_FILES_MAX; i++)
+        line += (rlim_t)(options->trace[i] != NULL) + (options->wire[i] != NULL);
+    return FILES_LOOP + options->lines * line + (options->pty ? FILES_WATCH : 0) + (options->no_control ? 0 : FILES_CONTROL) +
+           (options->coverage ? FILES_COVERAGE : 0);
 }
 
-/* Without a free descriptor a connection cannot even be refused, and would wake the loop for ever. */
-static bool has_spare_files(void)
+/* The lowest `ulimit -n' with so many free numbers: some have been taken by whoever started us. */
+static rlim_t find_limit(rlim_t files)
 {
-    int spare[FILES_SPARE];
-    unsigned count = 0;
-    struct rlimit limit = {0};
-    while (count < FILES_SPARE && (spare[count] = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0)
-        count++;
-    for (unsigned i = 0; i < count; i++)
-        close(spare[i]);
-    if (count == FILES_SPARE)
+    int number = 0;
+    for (rlim_t found = 0; found < files; number++)
+        found += fcntl(number, F_GETFD) < 0;
+    return (rlim_t)number;
+}
+
+/* Many lines need more files than a process gets unasked; and without a free descriptor a connection cannot even be refused, and
+ * would wake the loop for ever. Nothing has been opened yet. */
+static bool allow_files(const struct bus_options *options)
+{
+    struct rlimit limit;
+    rlim_t least = find_limit(count_files(options) + FILES_SPARE), wanted = least + FILES_BESIDE;
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted)
         return true;
-    getrlimit(RLIMIT_NOFILE, &limit);
-    log_error("too few file descriptors: `ulimit -n' is %ju, expected at least %ju", (uintmax_t)limit.rlim_cur,
-              (uintmax_t)limit.rlim_cur + FILES_SPARE - count);
+    limit.rlim_cur = wanted < limit.rlim_max ? wanted : limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+    if (limit.rlim_cur >= least)
+        return true;
+    log_error("too few file descriptors: `ulimit -n' is %ju, expected at least %ju", (uintmax_t)limit.rlim_cur, (uintmax_t)least);
     return false;
 }
 
@@ -306,7 +317,6 @@ static bool find_address(const char **address, char found[NET_NAME_SIZE])
 static bool start_serve(struct serve *serve)
 {
     const struct bus_options *options = &serve->options;
-    allow_files(options);
     if (!start_signals(serve)) /* before anything is made that would have to be removed */
         return false;
     if (is_coverage_wanted(serve)) {
@@ -315,7 +325,7 @@ static bool start_serve(struct serve *serve)
     }
     serve->idle.data = serve;
     if (!check_uv("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
-        !reserve_files(serve) || !start_control(serve) || !has_spare_files() || !run_buses(serve))
+        !reserve_files(serve) || !start_control(serve) || !run_buses(serve))
         return false;
     serve_sandbox_files(options, serve->bus, control_path(serve->control));
     log_start_thread();
@@ -371,7 +381,7 @@ static void end_serve(struct serve *serve)
 static enum exit_status run_serve(struct serve *serve)
 {
     serve->status = STATUS_FAILURE;
-    if (!read_plant(&serve->options) || !find_address(&serve->options.tcp, serve->tcp) ||
+    if (!allow_files(&serve->options) || !read_plant(&serve->options) || !find_address(&serve->options.tcp, serve->tcp) ||
         !find_address(&serve->options.rfc2217, serve->rfc2217) || !check_uv("make an event loop", uv_loop_init(&serve->loop)))
         return STATUS_FAILURE;
     if (start_serve(serve)) {

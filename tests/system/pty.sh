@@ -149,29 +149,59 @@ seen() { [[ $(grep -c "$1" "$folder/bus.err") == "$2" ]]; }
 test_without_inotify_watches_the_emulator_goes_on() { without_inotify watches "fs.inotify.max_user_watches"; }
 test_without_inotify_instances_the_emulator_goes_on() { without_inotify instances "fs.inotify.max_user_instances"; }
 
-# With too few file descriptors it says so, or it works and rests; what it never does is to turn without a rest.
-test_too_few_descriptors_are_an_error_or_enough() {
-    local number works=0 refused=0
-    for number in 8 12 14 16 17 18 20 40; do
-        (ulimit -n "$number"; exec "$RKM04" serve --link "$folder/bus" >"$folder/bus.out" 2>"$folder/bus.err" </dev/null) &
-        started=$!
-        soon "it is ready or has ended, $number descriptors" ready_or_ended
-        if ended "$started"; then
-            status_of "$started"
-            same 1 "$status" "exit status with $number descriptors"
-            grep -qiE 'too (many open|few) files|too few file descriptors' "$folder/bus.err" || fail "with $number descriptors"
-            refused=1
-            continue
-        fi
-        processes=("$started")
-        exits 0 "$RKMCTL" -c "$folder/bus.control" state
-        exits 0 ctl bus version
-        idle_cost_is_small "$number descriptors"
-        works=1
-        kill "$started"
-        status_of "$started"
-    done
-    same "1 1" "$works $refused" "some numbers are enough, some are too few"
+# limited NUMBER OPTIONS...: a unit with so many descriptors at most; it is ready, or has ended.
+limited() {
+    local number=$1
+    shift
+    rm -f "$folder"/bus.{out,err} # of the one before
+    (ulimit -n "$number"; exec "$RKM04" serve --link "$folder/bus%l" "$@" >"$folder/bus.out" 2>"$folder/bus.err" </dev/null) &
+    started=$!
+    processes=("$started")
+    soon "it is ready or has ended, $number descriptors" ready_or_ended
+}
+
+# refused_at NUMBER: it is refused, and the message names `least`, which is set if it is empty.
+refused_at() {
+    ended "$started" || fail "it works with $1 descriptors, though $least are named"
+    status_of "$started"
+    same 1 "$status" "exit status with $1 descriptors"
+    [[ $(<"$folder/bus.err") =~ "too few file descriptors: \`ulimit -n' is $1, expected at least "([0-9]+)$ ]] ||
+        fail "with $1 descriptors: $(<"$folder/bus.err")"
+    same "${least:=${BASH_REMATCH[1]}}" "${BASH_REMATCH[1]}" "the number named with $1 descriptors"
+}
+
+# With too few file descriptors the number is named that is enough; what it never does is to turn without a rest.
+test_the_number_of_descriptors_that_is_named_is_enough_and_no_fewer_are() {
+    local options number least
+    while read -ra options; do
+        least=''
+        for number in 8 12 16 20; do
+            limited "$number" "${options[@]}"
+            refused_at "$number"
+        done
+        limited "$((least - 1))" "${options[@]}"
+        refused_at "$((least - 1))"
+        limited "$least" "${options[@]}"
+        ready_and_well
+        rm -f "$folder"/*.{csv,log,record,flash}
+    done <<END
+--baud 19200
+--no-control
+--tcp 127.0.0.1:0 --rfc2217 0
+--lines 3 --trace $folder/%l.csv --wire $folder/%l.log --record $folder/%l.record
+--node 1-4 --flash $folder/%n.flash --coverage $folder/coverage
+END
+}
+
+ready_and_well() {
+    grep -q '^READY ' "$folder/bus.out" ||
+        fail "${options[*]}: $least descriptors are named, and not enough: $(<"$folder/bus.err")"
+    local free=$((least - $(find "/proc/$started/fd" -mindepth 1 | wc -l)))
+    ((free >= 8 && free <= 10)) || fail "${options[*]}: $free of $least descriptors are free"
+    ctl bus0 version >"$folder/version" 2>&1 || fail "${options[*]}: no answer"
+    idle_cost_is_small "$least descriptors"
+    kill "$started"
+    status_of "$started"
 }
 
 ready_or_ended() { grep -qs '^READY ' "$folder/bus.out" || ended "$started"; }
