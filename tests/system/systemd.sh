@@ -49,6 +49,13 @@ test_the_service_of_the_system_has_few_rights() {
     analyze security --offline=true --threshold=10 --root="$root" --no-pager rkm04@3.service # 0 none … 100 all
 }
 
+# A user's manager cannot do more without privileges (docs/INSTALL.md).
+test_the_service_of_a_user_has_the_limits_that_need_no_privileges() {
+    command -v systemd-analyze >/dev/null || skip_case "systemd is not installed"
+    install_root
+    analyze security --user --offline=true --threshold=65 --no-pager "$root/usr/lib/systemd/user/rkm04@.service"
+}
+
 # unit_line KEY: the value of a key of the unit of this scope, with the specifiers that systemd replaces.
 unit_line() {
     sed -n "s/^$1=//p" "$root/usr/lib/systemd/$scope/rkm04@.service" |
