@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "options/options.h"
 #include "text/text.h"
 
 enum exit_status client_usage(const char *format, ...)
@@ -18,6 +19,7 @@ enum exit_status client_usage(const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     invisible_note(text, sizeof text);
+    arguments_reported();
     warnx("%s", text);
     fprintf(stderr, "Try `%s --help' or `%s --usage' for more information.\n", program_invocation_short_name,
             program_invocation_short_name);

@@ -6,9 +6,15 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
+#include "text/text.h"
+
+#define SHOWN_MAX 300 /* bytes of an argument with its note */
+
 static bool parsing; /* argp may end the program now */
+static char **arguments; /* of the program; NULL behind the last */
 
 int arguments_printed(void)
 {
@@ -22,9 +28,32 @@ int arguments_printed(void)
     return 1;
 }
 
-static void at_end(void)
+/* The command line was wrong, which has been said: name characters in it that cannot be seen. */
+static void note_invisible(void)
 {
-    if (parsing && arguments_printed() != 0)
+    for (char **argument = arguments; *argument != NULL; argument++) {
+        char text[SHOWN_MAX];
+        snprintf(text, sizeof text, "%.200s", *argument);
+        size_t length = strlen(text);
+        invisible_note(text, sizeof text);
+        if (text[length] != '\0')
+            warnx("`%.*s'%s", (int)length, text, text + length);
+    }
+}
+
+void arguments_reported(void)
+{
+    parsing = false;
+}
+
+static void at_end(int status, void *unused)
+{
+    (void)unused;
+    if (!parsing)
+        return;
+    if (status != 0)
+        note_invisible();
+    if (arguments_printed() != 0)
         _exit(1);
 }
 
@@ -32,7 +61,8 @@ void arguments_parse(const struct argp *argp, int argc, char **argv, void *input
 {
     static bool registered;
     if (!registered)
-        registered = atexit(at_end) == 0;
+        registered = on_exit(at_end, NULL) == 0;
+    arguments = argv;
     parsing = true;
     argp_parse(argp, argc, argv, 0, NULL, input);
     parsing = false;

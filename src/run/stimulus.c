@@ -57,7 +57,7 @@ static bool word_is(struct word word, const char *text)
 /* Report what was expected at the word, or `offset` characters into it. Returns false. */
 static bool report_expected(struct parser *p, struct word word, size_t offset, const char *what)
 {
-    char found[FOUND_MAX + 1];
+    char found[FOUND_MAX + 1], shown[FOUND_MAX + 100];
     size_t n = word.length < FOUND_MAX ? word.length : FOUND_MAX;
     while (n > 0 && n < word.length && ((unsigned char)word.text[n] & 0xC0) == 0x80)
         n--; /* not inside a UTF-8 character */
@@ -65,10 +65,9 @@ static bool report_expected(struct parser *p, struct word word, size_t offset, c
         found[i] = (unsigned char)word.text[i] < ' ' || word.text[i] == 0x7F ? '?' : word.text[i];
     found[n] = '\0';
     fprintf(p->errors, "%s:%zu:%zu: error: expected %s, found ", p->name, p->number, word.at + offset + 1, what);
-    if (word.length == 0)
-        fputs("the end of the line\n", p->errors);
-    else
-        fprintf(p->errors, "'%s%s'\n", found, n < word.length ? "..." : "");
+    snprintf(shown, sizeof shown, word.length == 0 ? "the end of the line" : "'%s%s'", found, n < word.length ? "..." : "");
+    invisible_note(shown, sizeof shown);
+    fprintf(p->errors, "%s\n", shown);
     p->error_count++;
     return false;
 }

@@ -224,6 +224,10 @@ START_TEST(a_wrong_line_is_reported_with_its_place_and_what_was_expected)
         {"1s message # 31", "in.txt:1:12: error: expected the bytes of a message in hexadecimal, such as 0431, found '#'\n"},
         {"1s message 043", "in.txt:1:15: error: expected two hexadecimal digits a byte, found '043'\n"},
         {"1s message 04x1", "in.txt:1:14: error: expected two hexadecimal digits a byte, found '04x1'\n"},
+        {"1s\xC2\xA0" "di 1 1", "in.txt:1:2: error: expected a time with its unit, such as 250us, 1500ms or 2.5s, found "
+                                "'1s\xC2\xA0" "di'; there is a no-break space (U+00A0) in it\n"},
+        {"1s di \xE2\x80\x8B" "1 1", "in.txt:1:7: error: expected an input 01 to 08, found '\xE2\x80\x8B" "1'; there is a "
+                                     "zero-width space (U+200B) in it\n"},
         {"1s d\x01i 1 1", "in.txt:1:4: error: expected di, set or message, found 'd?i'\n"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++) {

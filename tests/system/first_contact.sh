@@ -169,6 +169,15 @@ test_a_character_that_cannot_be_seen_is_named() {
     holds "$(<"$folder/said")" "$name" "a condition"
     "$RKMCTL" --control "$folder/bus.control" call di.set "{\"mask\":${space}1}" >"$folder/said" 2>&1
     holds "$(<"$folder/said")" "$name" "JSON"
+    exits 2 "$RKM04" serve --node "1$space"
+    holds "$complained" "$name" "a value of an option"
+    exits 2 "$RKM04" exec "--un${none}til=1s" "$folder/none.rks"
+    holds "$complained" "$other" "the name of an option"
+    exits 2 "$RKMCTL" -p "$folder/bus" -m "1$space" position
+    holds "$complained" "$name" "an option of rkmctl"
+    [[ $complained != *"$name"*"$name"* ]] || fail "it is named twice: $complained"
+    exits 2 "$RKMCTL" -p "$folder/bus" --framing "hdlc$none" version
+    holds "$complained" "$other" "another option of rkmctl"
 }
 
 test_state_tells_what_is_in_flash_now() {
