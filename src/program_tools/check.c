@@ -92,24 +92,29 @@ static bool map_texts(struct check *check)
     return check->texts != NULL;
 }
 
-static struct check_motor *motor_of(struct check *check, unsigned number)
+/* Read the program of a motor: the sources for it and those for all. 0: the motors that have no source of their own. */
+static bool read_motor(struct check *check, unsigned number)
 {
-    for (size_t i = 0; i < check->motor_count; i++)
-        if (check->motors[i].motor == number)
-            return &check->motors[i];
-    struct check_motor *added = &check->motors[check->motor_count++];
-    *added = (struct check_motor){.motor = number};
-    code_begin(&added->code, check->sources, check->count);
-    return added;
+    struct check_motor *motor = &check->motors[check->motor_count++];
+    *motor = (struct check_motor){.motor = number};
+    code_begin(&motor->code, check->sources, check->count);
+    for (size_t i = 0; i < check->count; i++)
+        if ((check->sources[i].motor == number || check->sources[i].motor == 0) && !check_read(check, motor, i))
+            return false;
+    return true;
 }
 
 static bool read_sources(struct check *check)
 {
-    check->motors = calloc(check->count + 1, sizeof *check->motors);
+    unsigned given = 0; /* bit n: there is a source for motor n */
+    const unsigned all = (1u << (RKM04_MOTORS + 1)) - 2;
+    check->motors = calloc(RKM04_MOTORS + 1, sizeof *check->motors);
     if (check->motors == NULL)
         return false;
     for (size_t i = 0; i < check->count; i++)
-        if (!check_read(check, motor_of(check, check->sources[i].motor), i))
+        given |= 1u << check->sources[i].motor;
+    for (unsigned number = 0; number <= RKM04_MOTORS; number++)
+        if ((given >> number & 1) != 0 && (number > 0 || (given & all) != all) && !read_motor(check, number))
             return false;
     return true;
 }

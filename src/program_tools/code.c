@@ -93,6 +93,8 @@ bool code_read(struct code *code, size_t source, const char *text, code_notice *
 struct diagnostic code_place(const struct code *code, size_t command, size_t last)
 {
     const struct code_command *from = &code->commands[command], *to = &code->commands[last];
+    while (to->source != from->source)
+        to--;
     return (struct diagnostic){.source = from->source,
                                .offset = from->offset,
                                .length = to->offset + to->length - from->offset,

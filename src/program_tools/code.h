@@ -48,7 +48,7 @@ bool code_read(struct code *code, size_t source, const char *text, code_notice *
 
 void code_free(struct code *code);
 
-/* Where a command stands, for a diagnostic: through the end of command `last`, which is in the same source. */
+/* Where a command stands, for a diagnostic: through the end of command `last`, or of the last one in the same source. */
 struct diagnostic code_place(const struct code *code, size_t command, size_t last);
 
 /* Bit and label of an I, label of J and '. */

@@ -60,7 +60,26 @@ static int compare(const void *left, const void *right)
         return a->offset < b->offset ? -1 : 1;
     if (a->severity != b->severity)
         return a->severity < b->severity ? -1 : 1;
-    return strcmp(a->name, b->name);
+    const int names = strcmp(a->name, b->name);
+    return names != 0 ? names : strcmp(a->message, b->message);
+}
+
+/* A source for all motors is looked at for each: what is the same is told once. */
+static void drop_twins(struct diagnostics *all)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < all->count; i++) {
+        struct diagnostic *one = &all->list[i];
+        if (kept > 0 && compare(one, &all->list[kept - 1]) == 0) {
+            free(one->message);
+            free(one->hint);
+            all->errors -= one->severity == DIAGNOSTIC_ERROR;
+            all->warnings -= one->severity == DIAGNOSTIC_WARNING;
+        } else {
+            all->list[kept++] = *one;
+        }
+    }
+    all->count = kept;
 }
 
 void diagnostics_arrange(struct diagnostics *all, const struct program_source *sources)
@@ -68,6 +87,7 @@ void diagnostics_arrange(struct diagnostics *all, const struct program_source *s
     struct text_place place = {0};
     if (all->count > 0)
         qsort(all->list, all->count, sizeof all->list[0], compare);
+    drop_twins(all);
     for (size_t i = 0; i < all->count; i++) {
         struct diagnostic *one = &all->list[i];
         if (i == 0 || one->source != one[-1].source)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_check.c: any bytes as a program text, or as those of two motors, with a zero between them. What is found lies in the text,
- * in order; there are errors if and only if the unit would refuse the text; every format can be printed. */
+ * in order; there are errors if and only if the unit would refuse the text; every format can be printed; every command that is
+ * read has an explanation. */
 #include <string.h>
 
 #include "fuzz.h"
@@ -56,6 +57,20 @@ static void print_all(const struct program_source *sources, const struct diagnos
     }
 }
 
+/* As many explanations as commands, each of one line and for its place. */
+static void check_explanations(const struct program_source *sources, size_t count, enum explain_language language)
+{
+    struct explanations all;
+    FUZZ_CHECK(explain_programs(sources, count, language, &all), "memory");
+    for (size_t i = 0; i < all.count; i++) {
+        const struct explanation *one = &all.list[i];
+        FUZZ_CHECK(one->offset + one->length <= sources[one->source].length, "%zu + %zu", one->offset, one->length);
+        FUZZ_CHECK(one->text[0] != '?' && strchr(one->text, '\n') == NULL, "%s", one->text);
+        FUZZ_CHECK(explain_at(&all, one->source, one->offset) == one, "not found at %zu", one->offset);
+    }
+    explain_free(&all);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const struct check_options options;
@@ -71,5 +86,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_found(sources, count, &found);
     print_all(sources, &found);
     diagnostics_free(&found);
+    for (unsigned language = 0; language < EXPLAIN_LANGUAGES; language++)
+        check_explanations(sources, count, (enum explain_language)language);
     return 0;
 }

@@ -277,6 +277,34 @@ START_TEST(sources_for_one_motor_are_one_program)
 }
 END_TEST
 
+START_TEST(what_precedes_a_reset_in_several_sources_is_told_where_it_begins)
+{
+    const char *first = "W500 F9999 R", *second = "R \\ W5";
+    const struct program_source sources[] = {{"x", first, strlen(first), 1}, {"y", second, strlen(second), 1}};
+    diagnostics_free(&found);
+    ck_assert(check_programs(sources, 2, &options, &found));
+    ck_assert_uint_eq(found.count, 1);
+    ck_assert_uint_eq(found.list[0].offset, 0);
+    ck_assert_uint_eq(found.list[0].length, strlen(first));
+}
+END_TEST
+
+START_TEST(a_source_for_all_motors_is_part_of_each_program_and_told_once)
+{
+    const char *all = "@1 F9999 R R q", *one = "J1", *other = "J2";
+    const struct program_source sources[] = {
+        {"x", all, strlen(all), 0}, {"y", one, strlen(one), 1}, {"z", other, strlen(other), 3}};
+    diagnostics_free(&found);
+    ck_assert(check_programs(sources, 3, &options, &found));
+    ck_assert_uint_eq(found.errors, 1);
+    ck_assert_uint_eq(found.count, 3);
+    ck_assert_str_eq(found.list[0].name, "unused-label"); /* of motors 2 to 4 */
+    ck_assert_str_eq(found.list[1].name, "unknown-command");
+    ck_assert_str_eq(found.list[2].name, "missing-label");
+    ck_assert_uint_eq(found.list[2].source, 2);
+}
+END_TEST
+
 /* ---- Limits --------------------------------------------------------------------------------------------------------- */
 
 START_TEST(programs_made_to_take_long_are_given_up_in_time)
@@ -313,6 +341,8 @@ static Suite *check_suite(void)
     tcase_add_test(warnings, motors_that_wait_for_each_other_are_found);
     tcase_add_test(warnings, a_program_by_itself_may_wait_for_any_variable);
     tcase_add_test(warnings, sources_for_one_motor_are_one_program);
+    tcase_add_test(warnings, what_precedes_a_reset_in_several_sources_is_told_where_it_begins);
+    tcase_add_test(warnings, a_source_for_all_motors_is_part_of_each_program_and_told_once);
     tcase_add_checked_fixture(limits, set_up, tear_down);
     tcase_set_timeout(limits, 60);
     tcase_add_test(limits, programs_made_to_take_long_are_given_up_in_time);
