@@ -8,6 +8,8 @@
 #include "methods.h"
 #include "text/text.h"
 
+#define LIST_SIZE 1024u /* bytes of the names of all methods */
+
 static const struct command_method *const tables[] = {unit_methods, plant_methods, fault_methods};
 
 static const struct command_method *find_in_table(const struct command_method *method, const char *name)
@@ -15,6 +17,27 @@ static const struct command_method *find_in_table(const struct command_method *m
     while (method->name && strcmp(method->name, name) != 0)
         method++;
     return method->name ? method : NULL;
+}
+
+static const struct device_method *find_own(const struct sim *sim, const char *name)
+{
+    const struct device_method *method = sim_device(sim)->methods;
+    while (method && method->name && strcmp(method->name, name) != 0)
+        method++;
+    return method && method->name ? method : NULL;
+}
+
+/* A method of the device, for one unit. */
+static json_t *call_own(struct sim *sim, const struct device_method *method, const json_t *params, struct refusal *refusal)
+{
+    struct device_refusal own = {.is_state = false};
+    unsigned number = param_unit(sim, params, refusal);
+    if (number == 0)
+        return NULL;
+    if (!sim_powered(sim, number))
+        return refuse(refusal, REFUSED_STATE, "unit %s has no power: switch it on with power", sim->unit[number - 1].name);
+    json_t *result = method->call(sim_core(sim, number), params, &own);
+    return result ? result : refuse(refusal, own.is_state ? REFUSED_STATE : REFUSED_PARAMS, "%s", own.text);
 }
 
 static const struct command_method *find_method(const struct sim *sim, const char *name)
@@ -40,21 +63,49 @@ bool command_attach(struct sim *sim, const struct command_method *methods)
 
 bool sim_has_command(const struct sim *sim, const char *method)
 {
-    return find_method(sim, method) != NULL;
+    return find_method(sim, method) || find_own(sim, method);
+}
+
+static size_t list_table(const struct command_method *method, char *list, size_t length, size_t size)
+{
+    for (; method->name && length < size; method++)
+        length += (size_t)snprintf(list + length, size - length, "%s, ", method->name);
+    return length;
+}
+
+/* The names of all methods, for the one that may be meant. */
+static void list_methods(const struct sim *sim, char *list, size_t size)
+{
+    size_t length = (size_t)snprintf(list, size, "%s", sim->outer_methods ? sim->outer_methods : "");
+    for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
+        length = list_table(tables[i], list, length, size);
+    for (size_t i = 0; i < SIM_COMMAND_TABLES && sim->commands[i]; i++)
+        length = list_table(sim->commands[i], list, length, size);
+    for (const struct device_method *own = sim_device(sim)->methods; own && own->name && length < size; own++)
+        length += (size_t)snprintf(list + length, size - length, "%s, ", own->name);
+}
+
+static json_t *refuse_unknown(const struct sim *sim, const char *name, struct refusal *refusal)
+{
+    char list[LIST_SIZE];
+    list_methods(sim, list, sizeof list);
+    return refuse(refusal, REFUSED_METHOD, "there is no method `%.80s'%s", name, nearest_hint(name, list));
 }
 
 json_t *sim_command(struct sim *sim, const char *name, const json_t *params, struct refusal *refusal)
 {
     const struct command_method *method = find_method(sim, name);
-    if (!method)
-        return refuse(refusal, REFUSED_METHOD, "there is no method `%s'", name);
+    const struct device_method *own = method ? NULL : find_own(sim, name);
+    const bool changes = method ? method->changes : own && own->changes;
+    if (!method && !own)
+        return refuse_unknown(sim, name, refusal);
     if (params && !json_is_object(params))
         return refuse(refusal, REFUSED_PARAMS, "params: expected an object, as in {\"unit\": 1}");
-    if (method->changes)
+    if (changes)
         sim_finish_tick(sim);
     uint64_t now = sim_now(sim);
-    json_t *result = method->function(sim, params, refusal);
-    if (result && method->changes && sim->journal)
+    json_t *result = method ? method->function(sim, params, refusal) : call_own(sim, own, params, refusal);
+    if (result && changes && sim->journal)
         sim->journal->command(sim->journal->context, now, name, params);
     return result;
 }

@@ -113,12 +113,23 @@ static control_method *find(const char *name)
     return NULL;
 }
 
+/* Names of the methods that are not commands of a sim, for hints. */
+static const char *names_of_methods(void)
+{
+    static char names[256];
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
+        length += (size_t)snprintf(names + length, sizeof names - length, "%s, ", methods[i].name);
+    return names;
+}
+
 /* A command of the line, at its present tick. What it leads to is looked at at once. */
 static json_t *command(struct control_context *context, struct refusal *refusal)
 {
     const struct rpc_request *request = context->request;
     struct sim *sim = bus_sim(context->bus);
     uint64_t tick = sim_now(sim);
+    sim->outer_methods = names_of_methods();
     json_t *result = sim_command(sim, request->method, request->params, refusal);
     if (!result)
         return NULL;

@@ -34,6 +34,7 @@
 #define DEVICE_SETTINGS_SIZE 128u /* bytes that a kind has for its own settings */
 #define DEVICE_COMMAND_SIZE 64u   /* bytes of a command as text */
 #define DEVICE_ERROR_SIZE 256u    /* bytes of a message */
+#define DEVICE_TEXT_OVERFLOWS 3   /* flag of set_text: more than the memory holds */
 
 /* A unit of any kind: kind->size bytes of plain memory. Copying them is a snapshot; what is copied back, or elsewhere, needs
  * kind->attach() before anything else. */
@@ -242,7 +243,7 @@ struct device_kind {
     size_t (*command_text)(const struct device_unit *unit, unsigned axis, char text[DEVICE_COMMAND_SIZE]);
 
     /* A text from `set` or from the key `program:`, for an axis (0: all), at the present us. Returns 0; or a flag from 1, and a
-     * message. NULL: it takes no texts. */
+     * message; DEVICE_TEXT_OVERFLOWS: it is taken, and fills the memory. NULL: it takes no texts. */
     int (*set_text)(struct device_unit *unit, unsigned axis, const char *text, size_t length, char error[DEVICE_ERROR_SIZE]);
 
     /* Does `text` have anything that a unit with these settings refuses? Then it is reported on `out` (NULL: none), as

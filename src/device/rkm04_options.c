@@ -140,8 +140,7 @@ const struct device_option rkm04_options[] = {
      .read_node = read_version_node},
     {.name = "readings",
      .argument = "NAME=VALUE,...",
-     .help = "How the units read what the manual leaves open, as in hold-exit=latch,speed-change=500ms; `list' lists all "
-             "readings with their values (docs/READINGS.md)",
+     .help = READINGS_OPTION_HELP,
      .flags = DEVICE_OPTION_SWITCH,
      .read = read_readings,
      .read_node = read_readings_node,

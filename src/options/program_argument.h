@@ -5,8 +5,8 @@
 
 #include <stdbool.h>
 
-/* Take an argument [M=]FILE apart; M is a motor 0..4, 1 if it is missing. *path points into `argument`.
+/* Take an argument [M=]FILE apart; M is a motor 0..motors, 1 if it is missing. *path points into `argument`.
  * Returns false if M is a number but not a motor. */
-bool program_argument_read(const char *argument, char *motor, const char **path);
+bool program_argument_read(const char *argument, unsigned motors, unsigned *motor, const char **path);
 
 #endif

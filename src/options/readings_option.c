@@ -14,13 +14,3 @@ void readings_option_read(struct rkm04_readings *readings, readings_set *named, 
     if (!readings_read(readings, named, text, error))
         argp_error(state, "--readings: %s", error);
 }
-
-void readings_option_latency(struct rkm04_readings *readings, readings_set *named, const char *text, struct argp_state *state)
-{
-    char error[READINGS_ERROR_SIZE], *pair = NULL;
-    if (asprintf(&pair, "speed-change=%s", text) < 0)
-        argp_failure(state, 1, 0, "out of memory");
-    else if (strchr(text, ',') != NULL || !readings_read(readings, named, pair, error))
-        argp_error(state, "--speed-change-latency: %s", strchr(text, ',') != NULL ? "expected whole ms from 0 to 2000" : error);
-    free(pair);
-}

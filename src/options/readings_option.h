@@ -7,15 +7,8 @@
 
 #include "text/text.h"
 
-#define READINGS_OPTION_HELP \
-    "How the units read what the manual leaves open, as in hold-exit=latch,speed-change=500ms; `list' lists all readings " \
-    "with their values (docs/READINGS.md)"
-
 /* Read a value of --readings into *readings; *named are those that were given before. `list' prints the table and ends the
  * program with status 0; what is wrong ends it with a usage error. */
 void readings_option_read(struct rkm04_readings *readings, readings_set *named, const char *text, struct argp_state *state);
-
-/* The same for the ms of --speed-change-latency, the older name of speed-change. */
-void readings_option_latency(struct rkm04_readings *readings, readings_set *named, const char *text, struct argp_state *state);
 
 #endif

@@ -25,11 +25,9 @@ void tool_files_end(struct tool_files *files)
 void tool_files_add(struct tool_files *files, const char *argument, struct argp_state *state)
 {
     struct tool_file *file = &files->list[files->count];
-    char motor;
-    if (!program_argument_read(argument, &motor, &file->path))
+    if (!program_argument_read(argument, RKM04_MOTORS, &file->source.motor, &file->path))
         argp_error(state, "%s: expected a motor 1 to 4, or 0 for all, before '='", argument);
     file->has_motor = file->path != argument;
-    file->source.motor = (unsigned)(motor - '0');
     file->source.name = file->path;
     if (strcmp(file->path, "-") == 0) {
         if (files->stdin_taken)

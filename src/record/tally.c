@@ -56,7 +56,7 @@ static void on_event(void *context, const struct watch_event *event)
     if (tally->count > 0 || event->tick >= tally->span_end)
         pass_time(tally, event->tick);
     struct tally_stream *stream = &tally->stream[event->unit][event->motor];
-    uint64_t what = (uint64_t)event->kind << 32 | (uint32_t)event->value, more = 0;
+    uint64_t what = (uint64_t)event->kind << 32 | (uint32_t)event->value, more = watch_ns(event);
     if (event->kind == WATCH_BYTE)
         more = event->byte.start << 20 ^ event->byte.senders << 1 ^ event->byte.lost;
     stream->digest += hash(event->tick, what, more);

@@ -24,19 +24,15 @@ struct options {
     uint64_t until;
     bool json;
     unsigned output_flags; /* of output_file.h */
-    const struct device_kind *device;
-    struct device_config config;
-    struct rkm04_readings readings;
-    readings_set named; /* by --readings */
+    struct device_arguments device;
 };
 
-enum option_key { KEY_FORCE = 256, KEY_READINGS };
+enum option_key { KEY_FORCE = 256 };
 
 static const struct argp_option option_table[] = {
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"stimulus", 's', "FILE", 0, "Inputs and messages that come while the programs run", 0},
     {"trace", 't', "FILE", 0, "Record every event: .vcd, .jsonl, any other name CSV; - is standard output, CSV", 0},
-    {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
     {"force", KEY_FORCE, NULL, 0,
      "Also overwrite a file of another kind with the trace; never one that is also read or written otherwise", 0},
@@ -44,10 +40,10 @@ static const struct argp_option option_table[] = {
 };
 
 static const char doc[] =
-    "Run programs of the RKM04 in virtual time, as fast as the machine can, until every motor is idle, stopped, or waits "
-    "for an input that no stimulus sets; without --until also until the state repeats, because the program would never end. M is "
-    "the motor, 1 to 4 or 0 for all; without it 1. FILE is a program text (.rks), - standard input. Several files for the same "
-    "motor are sent in order."
+    "Run programs of an RKM04, or of another device, in virtual time, as fast as the machine can, until every motor is idle, "
+    "stopped, or waits for an input that no stimulus sets; without --until also until the state repeats, because the program "
+    "would never end. M is the motor, 1 to 4 or 0 for all; without it 1, or all where a program of the device is for all. "
+    "FILE is a program text (.rks), - standard input. Several files for the same motor are sent in order."
     "\v"
     "Lines of a stimulus file (times as in --until, from the start of the run):\n"
     "  TIME di NN 0|1        input 01 to 08\n"
@@ -87,17 +83,17 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->device;
+        return 0;
     case 'u':
         take_until(state, options, text);
         return 0;
     case 's':
-        exec_inputs_stimulus(&options->inputs, text, state);
+        exec_inputs_stimulus(&options->inputs, text);
         return 0;
     case 't':
         options->trace = text;
-        return 0;
-    case KEY_READINGS:
-        readings_option_read(&options->readings, &options->named, text, state);
         return 0;
     case 'j':
         options->json = true;
@@ -106,11 +102,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         options->output_flags |= OUTPUT_FORCE;
         return 0;
     case ARGP_KEY_ARG:
-        exec_inputs_argument(&options->inputs, text, state);
+        exec_inputs_argument(&options->inputs, text);
         return 0;
     case ARGP_KEY_END:
         if (exec_inputs_are_none(&options->inputs))
             argp_error(state, "no program given");
+        exec_inputs_settle(&options->inputs, options->device.kind, state);
         if (options->json && options->trace != NULL && strcmp(options->trace, "-") == 0)
             argp_error(state, "--json and --trace - cannot both use standard output");
         return 0;
@@ -121,7 +118,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
 
 static void parse_options(int argc, char **argv, struct options *options)
 {
-    static const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, NULL, NULL, NULL};
+    const struct argp_child children[] = {{.argp = device_arguments_argp(&options->device)}, {0}};
+    const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, children, NULL, NULL};
     argp_err_exit_status = STATUS_USAGE;
     arguments_parse(&argp, argc, argv, options);
 }
@@ -165,7 +163,7 @@ static void report_endless(struct exec_run *run)
 
 static int exit_status(struct exec_run *run, const struct options *options, enum exec_end end, bool written)
 {
-    bool fault = report_faults(run);
+    bool fault = report_faults(run) || run->refused;
     if (end == EXEC_UNTIL && is_running(run)) {
         if (options->until_text == NULL)
             fprintf(stderr, "rkm04 exec: virtual time has reached its end with a motor still running\n");
@@ -211,8 +209,8 @@ static int run_programs(struct exec_run *run, const struct options *options, FIL
     run->stimuli = &options->inputs.stimuli;
     run->stimulus_name = options->inputs.stimulus_file.name;
     run->until = options->until;
-    run->device = options->device;
-    run->config = options->config;
+    run->device = options->device.kind;
+    run->config = options->device.config;
     run->progress = isatty(STDERR_FILENO) != 0;
     run->answered = report_answer;
     run->context = &report;
@@ -258,16 +256,16 @@ static int run_traced(struct exec_run *run, const struct options *options)
 int exec_main(int argc, char **argv)
 {
     static struct exec_run run;
-    struct options options = {.until = DEVICE_NEVER, .device = &rkm04_device, .config.node = 1};
+    struct options options = {.until = DEVICE_NEVER, .device = {.without = DEVICE_OPTION_BUS, .config.node = 1}};
     int status = STATUS_FAILURE;
 
     if (exec_inputs_begin(&options.inputs, "rkm04 exec", argc)) {
         parse_options(argc, argv, &options);
-        rkm04_settings_put(&options.config, &(struct rkm04_config){.readings = options.readings});
-        if (exec_inputs_read(&options.inputs, options.device, &options.config))
+        if (exec_inputs_read(&options.inputs, options.device.kind, &options.device.config))
             status = run_traced(&run, &options);
     }
     exec_run_end(&run);
     exec_inputs_free(&options.inputs);
+    device_arguments_free(&options.device);
     return status;
 }

@@ -36,18 +36,30 @@ static void take_path(struct exec_inputs *inputs, const char *path, struct argp_
     inputs->stdin_taken = true;
 }
 
-void exec_inputs_argument(struct exec_inputs *inputs, const char *text, struct argp_state *state)
+void exec_inputs_argument(struct exec_inputs *inputs, const char *text)
 {
-    struct exec_program *program = &inputs->program[inputs->programs++];
-    if (!program_argument_read(text, &program->motor, &program->path))
-        argp_error(state, "%s: expected a motor 1 to 4, or 0 for all, before '='", text);
-    take_path(inputs, program->path, state);
+    inputs->program[inputs->programs++].argument = text;
 }
 
-void exec_inputs_stimulus(struct exec_inputs *inputs, const char *path, struct argp_state *state)
+void exec_inputs_stimulus(struct exec_inputs *inputs, const char *path)
 {
-    take_path(inputs, path, state);
     inputs->stimulus = path;
+}
+
+void exec_inputs_settle(struct exec_inputs *inputs, const struct device_kind *device, struct argp_state *state)
+{
+    for (size_t i = 0; i < inputs->programs; i++) {
+        struct exec_program *program = &inputs->program[i];
+        if (!program_argument_read(program->argument, device->axes, &program->motor, &program->path))
+            argp_error(state, "%s: expected a motor 1 to %u, or 0 for all, before '='", program->argument, device->axes);
+        if (device->is_program_whole && program->path == program->argument)
+            program->motor = 0;
+        take_path(inputs, program->path, state);
+    }
+    if (inputs->programs > 0 && !device->set_text)
+        argp_error(state, "the device %s takes no texts: expected --stimulus", device->name);
+    if (inputs->stimulus)
+        take_path(inputs, inputs->stimulus, state);
 }
 
 bool exec_inputs_are_none(const struct exec_inputs *inputs)
@@ -72,7 +84,7 @@ static bool read_file(const struct exec_inputs *inputs, struct exec_file *file, 
 /* Report all that a unit refuses. Returns false if there is something. */
 static bool check_text(const struct check *check, const char *name, const char *text, size_t length)
 {
-    return !check->device->check_text(check->config, name, text, length, stderr);
+    return !check->device->check_text || !check->device->check_text(check->config, name, text, length, stderr);
 }
 
 static bool read_programs(struct exec_inputs *inputs, const struct check *check)
@@ -104,7 +116,8 @@ static bool check_set(const struct check *check, const struct stimulus *s, const
 
 static bool is_refused(const struct check *check, const struct stimulus *s)
 {
-    return check->device->check_text(check->config, NULL, (const char *)s->data, s->length, NULL);
+    return check->device->check_text &&
+           check->device->check_text(check->config, NULL, (const char *)s->data, s->length, NULL);
 }
 
 static bool read_stimuli(struct exec_inputs *inputs, const struct check *check)
@@ -112,7 +125,7 @@ static bool read_stimuli(struct exec_inputs *inputs, const struct check *check)
     struct exec_file *file = &inputs->stimulus_file;
     if (!read_file(inputs, file, inputs->stimulus))
         return false;
-    int errors = stimuli_read(&inputs->stimuli, file->name, file->text.text, file->text.length, stderr);
+    int errors = stimuli_read(&inputs->stimuli, check->device, file->name, file->text.text, file->text.length, stderr);
     if (errors < 0)
         fprintf(stderr, "%s: %s\n", inputs->command, strerror(ENOMEM));
     bool is_right = errors == 0;
@@ -138,8 +151,7 @@ void exec_inputs_store(const struct exec_inputs *inputs, struct exec_run *run)
     for (size_t i = 0; i < inputs->programs; i++) {
         const struct exec_program *program = &inputs->program[i];
         const struct exec_file *file = &program->file;
-        if (exec_run_set(run, program->motor, file->text.text, file->text.length) == 3)
-            fprintf(stderr, "%s: warning: more than the %d commands that a motor can hold\n", file->name, RKM04_PROGRAM_MAX);
+        exec_run_set(run, program->motor, file->text.text, file->text.length, file->name);
     }
 }
 

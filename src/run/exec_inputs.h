@@ -20,7 +20,8 @@ struct exec_file {
 
 /* A program text for a motor. */
 struct exec_program {
-    char motor; /* '0'..'4' */
+    const char *argument; /* as given */
+    unsigned motor;       /* 0: all */
     const char *path;
     struct exec_file file;
 };
@@ -38,9 +39,13 @@ struct exec_inputs {
 /* Room for as many programs as there are arguments. Returns false if out of memory; exec_inputs_free() is due in any case. */
 bool exec_inputs_begin(struct exec_inputs *inputs, const char *command, int argc);
 
-/* Take an argument [M=]FILE, the option --stimulus. What is wrong ends the program by argp_error(). */
-void exec_inputs_argument(struct exec_inputs *inputs, const char *text, struct argp_state *state);
-void exec_inputs_stimulus(struct exec_inputs *inputs, const char *path, struct argp_state *state);
+/* Take an argument [M=]FILE, the option --stimulus. */
+void exec_inputs_argument(struct exec_inputs *inputs, const char *text);
+void exec_inputs_stimulus(struct exec_inputs *inputs, const char *path);
+
+/* At the end of the command line, when the device is known: which motors, which files. What is wrong ends the program by
+ * argp_error(). */
+void exec_inputs_settle(struct exec_inputs *inputs, const struct device_kind *device, struct argp_state *state);
 
 /* Was neither given? */
 bool exec_inputs_are_none(const struct exec_inputs *inputs);

@@ -7,6 +7,7 @@
 #include <time.h>
 
 #define ANSWER_MAX 16384     /* the longest answer, a full memory, has 9101 bytes */
+#define PLACE_SIZE 512u     /* bytes of a file's name, a line and a column */
 #define PROGRESS_AFTER 2.0   /* s of real time */
 #define PROGRESS_EVERY 0.5   /* s */
 #define LEAPS_A_LOOK 4096    /* leaps between two looks at the real clock */
@@ -46,10 +47,16 @@ struct device_unit *exec_run_unit(struct exec_run *run)
     return sim_core(&run->sim, 1);
 }
 
-int exec_run_set(struct exec_run *run, char motor, const void *text, size_t length)
+bool exec_run_set(struct exec_run *run, unsigned motor, const void *text, size_t length, const char *place)
 {
     char error[DEVICE_ERROR_SIZE];
-    return run->device->set_text(exec_run_unit(run), (unsigned)(motor - '0'), text, length, error);
+    int flag = run->device->set_text(exec_run_unit(run), motor, text, length, error);
+    if (flag == DEVICE_TEXT_OVERFLOWS)
+        fprintf(stderr, "%s: warning: more than the %u commands that a motor can hold\n", place, run->device->program);
+    else if (flag != 0)
+        fprintf(stderr, "%s: error: %s\n", place, error);
+    run->refused = run->refused || (flag != 0 && flag != DEVICE_TEXT_OVERFLOWS);
+    return flag == 0 || flag == DEVICE_TEXT_OVERFLOWS;
 }
 
 /* ---- Progress for a person who waits ------------------------------------------------------------------------------ */
@@ -97,6 +104,7 @@ static void deliver_input(struct exec_run *run, const struct stimulus *s)
 static void deliver_stimulus(struct exec_run *run, const struct stimulus *s)
 {
     uint8_t answer[ANSWER_MAX];
+    char place[PLACE_SIZE];
     size_t length;
 
     switch (s->kind) {
@@ -104,12 +112,11 @@ static void deliver_stimulus(struct exec_run *run, const struct stimulus *s)
         deliver_input(run, s);
         break;
     case STIMULUS_SET:
-        if (exec_run_set(run, s->motor, s->data, s->length) == 3)
-            fprintf(stderr, "%s:%zu:%zu: warning: more than the %d commands that a motor can hold\n", run->stimulus_name,
-                    s->line, s->column, RKM04_PROGRAM_MAX);
+        snprintf(place, sizeof place, "%.400s:%zu:%zu", run->stimulus_name, s->line, s->column);
+        exec_run_set(run, s->motor, s->data, s->length, place);
         break;
     case STIMULUS_MESSAGE:
-        length = run->device->exchange(exec_run_unit(run), s->data, s->length, answer, sizeof answer);
+        length = run->device->exchange ? run->device->exchange(exec_run_unit(run), s->data, s->length, answer, sizeof answer) : 0;
         run->answered(run->context, s->tick, s, answer, length < sizeof answer ? length : sizeof answer);
         break;
     }

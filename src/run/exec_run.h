@@ -34,6 +34,7 @@ struct exec_run {
 
     uint64_t period;  /* out, EXEC_ENDLESS: the state repeats after so many ticks */
     uint64_t reached; /* out: the last tick in which something was done */
+    bool refused;     /* out: the device has refused a text */
     size_t next;      /* inside: stimuli delivered */
     bool open;        /* inside: there is no `until` */
     void *repeat;     /* inside: of device_kind.find_repeat */
@@ -47,8 +48,9 @@ void exec_run_end(struct exec_run *run);
 /* The unit. */
 struct device_unit *exec_run_unit(struct exec_run *run);
 
-/* Store a text for motor '0'..'4' at the present tick. Returns the flag of P1. */
-int exec_run_set(struct exec_run *run, char motor, const void *text, size_t length);
+/* Hand a text over to a motor from 1, or 0 for all, at the present tick. What is wrong is reported on stderr, with `place` in
+ * front. Returns false if the device refuses it; a text that only fills its memory is taken. */
+bool exec_run_set(struct exec_run *run, unsigned motor, const void *text, size_t length, const char *place);
 
 /* Run to the end. */
 enum exec_end exec_run(struct exec_run *run);

@@ -43,13 +43,10 @@ struct options {
     enum form form;
     uint64_t from, until;
     unsigned width, scale, output_flags;
-    struct rkm04_readings readings;
-    readings_set named;
-    const struct device_kind *device;
-    struct device_config config;
+    struct device_arguments device;
 };
 
-enum option_key { KEY_FORCE = 256, KEY_READINGS, KEY_FROM, KEY_PLANT, KEY_TITLE, KEY_UNIT, KEY_WIDTH, KEY_SCALE, KEY_FORMAT };
+enum option_key { KEY_FORCE = 256, KEY_FROM, KEY_PLANT, KEY_TITLE, KEY_UNIT, KEY_WIDTH, KEY_SCALE, KEY_FORMAT };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "FILE", 0, "Where the picture goes: .svg, .png, .html or .csv; - is standard output", 0},
@@ -62,7 +59,6 @@ static const struct argp_option option_table[] = {
     {"title", KEY_TITLE, "TEXT", 0, "Heading of the picture", 0},
     {"width", KEY_WIDTH, "PX", 0, "Width of the picture, 240 to 8000; without it 800", 0},
     {"scale", KEY_SCALE, "N", 0, "Dots of a PNG for each px, 1 to 4; without it 2", 0},
-    {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {"force", KEY_FORCE, NULL, 0, "Also overwrite a file of another kind", 0},
     {0},
 };
@@ -126,6 +122,7 @@ static void end_options(struct options *options, struct argp_state *state)
 {
     if (exec_inputs_are_none(&options->inputs))
         argp_error(state, "no program, trace or recording given");
+    exec_inputs_settle(&options->inputs, options->device.kind, state);
     if (options->from >= options->until)
         argp_error(state, "--from: expected a time before --until");
     const char *dot = options->output == NULL ? NULL : strrchr(options->output, '.');
@@ -147,9 +144,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->device; return 0;
     case 'o': options->output = text; return 0;
     case 'u': options->until = read_time(state, "until", text); return 0;
-    case 's': exec_inputs_stimulus(&options->inputs, text, state); return 0;
+    case 's': exec_inputs_stimulus(&options->inputs, text); return 0;
     case KEY_FORMAT: options->form = read_form(state, text); return 0;
     case KEY_FROM: options->from = read_time(state, "from", text); return 0;
     case KEY_PLANT: options->plant = text; return 0;
@@ -157,9 +155,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case KEY_TITLE: options->title = text; return 0;
     case KEY_WIDTH: options->width = read_number(state, "width", text, PLOT_WIDTH_MIN, PLOT_WIDTH_MAX); return 0;
     case KEY_SCALE: options->scale = read_number(state, "scale", text, 1, SCALE_MAX); return 0;
-    case KEY_READINGS: readings_option_read(&options->readings, &options->named, text, state); return 0;
     case KEY_FORCE: options->output_flags |= OUTPUT_FORCE; return 0;
-    case ARGP_KEY_ARG: exec_inputs_argument(&options->inputs, text, state); return 0;
+    case ARGP_KEY_ARG: exec_inputs_argument(&options->inputs, text); return 0;
     case ARGP_KEY_END: end_options(options, state); return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -213,8 +210,8 @@ static bool draw_programs(struct options *options, struct plot_curves *curves)
     run.stimuli = &options->inputs.stimuli;
     run.stimulus_name = options->inputs.stimulus_file.name;
     run.until = options->until;
-    run.device = options->device;
-    run.config = options->config;
+    run.device = options->device.kind;
+    run.config = options->device.config;
     run.progress = isatty(STDERR_FILENO) != 0;
     run.answered = ignore_answer;
     run.advanced = look;
@@ -313,7 +310,7 @@ static enum source source_of(const char *path, FILE *in)
 
 static bool fill_from_programs(struct options *options, struct plot_curves *curves)
 {
-    return exec_inputs_read(&options->inputs, options->device, &options->config) && draw_programs(options, curves);
+    return exec_inputs_read(&options->inputs, options->device.kind, &options->device.config) && draw_programs(options, curves);
 }
 
 static bool fill_curves(struct options *options, struct plot_curves *curves)
@@ -397,19 +394,20 @@ static bool write_output(const struct plot_curves *curves, const struct options 
 
 int plot_main(int argc, char **argv)
 {
-    static const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, NULL, NULL, NULL};
     static struct plot_curves curves;
-    struct options options = {.until = UINT64_MAX, .form = FORMS, .width = WIDTH, .scale = PNG_SCALE, .device = &rkm04_device,
-                              .config.node = 1};
+    struct options options = {.until = UINT64_MAX, .form = FORMS, .width = WIDTH, .scale = PNG_SCALE,
+                              .device = {.without = DEVICE_OPTION_BUS, .config.node = 1}};
+    const struct argp_child children[] = {{.argp = device_arguments_argp(&options.device)}, {0}};
+    const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, children, NULL, NULL};
     int status = STATUS_FAILURE;
     argp_err_exit_status = STATUS_USAGE;
     if (exec_inputs_begin(&options.inputs, COMMAND, argc)) {
         arguments_parse(&argp, argc, argv, &options);
-        rkm04_settings_put(&options.config, &(struct rkm04_config){.readings = options.readings});
         if (fill_curves(&options, &curves) && write_output(&curves, &options))
             status = STATUS_SUCCESS;
     }
     plot_free(&curves);
     exec_inputs_free(&options.inputs);
+    device_arguments_free(&options.device);
     return status;
 }

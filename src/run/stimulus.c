@@ -12,6 +12,7 @@
 
 struct parser {
     struct stimuli *stimuli;
+    const struct device_kind *device;
     size_t room;
     const char *name;
     FILE *errors;
@@ -81,19 +82,27 @@ static bool read_end(struct parser *p)
     return true;
 }
 
-static bool read_input(struct parser *p, struct stimulus *s)
+/* A number of one or two digits from `low` to `high`. */
+static bool read_small(struct word word, unsigned low, unsigned high, uint8_t *number)
 {
-    struct word word = next_word(p);
-    unsigned number = 0;
+    unsigned value = 0;
     for (size_t i = 0; i < word.length; i++) {
         if (word.text[i] < '0' || word.text[i] > '9' || word.length > 2)
-            return report_expected(p, word, 0, "an input 01 to 08");
-        number = number * 10 + (unsigned)(word.text[i] - '0');
+            return false;
+        value = value * 10 + (unsigned)(word.text[i] - '0');
     }
-    if (number < 1 || number > RKM04_INPUTS)
-        return report_expected(p, word, 0, "an input 01 to 08");
+    *number = (uint8_t)value;
+    return word.length > 0 && value >= low && value <= high;
+}
+
+static bool read_input(struct parser *p, struct stimulus *s)
+{
+    char what[40];
+    struct word word = next_word(p);
     s->kind = STIMULUS_INPUT;
-    s->input = (uint8_t)number;
+    snprintf(what, sizeof what, "an input 01 to %02u", p->device->inputs);
+    if (!read_small(word, 1, p->device->inputs, &s->input))
+        return report_expected(p, word, 0, what);
     word = next_word(p);
     if (!word_is(word, "0") && !word_is(word, "1"))
         return report_expected(p, word, 0, "0 or 1");
@@ -103,11 +112,12 @@ static bool read_input(struct parser *p, struct stimulus *s)
 
 static bool read_set(struct parser *p, struct stimulus *s)
 {
+    char what[40];
     struct word word = next_word(p);
-    if (word.length != 1 || word.text[0] < '0' || word.text[0] > '0' + RKM04_MOTORS)
-        return report_expected(p, word, 0, "a motor 1 to 4, or 0 for all");
+    snprintf(what, sizeof what, "a motor 1 to %u, or 0 for all", p->device->axes);
+    if (!read_small(word, 0, p->device->axes, &s->motor) || (word.length > 1 && word.text[0] == '0'))
+        return report_expected(p, word, 0, what);
     s->kind = STIMULUS_SET;
-    s->motor = word.text[0];
     skip_blanks(p);
     size_t end = p->length;
     while (end > p->at && is_blank(p->line[end - 1]))
@@ -147,7 +157,7 @@ static bool read_message(struct parser *p, struct stimulus *s)
             int low = i + 1 < word.length ? hex_digit(word.text[i + 1]) : -1;
             if (high < 0 || low < 0)
                 return report_expected(p, word, high < 0 ? i : i + 1, "two hexadecimal digits a byte");
-            if (s->length == RKM04_MESSAGE_MAX)
+            if (s->length == p->device->request_max)
                 return report_expected(p, word, i, "no more bytes than a request may have");
             p->free_byte[s->length++] = (uint8_t)(high << 4 | low);
         }
@@ -201,9 +211,10 @@ static int compare_ticks(const void *left, const void *right)
     return (a->line > b->line) - (a->line < b->line);
 }
 
-int stimuli_read(struct stimuli *stimuli, const char *name, const char *text, size_t length, FILE *errors)
+int stimuli_read(struct stimuli *stimuli, const struct device_kind *device, const char *name, const char *text, size_t length,
+                 FILE *errors)
 {
-    struct parser p = {.stimuli = stimuli, .name = name, .errors = errors};
+    struct parser p = {.stimuli = stimuli, .device = device, .name = name, .errors = errors};
     *stimuli = (struct stimuli){0};
     stimuli->bytes = malloc(length + 1); /* what a line holds is never longer than the line */
     if (stimuli->bytes == NULL)

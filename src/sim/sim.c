@@ -44,12 +44,20 @@ static uint64_t us_of(const struct sim_unit *unit, uint64_t tick)
     return segment_since(segment, unit->number) + (per_us == 1 ? tick : tick / per_us);
 }
 
+/* The ns behind that us. */
+static uint64_t ns_of(const struct sim_unit *unit, uint64_t tick)
+{
+    const unsigned per_us = segment_kind(&unit->sim->segment)->ticks_per_us;
+    return per_us == 1 ? 0 : tick % per_us * 1000u / per_us;
+}
+
 /* What a unit does at `tick` of its own time. */
 static void add_unit_event(const struct sim_unit *unit, uint64_t tick, enum watch_phase phase, enum watch_kind kind,
                            unsigned motor, int32_t value)
 {
     struct watch_event event = {
         .tick = us_of(unit, tick),
+        .order = ns_of(unit, tick),
         .value = value,
         .kind = (uint8_t)kind,
         .unit = (uint8_t)unit->number,
@@ -65,14 +73,28 @@ static enum watch_phase phase_of(const struct sim_unit *unit)
     return unit->sim->segment.advancing ? WATCH_TURNS : WATCH_DELIVERED;
 }
 
+/* How long the pulses are that an axis makes now; 0: as all of the device. */
+static uint32_t pulse_ns(const struct sim_unit *unit, unsigned motor)
+{
+    const struct device_kind *kind = segment_kind(&unit->sim->segment);
+    if (!kind->pulse_ticks)
+        return 0;
+    return kind->pulse_ticks(unit->sim->segment.unit[unit->number - 1u].unit, motor) * 1000u / kind->ticks_per_us;
+}
+
 static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward)
 {
     struct sim_unit *unit = context;
+    struct watch_event event = {
+        .kind = WATCH_STEP, .unit = (uint8_t)unit->number, .motor = (uint8_t)motor, .pulse_ns = pulse_ns(unit, motor)};
     for (size_t i = 0; i < count; i++) {
         uint32_t way = forward ? (uint32_t)i : 0u - (uint32_t)i;
-        add_unit_event(unit, tick[i], WATCH_PULSES, WATCH_STEP, motor, (int32_t)((uint32_t)position + way));
+        event.tick = us_of(unit, tick[i]);
+        event.order = ns_of(unit, tick[i]);
+        event.value = (int32_t)((uint32_t)position + way);
+        watch_add(&unit->sim->watch, WATCH_PULSES, event);
         if (unit->plant)
-            plant_step(unit->plant, us_of(unit, tick[i]), motor, forward);
+            plant_step(unit->plant, event.tick, motor, forward);
     }
 }
 

@@ -80,6 +80,7 @@ struct sim {
     struct sim_snapshots *snapshots;   /* NULL: none yet */
     void (*free_snapshots)(struct sim_snapshots *snapshots); /* set by who sets `snapshots`; called by sim_end() */
     const struct command_method *commands[SIM_COMMAND_TABLES]; /* command_attach(); the first NULL ends them */
+    const char *outer_methods;         /* "wait, advance, ": of those who hand commands on, for hints; NULL: none */
     bool (*interrupted)(void *context); /* is a command that takes long to be given up? NULL: never but by its own limit */
     void *interrupted_context;
     char *plant_text;                  /* what plant.set or --plant gave, for records; NULL: no plant */

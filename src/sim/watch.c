@@ -6,7 +6,7 @@
 
 #include "wire/wire.h"
 
-#define ORDER_PHASE 60u /* bit of the phase in watch_event.order */
+#define ORDER_PHASE 52u /* bit of the phase in watch_event.order */
 #define ROOM_AT_FIRST 256u
 
 static const char *const names[WATCH_KINDS] = {
@@ -73,7 +73,7 @@ void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event e
         free_event(&event);
         return;
     }
-    event.order = (uint64_t)phase << ORDER_PHASE | watch->sequence++;
+    event.order = event.order << WATCH_ORDER_NS | (uint64_t)phase << ORDER_PHASE | watch->sequence++;
     watch->events[watch->count++] = event;
 }
 

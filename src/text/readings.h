@@ -17,6 +17,11 @@
 #define READINGS_TEXT_SIZE 320  /* bytes of a text that names all of them */
 #define READINGS_TRIED_MAX 4    /* values of one reading that readings_tried() knows */
 
+/* Of an option that takes readings, for --help. */
+#define READINGS_OPTION_HELP \
+    "How the units read what the manual leaves open, as in hold-exit=latch,speed-change=500ms; `list' lists all readings " \
+    "with their values (docs/READINGS.md)"
+
 /* A set of readings: bit `at`. */
 typedef uint32_t readings_set;
 

@@ -117,9 +117,22 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
     }
 }
 
+char *event_time(char *at, const struct sim *sim, const struct watch_event *event)
+{
+    unsigned ns = watch_ns(event);
+    at = put_number(at, event->tick);
+    if (sim_device(sim)->ticks_per_us == 1)
+        return at;
+    *at++ = '.';
+    *at++ = (char)('0' + ns / 100u);
+    *at++ = (char)('0' + ns / 10u % 10u);
+    *at++ = (char)('0' + ns % 10u);
+    return at;
+}
+
 char *event_json(char *at, const struct sim *sim, const struct watch_event *event)
 {
-    at = put_number(put_text(at, "\"t_us\":"), event->tick);
+    at = event_time(put_text(at, "\"t_us\":"), sim, event);
     at = put_text(put_text(at, ",\"kind\":\""), watch_kind_name((enum watch_kind)event->kind));
     *at++ = '"';
     if (event->unit != 0)

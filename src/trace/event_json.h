@@ -18,4 +18,9 @@ size_t event_json_room(const struct watch_event *event);
  * where they end. */
 char *event_json(char *at, const struct sim *sim, const struct watch_event *event);
 
+/* The time of an event in us, with three decimals if the device counts finer. Writes at most EVENT_TIME_MAX characters at `at`;
+ * returns their end. */
+#define EVENT_TIME_MAX 24u
+char *event_time(char *at, const struct sim *sim, const struct watch_event *event);
+
 #endif

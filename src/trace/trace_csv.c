@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Rows `t_us,source,event,value`. With several units on the line the source has the unit's name in front: `3.m1`. */
 #include "text/text.h"
+#include "event_json.h"
 #include "trace_writer.h"
 
 #define ROW_MAX 80u /* a tick, a unit's name, ",m1,position," and a number are 58 */
@@ -33,7 +34,7 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
 
 static void write_row(struct trace_file *file, const struct watch_event *event, const char *name)
 {
-    char *at = put_number(trace_room(file, ROW_MAX), event->tick);
+    char *at = event_time(trace_room(file, ROW_MAX), file->sim, event);
     *at++ = ',';
     if (sim_units(file->sim) > 1) {
         at = put_text(at, file->sim->unit[event->unit - 1u].name);

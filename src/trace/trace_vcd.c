@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Value change dump (IEEE 1364) for GTKWave and PulseView, 1 us. Every signal has a name of its own, as some readers drop the
- * scopes, and what people want to see in PulseView is a single bit, as it reads nothing else.
+/* Value change dump (IEEE 1364) for GTKWave and PulseView, in us, or in ns if the device counts finer. Every signal has a name
+ * of its own, as some readers drop the scopes, and what people want to see in PulseView is a single bit, as it reads nothing
+ * else.
  *
  * step is 1 for the 10 us of a pulse (R7); led is bright or dark, so a blinking one blinks; speed is what a counter of pulses
  * shows that is read at the first pulse after each millisecond, hence 0 until there is one. No date: two runs of the same
@@ -8,8 +9,8 @@
 #include "text/text.h"
 #include "trace_writer.h"
 
-#define BLINK (US_PER_SECOND / 2u) /* ticks bright, then dark (U6) */
-#define GATE 1000u                          /* ticks: shortest time over which a speed is taken */
+#define BLINK (US_PER_SECOND / 2u)          /* us bright, then dark (U6) */
+#define GATE 1000u                          /* us: shortest time over which a speed is taken */
 #define FALLS 256u                          /* pulses that may be under way: one a motor is less; a power of 2 */
 #define CHANGE_MAX 64u                      /* characters of one change: a time and a number are 40 */
 #define ID_BASE 94u                         /* characters of an identifier: ! to ~ */
@@ -36,17 +37,32 @@ struct vcd_unit {
     struct vcd_motor motor[DEVICE_AXES_MAX];
 };
 
+/* Times are in units of the file. */
 struct vcd {
     struct vcd_places place;
+    unsigned scale;  /* of these units make 1 us */
     uint64_t tick;   /* that has been written */
     uint64_t toggle; /* the next one of all LEDs; DEVICE_NEVER: none */
     unsigned first, falls;
     struct {
         uint64_t tick;
         uint8_t unit, motor;
-    } fall[FALLS]; /* in order of time: all pulses are equally long */
+    } fall[FALLS]; /* in order of time */
     struct vcd_unit unit[SEGMENT_UNITS];
 };
+
+/* The time of an event in units of the file. */
+static uint64_t time_of(const struct trace_file *file, const struct watch_event *event)
+{
+    const struct vcd *vcd = file->state;
+    return vcd->scale == 1 ? event->tick : event->tick * vcd->scale + watch_ns(event);
+}
+
+static uint64_t time_now(const struct trace_file *file)
+{
+    const struct vcd *vcd = file->state;
+    return sim_now(file->sim) * vcd->scale;
+}
 
 /* ---- Writing -------------------------------------------------------------------------------------------------------- */
 
@@ -165,7 +181,7 @@ static void toggle_leds(struct trace_file *file)
             if (state->toggle != tick)
                 continue;
             state->lit = !state->lit;
-            state->toggle += BLINK;
+            state->toggle += BLINK * vcd->scale;
             write_bit(file, signal_of(file, unit, motor, LED), state->lit);
         }
     }
@@ -205,29 +221,41 @@ static void start_speed_gate(struct vcd_motor *state, uint64_t tick)
     state->pulses = 0;
 }
 
+/* Behind those that are not later: pulses of one device may differ in length. */
+static void add_fall(struct vcd *vcd, const struct watch_event *event, uint64_t time)
+{
+    unsigned at = vcd->falls++;
+    for (; at > 0 && vcd->fall[(vcd->first + at - 1u) % FALLS].tick > time; at--)
+        vcd->fall[(vcd->first + at) % FALLS] = vcd->fall[(vcd->first + at - 1u) % FALLS];
+    at = (vcd->first + at) % FALLS;
+    vcd->fall[at].tick = time;
+    vcd->fall[at].unit = event->unit;
+    vcd->fall[at].motor = event->motor;
+}
+
 static void on_step(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
 {
     struct vcd *vcd = file->state;
+    const uint64_t time = time_of(file, event);
     if (vcd->falls == FALLS)
         end_first_pulse(file);
-    unsigned last = (vcd->first + vcd->falls++) % FALLS;
-    vcd->fall[last].tick = state->fall = event->tick + sim_device(file->sim)->pulse;
-    vcd->fall[last].unit = event->unit;
-    vcd->fall[last].motor = event->motor;
+    const uint64_t ns = event->pulse_ns > 0 ? event->pulse_ns : sim_device(file->sim)->pulse * UINT64_C(1000);
+    state->fall = time + ns * vcd->scale / 1000u;
+    add_fall(vcd, event, state->fall);
     if (!state->step)
         write_bit(file, signal_of(file, event->unit, event->motor, STEP), true);
     state->step = true;
     state->position = event->value;
     write_real(file, signal_of(file, event->unit, event->motor, POSITION), event->value, 0);
     if (!state->counting) {
-        start_speed_gate(state, event->tick);
+        start_speed_gate(state, time);
         return;
     }
     state->pulses++;
-    if (event->tick - state->gate < GATE)
+    if (time - state->gate < GATE * vcd->scale)
         return;
-    set_speed(file, event, state, state->pulses * UINT64_C(1000) * US_PER_SECOND / (event->tick - state->gate));
-    start_speed_gate(state, event->tick);
+    set_speed(file, event, state, state->pulses * UINT64_C(1000) * US_PER_SECOND * vcd->scale / (time - state->gate));
+    start_speed_gate(state, time);
 }
 
 static void on_motion(struct trace_file *file, const struct watch_event *event, struct vcd_motor *state)
@@ -236,7 +264,7 @@ static void on_motion(struct trace_file *file, const struct watch_event *event, 
     if (state->moving != moving)
         write_bit(file, signal_of(file, event->unit, event->motor, MOVING), moving);
     state->moving = moving;
-    start_speed_gate(state, event->tick);
+    start_speed_gate(state, time_of(file, event));
     state->counting = moving;
     set_speed(file, event, state, 0);
 }
@@ -247,7 +275,8 @@ static void on_led(struct trace_file *file, const struct watch_event *event, str
     if (state->lit != lit)
         write_bit(file, signal_of(file, event->unit, event->motor, LED), lit);
     state->lit = lit;
-    state->toggle = event->value == DEVICE_LED_BLINK ? event->tick + BLINK : DEVICE_NEVER;
+    const struct vcd *vcd = file->state;
+    state->toggle = event->value == DEVICE_LED_BLINK ? time_of(file, event) + BLINK * vcd->scale : DEVICE_NEVER;
     find_toggle(file);
 }
 
@@ -320,7 +349,7 @@ static void on_masks(struct trace_file *file, const struct watch_event *event)
 static void on_event(void *context, const struct watch_event *event)
 {
     struct trace_file *file = context;
-    advance_time(file, event->tick);
+    advance_time(file, time_of(file, event));
     if (event->motor != 0)
         on_motor_event(file, event);
     else if (event->kind == WATCH_POWER)
@@ -455,7 +484,8 @@ static void read_motor_state(struct trace_file *file, unsigned unit, unsigned mo
     if (now.led != DEVICE_LED_BLINK)
         return;
     uint64_t from = segment_since(&file->sim->segment, unit) + now.blink_from;
-    state->toggle = from + ((sim_now(file->sim) - from) / BLINK + 1u) * BLINK;
+    const struct vcd *vcd = file->state;
+    state->toggle = (from + ((sim_now(file->sim) - from) / BLINK + 1u) * BLINK) * vcd->scale;
 }
 
 static void read_unit_state(struct trace_file *file, unsigned unit)
@@ -485,17 +515,22 @@ static void find_places(struct vcd_places *place, const struct device_kind *kind
 
 static void begin(struct trace_file *file)
 {
-    static const char head[] = "$version rkm04 " RKM04_VERSION " $end\n$timescale 1 us $end\n";
+    static const char heads[2][64] = {
+        "$version rkm04 " RKM04_VERSION " $end\n$timescale 1 us $end\n",
+        "$version rkm04 " RKM04_VERSION " $end\n$timescale 1 ns $end\n",
+    };
     static const char end_of_head[] = "$enddefinitions $end\n#";
     struct vcd *vcd = file->state;
     find_places(&vcd->place, sim_device(file->sim));
-    trace_put(file, head, sizeof head - 1u);
+    const char *head = heads[sim_device(file->sim)->ticks_per_us > 1];
+    vcd->scale = sim_device(file->sim)->ticks_per_us > 1 ? 1000u : 1u;
+    trace_put(file, head, strlen(head));
     open_scope(file, sim_device(file->sim)->name);
     for (unsigned unit = 1; unit <= sim_units(file->sim); unit++)
         declare_unit(file, unit);
     close_scope(file);
     trace_put(file, end_of_head, sizeof end_of_head - 1u);
-    vcd->tick = sim_now(file->sim);
+    vcd->tick = time_now(file);
     trace_wrote(file, put_text(put_number(trace_room(file, CHANGE_MAX), vcd->tick), "\n$dumpvars\n"));
     for (unsigned unit = 1; unit <= sim_units(file->sim); unit++) {
         read_unit_state(file, unit);
@@ -507,7 +542,7 @@ static void begin(struct trace_file *file)
 
 static void end(struct trace_file *file)
 {
-    advance_time(file, sim_now(file->sim));
+    advance_time(file, time_now(file));
 }
 
 const struct trace_writer trace_vcd = {

@@ -19,7 +19,8 @@
 #include <stdint.h>
 
 #define FAKE_TICKS_PER_US 4u
-#define FAKE_PULSE 2u          /* us */
+#define FAKE_PULSE 2u          /* us; above FAKE_FAST 1 */
+#define FAKE_FAST 5000u        /* steps/s */
 #define FAKE_ADDRESSES 100u
 #define FAKE_TEXT_MAX 16u      /* bytes of a request or an answer, without address and CR */
 #define FAKE_INPUTS 20u

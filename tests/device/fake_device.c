@@ -8,6 +8,7 @@
 #include "fake.h"
 #include "text/text.h"
 
+#define FAKE_REFUSED 10 /* flags of a text that the unit refuses begin here */
 #define FLASH (FAKE_FLASH_BLOCKS - 1u) /* the block that is used */
 
 /* A unit: what struct device_unit is for this kind. */
@@ -167,6 +168,13 @@ static uint64_t next_report(const struct device_unit *unit)
     if (device->port->steps)
         return next_event(unit);
     return tick == FAKE_NEVER ? DEVICE_NEVER : tick / FAKE_TICKS_PER_US;
+}
+
+/* Fast motions have shorter pulses. */
+static unsigned pulse_ticks(const struct device_unit *unit, unsigned number)
+{
+    (void)number;
+    return core_of(unit)->rate > FAKE_FAST ? FAKE_TICKS_PER_US : FAKE_PULSE * FAKE_TICKS_PER_US;
 }
 
 static size_t receive(struct device_unit *unit, const uint8_t *bytes, size_t length)
@@ -340,23 +348,35 @@ static void axis(const struct device_unit *unit, unsigned number, struct device_
     };
 }
 
+/* The requests of a text, a line each, up to the first that is refused. */
 static int set_text(struct device_unit *unit, unsigned number, const char *text, size_t length, char error[DEVICE_ERROR_SIZE])
 {
-    const char *answer = obey(unit, text, length);
     (void)number;
-    if (answer && answer[0] != 'E')
-        return 0;
-    snprintf(error, DEVICE_ERROR_SIZE, "the unit answers %s", answer ? answer : "nothing: the text is too long");
-    return answer ? answer[1] - '0' : 1;
+    for (size_t at = 0, end; at < length; at = end + 1) {
+        for (end = at; end < length && text[end] != '\n';)
+            end++;
+        const char *answer = end > at ? obey(unit, text + at, end - at) : "OK";
+        if (answer && answer[0] != 'E')
+            continue;
+        snprintf(error, DEVICE_ERROR_SIZE, "the unit answers %s", answer ? answer : "nothing: the text is too long");
+        return FAKE_REFUSED + (answer ? answer[1] - '0' : 0);
+    }
+    return 0;
 }
 
 static bool check_text(const struct device_config *config, const char *name, const char *text, size_t length, FILE *out)
 {
+    bool is_wrong = false;
+    size_t line = 1, column = 0;
     (void)config;
-    (void)text;
-    if (length > FAKE_TEXT_MAX && out)
-        fprintf(out, "%s:1:%u: error: expected a request of at most %u bytes\n", name, FAKE_TEXT_MAX + 1, FAKE_TEXT_MAX);
-    return length > FAKE_TEXT_MAX;
+    for (size_t at = 0; at < length; at++) {
+        column = text[at] == '\n' ? 0 : column + 1;
+        line += text[at] == '\n';
+        if (column == FAKE_TEXT_MAX + 1 && out)
+            fprintf(out, "%s:%zu:%zu: error: expected a request of at most %u bytes\n", name, line, column, FAKE_TEXT_MAX);
+        is_wrong = is_wrong || column > FAKE_TEXT_MAX;
+    }
+    return is_wrong;
 }
 
 static bool is_stuck(const struct device_unit *unit, unsigned number, char text[DEVICE_ERROR_SIZE])
@@ -414,18 +434,9 @@ static bool read_rate(struct device_config *config, const char *value, char erro
 static bool read_start(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)
 {
     struct fake_settings own = settings_of(config);
-    size_t line = 1;
-    (void)length;
-    for (const char *at = text; *at; at += strcspn(at, "\n"), at += *at == '\n', line++) {
-        if (strcspn(at, "\n") <= FAKE_TEXT_MAX)
-            continue;
-        fprintf(errors, "%s:%zu:%u: error: expected a request of at most %u bytes\n", name, line, FAKE_TEXT_MAX + 1,
-                FAKE_TEXT_MAX);
-        return false;
-    }
     own.start = text;
     put_own(config, &own);
-    return true;
+    return !check_text(config, name, text, length, errors);
 }
 
 static const struct device_option options[] = {
@@ -467,6 +478,31 @@ static bool read_setting(struct device_config *config, const char *name, const j
     return true;
 }
 
+/* ---- Methods of its own --------------------------------------------------------------------------------------------- */
+
+/* fake.rate: another rate from the next step on, while it moves, too. */
+static json_t *call_rate(struct device_unit *unit, const json_t *params, struct device_refusal *refusal)
+{
+    struct fake_unit *core = &device_of(unit)->core;
+    const json_t *rate = json_object_get(params, "rate");
+    if (!json_is_integer(rate) || json_integer_value(rate) < 1 || json_integer_value(rate) > FAKE_RATE_MAX) {
+        snprintf(refusal->text, DEVICE_ERROR_SIZE, "rate: expected steps/s from 1 to %u", FAKE_RATE_MAX);
+        return NULL;
+    }
+    if (core->limit) {
+        refusal->is_state = true;
+        snprintf(refusal->text, DEVICE_ERROR_SIZE, "the limit switch has ended the motion: expected STOP first");
+        return NULL;
+    }
+    core->rate = (uint16_t)json_integer_value(rate);
+    return json_pack("{s:i}", "rate", (int)core->rate);
+}
+
+static const struct device_method methods[] = {
+    {"fake.rate", call_rate, true},
+    {NULL, NULL, false},
+};
+
 static const char *unlike(const struct device_config *a, const struct device_config *b)
 {
     const struct fake_settings here = settings_of(a), there = settings_of(b);
@@ -484,6 +520,7 @@ const struct device_kind fake_device = {
     .ticks_per_us = FAKE_TICKS_PER_US,
     .slot = 1,
     .pulse = FAKE_PULSE,
+    .is_program_whole = true,
     .flash_blocks = FAKE_FLASH_BLOCKS,
     .flash_block_size = FAKE_FLASH_SIZE,
     .request_max = FAKE_TEXT_MAX,
@@ -494,6 +531,7 @@ const struct device_kind fake_device = {
     .advance = advance,
     .next_event = next_event,
     .next_report = next_report,
+    .pulse_ticks = pulse_ticks,
     .receive = receive,
     .send = send,
     .has_answer = has_answer,
@@ -518,6 +556,7 @@ const struct device_kind fake_device = {
     .state = state,
     .describe = describe,
     .options = options,
+    .methods = methods,
     .settings = settings,
     .put_settings = put_settings,
     .read_setting = read_setting,

@@ -114,7 +114,7 @@ START_TEST(texts_and_messages_reach_the_unit_without_the_bus)
     char error[DEVICE_ERROR_SIZE];
     uint8_t answer[FAKE_TEXT_MAX];
     ck_assert_int_eq(fake_device.set_text(unit, 1, "MOVE 4", 6, error), 0);
-    ck_assert_int_eq(fake_device.set_text(unit, 1, "MOVE x", 6, error), 2);
+    ck_assert_int_eq(fake_device.set_text(unit, 1, "MOVE x", 6, error), 12);
     ck_assert_str_eq(error, "the unit answers E2");
     sim_advance(&rig.sim, SECOND);
     ck_assert_uint_eq(fake_device.exchange(unit, (const uint8_t *)"POS?", 4, answer, sizeof answer), 1);
@@ -244,6 +244,21 @@ START_TEST(inputs_are_set_by_hand)
 }
 END_TEST
 
+START_TEST(device_has_methods_of_its_own)
+{
+    fake_rig_do(&rig, "fake.rate", "{\"rate\": 1000, \"unit\": 1}");
+    fake_rig_expect_state(&rig, "rate", "1000");
+    fake_rig_expect_refusal(&rig, "fake.rate", "{\"rate\": 0}", "rate: expected steps/s from 1 to 10000");
+    fake_rig_expect_refusal(&rig, "fake.rate", "{\"rate\": 5, \"unit\": 7}", "unit: there is no such unit");
+    fake_rig_do(&rig, "di.set", "{\"di\": {\"2\": 1}}");
+    fake_rig_expect_refusal(&rig, "fake.rote", "{}", "did you mean `fake.rate'?");
+    fake_rig_expect_refusal(&rig, "stat", "{}", "did you mean `state'?");
+    fake_rig_expect_refusal(&rig, "snapshoot", "{}", "did you mean `snapshot'?");
+    fake_rig_do(&rig, "power", "{\"on\": false}");
+    fake_rig_expect_refusal(&rig, "fake.rate", "{\"rate\": 5}", "unit 1 has no power");
+}
+END_TEST
+
 /* A plant is taken, or refused with a message that has `refusal` in it. */
 static void set_plant(const char *text, const char *refusal)
 {
@@ -348,6 +363,7 @@ static Suite *fake_suite(void)
     tcase_add_test(one, power_fails_within_a_write);
     tcase_add_test(one, fault_holds_an_input);
     tcase_add_test(one, inputs_are_set_by_hand);
+    tcase_add_test(one, device_has_methods_of_its_own);
     tcase_add_test(one, switch_of_a_plant_ends_the_motion);
     tcase_add_test(one, plant_has_the_axes_and_inputs_of_the_device);
     tcase_add_test(one, conditions_know_the_names_and_numbers_of_the_device);

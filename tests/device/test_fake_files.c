@@ -51,22 +51,22 @@ START_TEST(csv_has_the_names_of_the_device)
 {
     expect_text(trace(TRACE_CSV),
                 "t_us,source,event,value\n"
-                "0,m1,dir,1\n"
-                "0,m1,motion,begin\n"
-                "0,m1,led,on\n"
-                "10000,m1,step,1\n"
-                "20000,m1,step,2\n"
-                "20000,m1,motion,end\n"
-                "20000,m1,led,off\n"
-                "30000,unit,di,2\n"
-                "30000,unit,do,1\n");
+                "0.000,m1,dir,1\n"
+                "0.000,m1,motion,begin\n"
+                "0.000,m1,led,on\n"
+                "10000.000,m1,step,1\n"
+                "20000.000,m1,step,2\n"
+                "20000.000,m1,motion,end\n"
+                "20000.000,m1,led,off\n"
+                "30000.000,unit,di,2\n"
+                "30000.000,unit,do,1\n");
 }
 END_TEST
 
 START_TEST(vcd_has_the_signals_of_the_device)
 {
     char *text = trace(TRACE_VCD);
-    expect_part(text, "$scope module fake $end\n"
+    expect_part(text, "$timescale 1 ns $end\n$scope module fake $end\n"
                 "$var wire 1 ! power $end\n"
                 "$var wire 1 \" di01 $end\n"
                 "$var wire 1 # di02 $end\n");
@@ -82,7 +82,8 @@ START_TEST(vcd_has_the_signals_of_the_device)
                 "$var real 64 = m1_position $end\n"
                 "$upscope $end\n"
                 "$upscope $end\n");
-    expect_part(text, "#10000\n17\nr1 =\nr100 <\n#10002\n07\n#20000\n17\nr2 =\n0:\nr0 <\n09\n#20002\n07\n#30000\n1#\n16\n");
+    expect_part(text, "#10000000\n17\nr1 =\nr100 <\n#10002000\n07\n#20000000\n17\nr2 =\n0:\nr0 <\n09\n#20002000\n07\n"
+                "#30000000\n1#\n16\n");
     free(text);
 }
 END_TEST
@@ -93,9 +94,36 @@ START_TEST(jsonl_has_the_names_of_the_device)
     expect_part(text, "\"motors\":[{\"motor\":1,\"position\":0,\"direction\":1,\"motion\":0,\"command\":0,"
                       "\"led\":\"off\",\"fault\":\"none\"}]");
     expect_part(text, "\"bytes\":\"814D4F564520320D\",\"message\":\"4D4F56452032\",\"dropped\":null");
-    expect_part(text, "{\"t_us\":20000,\"kind\":\"step\",\"unit\":\"1\",\"motor\":1,\"value\":2}\n");
-    expect_part(text, "{\"t_us\":30000,\"kind\":\"outputs\",\"unit\":\"1\",\"value\":1}\n");
+    expect_part(text, "{\"t_us\":20000.000,\"kind\":\"step\",\"unit\":\"1\",\"motor\":1,\"value\":2}\n");
+    expect_part(text, "{\"t_us\":30000.000,\"kind\":\"outputs\",\"unit\":\"1\",\"value\":1}\n");
     free(text);
+}
+END_TEST
+
+/* A step every 111.25 us: its ticks last 0.25 us. Pulses are as long as the device says, above 5000 steps/s 1 us. */
+START_TEST(traces_are_as_fine_as_the_ticks_of_the_device)
+{
+    static const enum trace_format formats[] = {TRACE_CSV, TRACE_VCD, TRACE_JSONL};
+    static const char *const parts[] = {
+        "1.000,m1,motion,begin\n1.000,m1,led,on\n112.250,m1,step,1\n223.500,m1,step,2\n223.500,m1,motion,end\n",
+        "#112250\n17\nr1 =\n#113250\n07\n#223500\n17\nr2 =\n0:\n09\n#224500\n07\n",
+        "{\"t_us\":112.250,\"kind\":\"step\",\"unit\":\"1\",\"motor\":1,\"value\":1}\n",
+    };
+    for (size_t i = 0; i < 3; i++) {
+        char *text;
+        size_t length;
+        FILE *out = open_memstream(&text, &length);
+        fake_rig_begin(&rig, "1", false);
+        fake_rig_expect_answer(&rig, 1, "RATE 8988", "OK"); /* 445 ticks */
+        struct trace_file *file = trace_file_begin_on(&rig.sim, out, formats[i]);
+        fake_rig_expect_answer(&rig, 1, "MOVE 2", "OK");
+        sim_advance(&rig.sim, 300);
+        ck_assert_int_eq(trace_file_end(file), 0);
+        fclose(out);
+        fake_rig_end(&rig);
+        expect_part(text, parts[i]);
+        free(text);
+    }
 }
 END_TEST
 
@@ -116,6 +144,7 @@ static char *record(size_t *length)
     fake_rig_do(&rig, "fault.inject", "{\"kind\": \"flip\", \"mask\": 1, \"count\": 1, \"skip\": 3}");
     fake_rig_ask(&rig, 100, "SAVE");
     sim_advance(&rig.sim, 90000);
+    fake_rig_do(&rig, "fake.rate", "{\"unit\": \"5\", \"rate\": 250}");
     fake_rig_do(&rig, "di.set", "{\"unit\": \"5\", \"mask\": 1}");
     fake_rig_do(&rig, "snapshot", "{\"name\": \"a\"}");
     fake_rig_do(&rig, "reset", "{\"unit\": \"100\"}");
@@ -251,6 +280,7 @@ static Suite *fake_files_suite(void)
     tcase_add_test(files, csv_has_the_names_of_the_device);
     tcase_add_test(files, vcd_has_the_signals_of_the_device);
     tcase_add_test(files, jsonl_has_the_names_of_the_device);
+    tcase_add_test(files, traces_are_as_fine_as_the_ticks_of_the_device);
     tcase_add_test(files, recording_names_the_device_and_replays);
     tcase_add_test(files, changed_recording_differs);
     tcase_add_test(files, recording_of_an_unknown_device_is_refused);

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *said = NULL;
     size_t length, lines = 0;
     FILE *errors = open_memstream(&said, &length);
-    int count = stimuli_read(&stimuli, "file", (const char *)data, size, errors);
+    int count = stimuli_read(&stimuli, &rkm04_device, "file", (const char *)data, size, errors);
     fclose(errors);
     for (size_t i = 0; i < length; i++)
         lines += said[i] == '\n';

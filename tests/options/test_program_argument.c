@@ -13,18 +13,18 @@ START_TEST(an_argument_names_its_motor_or_means_motor_1)
 {
     static const struct {
         const char *argument;
-        char motor;
+        unsigned motor;
         const char *path;
     } good[] = {
-        {"a.rks", '1', "a.rks"}, {"1=a.rks", '1', "a.rks"}, {"0=a.rks", '0', "a.rks"}, {"4=a=b", '4', "a=b"},
-        {"2=-", '2', "-"},       {"-", '1', "-"},           {"x=a", '1', "x=a"},       {"./7=a", '1', "./7=a"},
-        {"12", '1', "12"},       {"=a", '1', "=a"},         {"3=", '3', ""},
+        {"a.rks", 1, "a.rks"}, {"1=a.rks", 1, "a.rks"}, {"0=a.rks", 0, "a.rks"}, {"4=a=b", 4, "a=b"},
+        {"2=-", 2, "-"},       {"-", 1, "-"},           {"x=a", 1, "x=a"},       {"./7=a", 1, "./7=a"},
+        {"12", 1, "12"},       {"=a", 1, "=a"},         {"3=", 3, ""},
     };
     for (size_t i = 0; i < COUNT(good); i++) {
-        char motor = '?';
+        unsigned motor = 99;
         const char *path = NULL;
-        ck_assert_msg(program_argument_read(good[i].argument, &motor, &path), "'%s' refused", good[i].argument);
-        ck_assert_int_eq(motor, good[i].motor);
+        ck_assert_msg(program_argument_read(good[i].argument, 4, &motor, &path), "'%s' refused", good[i].argument);
+        ck_assert_uint_eq(motor, good[i].motor);
         ck_assert_str_eq(path, good[i].path);
     }
 }
@@ -34,9 +34,9 @@ START_TEST(a_number_that_is_no_motor_is_refused)
 {
     static const char *const bad[] = {"5=a", "9=a", "10=a", "01=a", "00=a"};
     for (size_t i = 0; i < COUNT(bad); i++) {
-        char motor;
+        unsigned motor;
         const char *path;
-        ck_assert_msg(!program_argument_read(bad[i], &motor, &path), "'%s' taken", bad[i]);
+        ck_assert_msg(!program_argument_read(bad[i], 4, &motor, &path), "'%s' taken", bad[i]);
     }
 }
 END_TEST

@@ -85,7 +85,7 @@ static int read_bytes(const char *text, size_t length)
     FILE *errors = open_memstream(&complaints, &size);
     ck_assert(copy != NULL && errors != NULL);
     memcpy(copy, text, length);
-    int count = stimuli_read(&stimuli, "in.txt", copy, length, errors);
+    int count = stimuli_read(&stimuli, &rkm04_device, "in.txt", copy, length, errors);
     fclose(errors);
     free(copy);
     return count;
@@ -130,11 +130,11 @@ START_TEST(a_text_goes_to_the_end_of_its_line)
     ck_assert_int_eq(read_text("1s set 0   F1000 R { # no comment of the file }  \r\n  2s set 4 K\n"), 0);
     ck_assert_uint_eq(stimuli.count, 2);
     ck_assert_int_eq(stimuli.list[0].kind, STIMULUS_SET);
-    ck_assert_int_eq(stimuli.list[0].motor, '0');
+    ck_assert_int_eq(stimuli.list[0].motor, 0);
     ck_data(&stimuli.list[0], "F1000 R { # no comment of the file }", 36);
     ck_assert_uint_eq(stimuli.list[0].line, 1);
     ck_assert_uint_eq(stimuli.list[0].column, 12);
-    ck_assert_int_eq(stimuli.list[1].motor, '4');
+    ck_assert_int_eq(stimuli.list[1].motor, 4);
     ck_data(&stimuli.list[1], "K", 1);
     ck_assert_uint_eq(stimuli.list[1].line, 2);
     ck_assert_uint_eq(stimuli.list[1].column, 12);

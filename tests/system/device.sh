@@ -92,6 +92,32 @@ test_options_of_a_device() {
     exits 0 "$RKM04" replay "$folder/options.record"
 }
 
+test_exec_runs_texts_of_the_device() {
+    printf 'RATE 50\nMOVE 7\n' >"$folder/move.txt"
+    exits 0 "$RKM04" exec --device fake --json "$folder/move.txt"
+    holds "$said" '"t_us":140000,"motors":[{"motor":1,"position":7,"state":"idle"' "the final state"
+    echo "MOVE 2" >"$folder/two.txt"
+    echo "MOVE x" >"$folder/wrong.txt"
+    echo "MOVE 1000000000000" >"$folder/long.txt"
+    exits 0 "$RKM04" exec --device fake --device-option rate=20 --json "$folder/two.txt"
+    holds "$said" '"t_us":100000' "two steps at 20 steps/s"
+    printf '1ms di 20 1\n2ms message 494e3f\n3ms set 1 MOVE -2\n' >"$folder/stimulus.txt"
+    exits 0 "$RKM04" exec --device fake --json --stimulus "$folder/stimulus.txt"
+    holds "$said" '"message":"494E3F","answer":"353234323838"' "the answer"
+    holds "$said" '"position":-2' "the position"
+    exits 1 "$RKM04" exec --device fake "$folder/wrong.txt"
+    holds "$complained" "wrong.txt: error: the unit answers E2" "stderr"
+    exits 1 "$RKM04" exec --device fake "$folder/long.txt"
+    holds "$complained" "long.txt:1:17: error: expected a request of at most 16 bytes" "stderr"
+    exits 2 "$RKM04" exec --device fake 2="$folder/move.txt"
+    holds "$complained" "expected a motor 1 to 1, or 0 for all, before '='" "stderr"
+    exits 2 "$RKM04" exec --device fuke "$folder/move.txt"
+    holds "$complained" "did you mean \`fake'?" "stderr"
+    exits 2 "$RKM04" exec --device fake --readings planning=20ms "$folder/move.txt"
+    holds "$complained" "--readings: the device fake has no such option" "stderr"
+    exits 2 "$RKM04" exec --framing plain "$folder/move.txt"
+}
+
 test_ready_names_the_device_also_if_it_is_the_rkm04() {
     serve bus
     holds "$(<"$folder/bus.out")" '"device":"rkm04"' READY
@@ -138,7 +164,7 @@ test_a_session_with_plant_faults_and_traces_replays() {
     exits 0 "$RKMCTL" shutdown
     status_of "$started"
     same 0 "$status" "exit status"
-    holds "$(<"$folder/a.csv")" "$(printf '\n40000,5.m1,step,4\n40001,5.unit,di,1\n')" "the trace"
+    holds "$(<"$folder/a.csv")" "$(printf '\n40000.000,5.m1,step,4\n40001.000,5.unit,di,1\n')" "the trace"
     exits 0 "$RKM04" replay --trace "$folder/b.csv" "$folder/a.record"
     cmp -s "$folder/a.csv" "$folder/b.csv" || fail "the trace of the replay is another"
     exits 2 "$PRODUCT" replay "$folder/a.record"
