@@ -106,7 +106,7 @@ static void choose(uint8_t mode)
 /* As serve.c does it. */
 static void start(void)
 {
-    static const struct bus_calls bus_calls = {.failed = on_failed, .presence = on_presence, .ready = on_ready};
+    static const struct bus_calls bus_calls = {.failed = on_failed, .presence = on_presence};
     static const struct control_calls control_calls = {.shutdown = on_shutdown, .presence = on_presence, .ready = on_ready};
     FUZZ_CHECK(uv_loop_init(&loop) == 0, "no loop");
     notices.fd = -1;
