@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Rows `t_us,source,event,value`. With several units on the line the source has the unit's name in front: `3.m1`. */
-#include "text/text.h"
 #include "event_json.h"
+#include "text/text.h"
 #include "trace_writer.h"
 
 #define ROW_MAX 80u /* a tick, a unit's name, ",m1,position," and a number are 58 */
