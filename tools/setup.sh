@@ -4,7 +4,8 @@
 #   setup_packages run|test|quick    install the Debian packages that are missing, or say which ones are needed elsewhere
 
 # Needed to build and run the emulator and its client.
-run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libseccomp-dev libyaml-dev libncurses-dev)
+run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libseccomp-dev libyaml-dev libncurses-dev
+    libedit-dev)
 # Needed on top of that to make the Debian package.
 package_packages=(dpkg-dev file)
 # Needed on top of that by the tests.

@@ -6,6 +6,7 @@
  *     client_control*, client_rpc                   methods of a control socket
  *     client_watch, client_panel                    the front panel in a terminal
  *     client_find                                   the emulators that are running
+ *     client_shell, client_words                    commands line by line, typed or from a file
  *     client_job, client_usage, client_help         one command line, what is wrong with it, help for a command
  *
  * Knows text formats and the public headers of the core, and nothing of the emulator. */
@@ -16,6 +17,7 @@
 #include "client_help.h"
 #include "client_link.h"
 #include "client_request.h"
+#include "client_shell.h"
 #include "client_usage.h"
 
 #endif

@@ -58,6 +58,11 @@ static const struct help {
     {"call", "call METHOD [JSON|NAME=VALUE...]", "Any other method of the control socket.", EMULATOR_OPTIONS,
      "  rkmctl call units\n"},
     {"shutdown", "shutdown", "End the emulator.", EMULATOR_OPTIONS, "  rkmctl shutdown\n"},
+    {"shell", "shell",
+     "Type commands and program text; Tab completes, the history is kept. A line that begins with a small letter is a\n"
+     "command, any other is program text for the present motor; `node N' and `motor M' choose. With -f FILE the commands of\n"
+     "a file.",
+     "  -f FILE and those of every command", "  rkmctl -p /dev/ttyUSB0 shell\n  rkmctl shell -f check.txt\n"},
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])

@@ -25,6 +25,7 @@ struct options {
     struct client_job job;
     const char *node;      /* as it was given; NULL: not given */
     bool timed, json;
+    const char *file;      /* of the shell's commands; NULL: none */
     const char *command;   /* NULL: none */
     const char **words;    /* behind it */
     size_t count;
@@ -61,6 +62,7 @@ static const struct argp_option option_table[] = {
     {"timeout", KEY_TIMEOUT, "MS", 0,
      "How long to wait for an answer, 1 to 3600000 ms (default 1000; emulator: 10000, and for wait, advance and call without "
      "end)", 0},
+    {"file", 'f', "FILE", 0, "shell: do the commands of FILE, - is standard input, and end at the first that fails", 0},
     {"json", 'j', NULL, 0, "Print the answer as JSON", 0},
     {0},
 };
@@ -69,7 +71,7 @@ static const char arguments[] =
     "version|store|position|command|table|progress\nset TEXT\nsend FILE\nraw HEX\n"
     "state|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
     "snapshot|restore NAME|file=PATH\npower on|off\nswitch NODE [reset]\nclock [CLOCK]\nfault [inject KIND|clear] [...]\n"
-    "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]";
+    "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\nshell";
 
 static const char doc[] =
     "Send one request to an RKM04, real or virtual, and show the answer; or inspect and control an emulator, `rkm04 serve': its "
@@ -104,6 +106,9 @@ static const char doc[] =
     "  trace        start FILE (.vcd, .csv, .jsonl, .log, .pcapng), stop [NUMBER]\n"
     "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"
     "  shutdown     end the emulator\n"
+    "\n"
+    "Both:\n"
+    "  shell        type commands and program text, or take them from -f FILE\n"
     "\n"
     "Conditions: m1.position>=5000, m1.true<0, m1.steps>9, m1.state=idle, m1.idle, m1.led=blink, m1.fault!=none, idle, "
     "powered=1, do3=1, di08=0, var80=1, message=4, master.message, unit.message, dropped, t>=2.5s; u3. in front: of unit 3. "
@@ -189,9 +194,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         options->timed = true;
         options->request.timeout_ms = read_number("--timeout", text, 1, TIMEOUT_MS_MAX);
         return 0;
-    case 'j':
-        options->json = true;
-        return 0;
+    case 'f': options->file = text; return 0;
+    case 'j': options->json = true; return 0;
     case ARGP_KEY_ARG:
         if (options->command == NULL)
             options->command = text;
@@ -237,34 +241,58 @@ static enum exit_status do_job(struct options *options)
     return client_control(job, options->command);
 }
 
+static int run_line(int argc, char **argv);
+
+static enum exit_status do_shell(const struct options *options)
+{
+    const char *node = options->node != NULL ? options->node : getenv("RKM04_NODE");
+    const struct client_request *request = &options->request;
+    const struct client_job *job = &options->job;
+    if (options->count > 0)
+        return client_usage("shell takes no argument, found '%s'; a file of commands: -f FILE", options->words[0]);
+    const struct client_shell shell = {
+        .file = options->file, .port = request->port, .framing = request->framing->name, .message_max = request->message_max,
+        .timeout_ms = options->timed ? request->timeout_ms : 0, .control = job->path, .unit = job->unit, .line = job->line,
+        .json = options->json, .motor = request->motor, .has_node = node != NULL,
+        .node = node != NULL ? read_number("--node", node, 0, RKM04_NODE_MAX) : 1, .run = run_line};
+    return client_shell(&shell);
+}
+
 static enum exit_status run(struct options *options)
 {
     if (options->command == NULL)
-        return client_usage("no command: expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator");
+        return client_usage("no command: expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; "
+                            "or shell");
+    if (strcmp(options->command, "shell") == 0)
+        return do_shell(options);
+    if (options->file != NULL)
+        return client_usage("-f is for shell");
     if (client_request_has(options->command))
         return do_request(options);
     if (client_control_has(options->command))
         return do_job(options);
-    return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator, found '%s'%s",
-                        options->command, nearest_hint(options->command, CLIENT_REQUEST_NAMES ", " CLIENT_CONTROL_NAMES));
+    return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; or shell, found "
+                        "'%s'%s",
+                        options->command,
+                        nearest_hint(options->command, CLIENT_REQUEST_NAMES ", " CLIENT_CONTROL_NAMES ", shell"));
 }
 
-int main(int argc, char **argv)
+/* Do a command line, from its options to the exit status. */
+static int run_line(int argc, char **argv)
 {
     static const struct argp argp = {.options = option_table, .parser = parse_option, .args_doc = arguments, .doc = doc};
-    static struct options options = {
+    struct options options = {
         .request = {.framing = &rkm04_hdlc, .node = 1, .motor = 1, .timeout_ms = TIMEOUT_MS, .message_max = CLIENT_MESSAGE_MAX},
         .job = {.line = -1},
     };
-    process_begin();
     options.words = calloc((size_t)argc + 1, sizeof *options.words);
     if (options.words == NULL)
         err(STATUS_FAILURE, "memory");
-    argp_err_exit_status = STATUS_USAGE;
-    if (client_help_wanted(argc, argv) && arguments_printed() == STATUS_SUCCESS)
+    if (client_help_wanted(argc, argv) && arguments_printed() == STATUS_SUCCESS) {
+        free(options.words);
         return STATUS_SUCCESS;
+    }
     arguments_parse(&argp, argc, argv, &options);
-    signal(SIGPIPE, SIG_IGN); /* writing says so, too */
     enum exit_status status = run(&options);
     free(options.words);
     if (fflush(stdout) != 0 || ferror(stdout)) {
@@ -272,4 +300,12 @@ int main(int argc, char **argv)
         return STATUS_FAILURE;
     }
     return (int)status;
+}
+
+int main(int argc, char **argv)
+{
+    process_begin();
+    argp_err_exit_status = STATUS_USAGE;
+    signal(SIGPIPE, SIG_IGN); /* writing says so, too */
+    return run_line(argc, argv);
 }

@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: MIT */
+/* Each command runs in a process of its own, so that Ctrl-C ends the command and not the shell, and what one does to the
+ * terminal or the port does not stay. Editing, history and completion are libedit's: it is small, in every distribution, and its
+ * licence suits any user. */
+#include "client_shell.h"
+
+#include <editline/readline.h>
+#include <err.h>
+#include <errno.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <rkm04/limits.h>
+
+#include "client_help.h"
+#include "client_request.h"
+#include "client_usage.h"
+#include "client_words.h"
+#include "text/text.h"
+
+#define HISTORY_LINES 1000
+#define OPTIONS_MAX 12
+#define PROMPT_SIZE 56
+
+struct state {
+    const struct client_shell *shell;
+    unsigned node, motor;
+    bool has_node;
+    bool is_person;
+    bool is_over;
+    const char *name; /* of the file, for messages */
+    unsigned line;
+};
+
+static const char *const own[] = {"node", "motor", "help", "quit", "exit", NULL};
+
+static const char help[] =
+    "A line that begins with a small letter is a command, any other is program text for the present motor.\n"
+    "  node N        talk to the unit with address N, 0: to all\n"
+    "  motor M       of motor M, 0: of all\n"
+    "  help [NAME]   this text, or help for a command\n"
+    "  quit          the same as Ctrl-D\n"
+    "  # ...         a comment\n"
+    "and every command of rkmctl, with its options:\n ";
+
+/* ---- Commands --------------------------------------------------------------------------------------------------------- */
+
+static enum exit_status say_usage(const struct state *state, const char *text, const char *found)
+{
+    if (state->is_person)
+        fprintf(stderr, "%s, found '%s'\n", text, found);
+    else
+        fprintf(stderr, "%s:%u: error: %s, found '%s'\n", state->name, state->line, text, found);
+    return STATUS_USAGE;
+}
+
+/* The arguments of a command line. */
+struct line {
+    int argc;
+    char *argv[OPTIONS_MAX + CLIENT_WORDS_MAX + 1];
+    char text[OPTIONS_MAX][PATH_MAX];
+};
+
+static void add_option(struct line *line, const char *name, const char *value)
+{
+    char *text = line->text[line->argc];
+    if (value == NULL)
+        return;
+    snprintf(text, PATH_MAX, "--%s=%s", name, value);
+    line->argv[line->argc++] = text;
+}
+
+static void add_number(struct line *line, const char *name, unsigned value)
+{
+    char text[16];
+    snprintf(text, sizeof text, "%u", value);
+    add_option(line, name, text);
+}
+
+static void add_options(struct line *line, const struct state *state, const char *command)
+{
+    const struct client_shell *shell = state->shell;
+    line->argv[line->argc++] = (char *)"rkmctl";
+    if (state->has_node)
+        add_number(line, "node", state->node);
+    if (shell->timeout_ms > 0)
+        add_number(line, "timeout", shell->timeout_ms);
+    if (shell->json)
+        line->argv[line->argc++] = (char *)"--json";
+    if (client_request_has(command)) {
+        add_option(line, "port", shell->port);
+        add_option(line, "framing", shell->framing);
+        add_number(line, "message-max", shell->message_max);
+        add_number(line, "motor", state->motor);
+        return;
+    }
+    add_option(line, "control", shell->control);
+    add_option(line, "unit", shell->unit);
+    if (shell->line >= 0)
+        add_number(line, "line", (unsigned)shell->line);
+}
+
+/* Do a command of rkmctl in a process of its own. */
+static enum exit_status run(const struct state *state, char *const *word, int count)
+{
+    static struct line line;
+    int status;
+    line.argc = 0;
+    add_options(&line, state, word[0]);
+    for (int i = 0; i < count; i++)
+        line.argv[line.argc++] = word[i];
+    line.argv[line.argc] = NULL;
+    fflush(stdout);
+    pid_t child = fork();
+    if (child == 0) {
+        signal(SIGINT, SIG_DFL);
+        status = state->shell->run(line.argc, line.argv);
+        fflush(stdout);
+        _exit(status);
+    }
+    if (child < 0) {
+        warn("cannot begin a command");
+        return STATUS_FAILURE;
+    }
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return STATUS_FAILURE;
+    return WIFEXITED(status) ? (enum exit_status)WEXITSTATUS(status) : STATUS_FAILURE;
+}
+
+static enum exit_status set_number(const struct state *state, char *const *word, int count, unsigned high, unsigned *number)
+{
+    uint64_t value;
+    char text[64];
+    snprintf(text, sizeof text, "expected a %s 0 to %u", word[0], high);
+    if (count != 2 || !number_read(word[1], 0, high, &value))
+        return say_usage(state, text, count < 2 ? "nothing" : word[1]);
+    *number = (unsigned)value;
+    return STATUS_SUCCESS;
+}
+
+static enum exit_status choose_node(struct state *state, char *const *word, int count)
+{
+    enum exit_status status = set_number(state, word, count, RKM04_NODE_MAX, &state->node);
+    state->has_node = state->has_node || status == STATUS_SUCCESS;
+    return status;
+}
+
+static enum exit_status show_help(const struct state *state, char *const *word, int count)
+{
+    if (count > 1)
+        return client_help_show(word[1]) ? STATUS_SUCCESS : say_usage(state, "expected the name of a command", word[1]);
+    fputs(help, stdout);
+    for (unsigned i = 0; client_help_name(i) != NULL; i++)
+        printf(" %s%s", client_help_name(i), i % 12 == 11 ? "\n " : "");
+    putchar('\n');
+    return STATUS_SUCCESS;
+}
+
+static enum exit_status do_words(struct state *state, char **word, int count)
+{
+    if (count == -1)
+        return say_usage(state, "expected the end of what stands in quotes", "the end of the line");
+    if (count == -2)
+        return say_usage(state, "expected at most 64 words", "more");
+    if (count == 0)
+        return STATUS_SUCCESS;
+    if (strcmp(word[0], "node") == 0)
+        return choose_node(state, word, count);
+    if (strcmp(word[0], "motor") == 0)
+        return set_number(state, word, count, RKM04_MOTORS, &state->motor);
+    if (strcmp(word[0], "help") == 0)
+        return show_help(state, word, count);
+    if (strcmp(word[0], "quit") == 0 || strcmp(word[0], "exit") == 0) {
+        state->is_over = true;
+        return STATUS_SUCCESS;
+    }
+    if (strcmp(word[0], "shell") == 0)
+        return say_usage(state, "expected another command than the shell itself", word[0]);
+    return run(state, word, count);
+}
+
+static enum exit_status do_line(struct state *state, char *line)
+{
+    char *word[CLIENT_WORDS_MAX];
+    if (client_words_is_program(line)) {
+        char *program[] = {(char *)"set", (char *)"--", line};
+        return run(state, program, 3);
+    }
+    return do_words(state, word, client_words_split(line, word));
+}
+
+/* ---- A file ----------------------------------------------------------------------------------------------------------- */
+
+static enum exit_status do_file(struct state *state, FILE *in)
+{
+    char *line = NULL;
+    size_t room = 0;
+    ssize_t length;
+    enum exit_status status = STATUS_SUCCESS;
+    while (!state->is_over && status == STATUS_SUCCESS && (length = getline(&line, &room, in)) >= 0) {
+        state->line++;
+        line[strcspn(line, "\r\n")] = '\0';
+        status = do_line(state, line);
+        if (status != STATUS_SUCCESS)
+            fprintf(stderr, "%s:%u: the command has failed (exit status %d); the rest is left out\n", state->name, state->line,
+                    (int)status);
+    }
+    free(line);
+    return status;
+}
+
+/* ---- A person --------------------------------------------------------------------------------------------------------- */
+
+static char *complete_command(const char *text, int again)
+{
+    static unsigned at;
+    if (!again)
+        at = 0;
+    for (;;) {
+        unsigned i = at++;
+        unsigned owns = sizeof own / sizeof own[0] - 1;
+        const char *name = i < owns ? own[i] : client_help_name(i - owns);
+        if (name == NULL)
+            return NULL;
+        if (strncmp(name, text, strlen(text)) == 0)
+            return strdup(name);
+    }
+}
+
+/* The first word is a command, others are files. */
+static char **complete(const char *text, int start, int end)
+{
+    (void)end;
+    return start == 0 ? rl_completion_matches(text, complete_command) : NULL;
+}
+
+/* $XDG_STATE_HOME/rkm04/history, else below ~/.local/state. Makes the folders. Returns false if there is no place for it. */
+static bool find_history(char path[PATH_MAX])
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    char folder[PATH_MAX - 16];
+    int length = state != NULL && state[0] == '/' ? snprintf(folder, sizeof folder, "%s", state) :
+                 home != NULL && home[0] == '/'   ? snprintf(folder, sizeof folder, "%s/.local/state", home) :
+                                                    -1;
+    if (length < 0 || (size_t)length + sizeof "/rkm04" > sizeof folder)
+        return false;
+    for (char *slash = folder + 1; (slash = strchr(slash, '/')) != NULL; slash++) {
+        *slash = '\0';
+        mkdir(folder, 0700);
+        *slash = '/';
+    }
+    mkdir(folder, 0700);
+    strcat(folder, "/rkm04");
+    mkdir(folder, 0700);
+    snprintf(path, PATH_MAX, "%s/history", folder);
+    return true;
+}
+
+static void put_prompt(const struct state *state, char prompt[PROMPT_SIZE])
+{
+    char node[20] = "all units", motor[20] = "all motors";
+    if (state->node > 0)
+        snprintf(node, sizeof node, "unit %u", state->node);
+    if (state->motor > 0)
+        snprintf(motor, sizeof motor, "motor %u", state->motor);
+    snprintf(prompt, PROMPT_SIZE, "%s, %s> ", node, motor);
+}
+
+static enum exit_status do_person(struct state *state)
+{
+    char history[PATH_MAX], prompt[PROMPT_SIZE], *line;
+    bool has_history = find_history(history);
+    rl_readline_name = (char *)"rkmctl";
+    rl_attempted_completion_function = complete;
+    using_history();
+    stifle_history(HISTORY_LINES);
+    if (has_history)
+        read_history(history);
+    signal(SIGINT, SIG_IGN); /* ends the command */
+    puts("help lists the commands, Ctrl-D ends");
+    while (!state->is_over) {
+        put_prompt(state, prompt);
+        if ((line = readline(prompt)) == NULL)
+            break;
+        if (line[strspn(line, " \t")] != '\0')
+            add_history(line);
+        do_line(state, line);
+        free(line);
+    }
+    mode_t mask = umask(077);
+    if (has_history && write_history(history) == 0)
+        history_truncate_file(history, HISTORY_LINES);
+    umask(mask);
+    return STATUS_SUCCESS;
+}
+
+enum exit_status client_shell(const struct client_shell *shell)
+{
+    struct state state = {.shell = shell, .node = shell->node, .motor = shell->motor, .has_node = shell->has_node};
+    const bool is_stdin = shell->file == NULL || strcmp(shell->file, "-") == 0;
+    state.name = is_stdin ? "<stdin>" : shell->file;
+    state.is_person = shell->file == NULL && isatty(STDIN_FILENO);
+    if (state.is_person)
+        return do_person(&state);
+    FILE *in = is_stdin ? stdin : fopen(shell->file, "re");
+    if (in == NULL) {
+        warn("cannot read %s", shell->file);
+        return STATUS_FAILURE;
+    }
+    setvbuf(in, NULL, _IONBF, 0); /* what is read ahead would be read again when a command ends: it shares the file */
+    enum exit_status status = do_file(&state, in);
+    if (!is_stdin)
+        fclose(in);
+    return status;
+}
