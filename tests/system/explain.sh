@@ -3,6 +3,7 @@
 # rkm04 explain and rkm04 estimate from the command line.
 
 . "$(dirname "$0")/lib.sh"
+here=$(cd "$(dirname "$0")" && pwd)
 
 test_a_program_is_explained_line_by_line_in_two_languages() {
     cd "$folder" || exit 1
@@ -29,6 +30,11 @@ test_an_estimate_agrees_with_a_run() {
     exits 0 "$RKM04" exec p.rks
     holds "$said" "at $end s: finished" "the end"
     holds "$said" "$(printf '%11s' "$position")" "the position"
+}
+
+test_estimates_of_random_programs_agree_with_runs() {
+    local told
+    told=$(python3 "$here/estimate_random.py" "$RKM04" "$folder" 1 25) || fail "$told"
 }
 
 test_several_motors_on_a_plant() {
