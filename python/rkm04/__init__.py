@@ -9,7 +9,7 @@
         assert bus.unit(1).motor(1).position == 100
 """
 
-import typing
+from typing import TYPE_CHECKING, Any
 
 import serial
 
@@ -23,22 +23,28 @@ from ._ports import publish, unpublish
 from ._sim import version as __version__
 from ._virtual_time import virtual_time
 
-if typing.TYPE_CHECKING:
+if TYPE_CHECKING:
     from ._explore import Exploration, ExplorationFailed, explore
+    from ._remote import RemoteBus, connect, serve
 
 __all__ = ["Bus", "BusyError", "ClosedError", "Dialogue", "Error", "Events", "Exchange", "Exploration", "ExplorationFailed",
-           "Fault", "Host", "Message", "Motor", "NoAnswerError", "NothingToCome", "ProgramError", "RefusedError", "Unit",
-           "WaitError", "__version__", "explore", "publish", "request", "unpublish", "virtual_time"]
+           "Fault", "Host", "Message", "Motor", "NoAnswerError", "NothingToCome", "ProgramError", "RefusedError", "RemoteBus",
+           "Unit", "WaitError", "__version__", "connect", "explore", "publish", "request", "serve", "unpublish", "virtual_time"]
+
+_LATER = {"Exploration": "_explore", "ExplorationFailed": "_explore", "explore": "_explore", "RemoteBus": "_remote",
+          "connect": "_remote", "serve": "_remote"}
+"""What few programs need is loaded when they do."""
 
 # serial.serial_for_url("rkm04://...") finds protocol_rkm04.py here.
 if "rkm04" not in serial.protocol_handler_packages:
     serial.protocol_handler_packages.append("rkm04")
 
 
-def __getattr__(name: str) -> typing.Any:
-    """What few programs need is loaded when they do."""
-    if name in ("Exploration", "ExplorationFailed", "explore"):
-        from . import _explore
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
 
-        return getattr(_explore, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f".{_LATER[name]}", __name__), name)
+    globals()[name] = value
+    return value

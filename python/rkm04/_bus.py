@@ -23,6 +23,9 @@ BREAK_SHORTEST = 573
 """us: eleven bits at 19200 baud."""
 
 
+Axis = Tuple[int, Optional[int], str, int, Optional[str], str]
+
+
 class Transport:
     """How a bus is reached. What is common to one in this process and one behind a control socket."""
 
@@ -41,7 +44,26 @@ class Transport:
     def events(self, subscription: int) -> Tuple[List[Dict[str, Any]], int]:
         raise NotImplementedError
 
+    def axis(self, unit: str, motor: int) -> Axis:
+        """What can be seen of a motor: position, true position, state, speed, fault, LED."""
+        for seen in self.call("state", {"unit": unit})["motors"]:
+            if seen["motor"] == motor:
+                return (seen["position"], seen["true_position"], seen["state"], seen["speed"], seen["fault"], seen["led"])
+        raise ValueError(f"expected a motor of unit {unit}, found {motor}")
+
+    def wait(self, until: Dict[str, Any], limit: int) -> Dict[str, Any]:
+        """Let time pass until a condition holds, at most `limit` us."""
+        return self.call("advance", {"until": until, "limit": limit})
+
     def host(self) -> "Host":
+        raise NotImplementedError
+
+    def frame(self, node: int, message: bytes) -> bytes:
+        """The bytes on the wires of a message to a node."""
+        raise NotImplementedError
+
+    def hear_message(self, limit: int) -> Optional[bytes]:
+        """Let time pass until a whole message has come to the host, at most `limit` us. Returns it; None: none came."""
         raise NotImplementedError
 
     def close(self) -> None:
@@ -55,6 +77,10 @@ class InProcess(Transport):
         self.sim = _sim.Sim(json.dumps(options))
 
     def call(self, method: str, params: Dict[str, Any]) -> Dict[str, Any]:
+        if method == "shutdown" and not params:
+            now = self.sim.now()
+            self.sim.close()
+            return {"t_us": now}
         result: Dict[str, Any] = json.loads(self.sim.call(method, json.dumps(params)))
         return result
 
@@ -71,8 +97,18 @@ class InProcess(Transport):
         lines, lost, _ = self.sim.events(subscription)
         return [json.loads(line) for line in lines.splitlines()], lost
 
+    def axis(self, unit: str, motor: int) -> Axis:
+        return self.sim.axis(unit, motor)
+
     def host(self) -> "Host":
         return InProcessHost(self.sim)
+
+    def frame(self, node: int, message: bytes) -> bytes:
+        return self.sim.frame(node, message)
+
+    def hear_message(self, limit: int) -> Optional[bytes]:
+        heard = self.sim.hear_message(self.sim.now() + limit)
+        return None if heard is None else heard[2]
 
     def close(self) -> None:
         self.sim.close()
@@ -243,7 +279,7 @@ class Bus:
         return self._transport.call(method, params)
 
     def close(self) -> None:
-        """End its files and free it. A closed bus raises ClosedError; closing twice does nothing."""
+        """End its files and free it. A closed bus raises ClosedError; closing it twice does nothing."""
         self._transport.close()
 
     def __enter__(self) -> "Bus":
@@ -322,14 +358,11 @@ class Bus:
         if callable(condition):
             return self._wait_for(condition, to_us(limit))
         until = dict(condition or {}, **more)
-        result = self._wait(until, to_us(limit))
+        result = self._transport.wait(until, to_us(limit))
         if not result["holds"]:
             raise WaitError(f"expected {json.dumps(until)} within {_seconds(to_us(limit))}, seen at {_seconds(self.now)}: "
                             f"{result['text']}")
         return int(result["t_us"])
-
-    def _wait(self, until: Dict[str, Any], limit: int) -> Dict[str, Any]:
-        return self.call("advance", until=until, limit=limit)
 
     def _wait_for(self, condition: Callable[[], object], limit: int) -> int:
         end = self.now + limit
@@ -342,6 +375,15 @@ class Bus:
             self._transport.advance(min(1000, end - now))
         return self.now
 
+    @property
+    def clock(self) -> str:
+        """ "stepped": time passes in the calls that say so, always in this process. "real", "xN", "max": it passes by itself."""
+        return str(self.call("clock")["clock"])
+
+    @clock.setter
+    def clock(self, clock: str) -> None:
+        self.call("clock", clock=clock)
+
     # ---- Messages ----
 
     @property
@@ -353,8 +395,7 @@ class Bus:
 
     def send(self, node: int, message: Union[bytes, Message]) -> int:
         """Send a message, framed, to a node: 1 to 16, 0: all. Time passes until it has passed. Returns the tick."""
-        assert isinstance(self._transport, InProcess)
-        self.host.write(self._transport.sim.frame(node, bytes(message)))
+        self.host.write(self._transport.frame(node, bytes(message)))
         return self.now
 
     def exchange(self, node: int, message: Union[bytes, Message], limit: Time = "2s") -> Message:
@@ -362,14 +403,13 @@ class Bus:
 
         limit: longest virtual time from the end of the request to the end of the answer. Raises NoAnswerError.
         """
-        assert isinstance(self._transport, InProcess)
         self.host.reset_input_buffer()
         self.send(node, message)
-        heard = self._transport.sim.hear_message(self.now + to_us(limit))
+        heard = self._transport.hear_message(to_us(limit))
         if heard is None:
             raise NoAnswerError(f"expected an answer of node {node} to {Message(bytes(message)).words} within "
                                 f"{_seconds(to_us(limit))}, seen none at {_seconds(self.now)}")
-        return Message(heard[2], True)
+        return Message(heard, True)
 
     @property
     def dialogue(self) -> Dialogue:

@@ -97,34 +97,32 @@ class Motor:
     @property
     def position(self) -> int:
         """The position counter, -2^31 to 2^31 - 1 steps."""
-        return int(self.all["position"])
+        return self._unit.bus._transport.axis(self._unit.name, self.number)[0]
 
     @property
     def true_position(self) -> Optional[int]:
         """The true position in the plant, steps; None without a plant."""
-        position = self.all["true_position"]
-        return None if position is None else int(position)
+        return self._unit.bus._transport.axis(self._unit.name, self.number)[1]
 
     @property
     def state(self) -> str:
         """idle, ready, moving, dwell, wait, block, held, ended or fault."""
-        return str(self.all["state"])
+        return self._unit.bus._transport.axis(self._unit.name, self.number)[2]
 
     @property
     def speed(self) -> int:
         """Present speed, steps/s; 0: it does not move."""
-        return int(self.all["speed"])
+        return self._unit.bus._transport.axis(self._unit.name, self.number)[3]
 
     @property
     def fault(self) -> Optional[str]:
         """no_label, …; None: no fault."""
-        fault = self.all["fault"]
-        return None if fault is None else str(fault)
+        return self._unit.bus._transport.axis(self._unit.name, self.number)[4]
 
     @property
     def led(self) -> str:
         """off, on or blink."""
-        return str(self.all["led"])
+        return self._unit.bus._transport.axis(self._unit.name, self.number)[5]
 
     @property
     def program(self) -> str:

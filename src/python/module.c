@@ -83,10 +83,40 @@ static PyObject *module_frame(PyObject *module, PyObject *args)
     return NULL;
 }
 
+/* The first whole message among bytes on the wires: (bytes up to its end, dnode, snode, message), or None. Times between the bytes
+ * do not count. */
+static PyObject *module_unframe(PyObject *module, PyObject *args)
+{
+    (void)module;
+    const char *name, *bytes;
+    Py_ssize_t length;
+    struct rkm04_receiver receiver = {0};
+    if (!PyArg_ParseTuple(args, "sy#:unframe", &name, &bytes, &length))
+        return NULL;
+    const struct rkm04_framing *framing = rkm04_framing_named(name);
+    if (!framing)
+        return PyErr_Format(PyExc_ValueError, "expected framing hdlc or plain, found %s", name);
+    uint8_t *message = malloc((size_t)length + 1u);
+    if (!message)
+        return PyErr_NoMemory();
+    PyObject *result = NULL;
+    for (Py_ssize_t at = 0; at < length && !result && !PyErr_Occurred(); at++)
+        if (framing->receive(&receiver, (uint8_t)bytes[at], 0, message, (size_t)length))
+            result = Py_BuildValue("(niiy#)", at + 1, receiver.dnode, receiver.snode, (const char *)message,
+                                   (Py_ssize_t)receiver.length);
+    free(message);
+    if (!result && !PyErr_Occurred()) {
+        Py_INCREF(Py_None);
+        return Py_None;
+    }
+    return result;
+}
+
 static PyMethodDef module_methods[] = {
     METHOD("time", module_time, METH_O, "time(text): us of a time as in \"1.5s\"."),
     METHOD("words", module_words, METH_VARARGS, "words(message, answer): the message in words."),
     METHOD("frame", module_frame, METH_VARARGS, "frame(framing, node, message): bytes on the wires."),
+    METHOD("unframe", module_unframe, METH_VARARGS, "unframe(framing, data): (used, dnode, snode, message) or None."),
     {NULL, NULL, 0, NULL},
 };
 

@@ -202,6 +202,46 @@ static PyObject *sim_wait_byte(struct sim_object *self, PyObject *args)
     return self->raised ? NULL : PyBool_FromLong(heard);
 }
 
+static PyObject *text_or_none(const char *text)
+{
+    return text ? PyUnicode_FromString(text) : none();
+}
+
+/* What can be seen of a motor: (position, true_position, state, speed, fault, led), as in the method `state`, which has more. */
+static PyObject *axis_tuple(struct sim *sim, unsigned number, unsigned axis)
+{
+    const struct device_kind *kind = sim_device(sim);
+    const struct device_axis seen = sim_axis(sim, number, axis);
+    const struct plant *plant = sim->unit[number - 1u].plant;
+    int64_t position;
+    PyObject *true_position = plant && plant_position(plant, axis, &position) ? PyLong_FromLongLong(position) : none();
+    return Py_BuildValue("(iNNINN)", seen.position, true_position, text_or_none(kind->state_name(seen.state)),
+                         (unsigned int)seen.speed, text_or_none(seen.fault != 0 ? kind->fault_name(seen.fault) : NULL),
+                         text_or_none(kind->led_name(seen.led)));
+}
+
+static PyObject *sim_axis_(struct sim_object *self, PyObject *args)
+{
+    const char *name;
+    int axis;
+    if (!PyArg_ParseTuple(args, "si:axis", &name, &axis))
+        return NULL;
+    struct handle *handle = enter(self);
+    if (!handle)
+        return NULL;
+    struct sim *sim = &handle->sim;
+    const int axes = (int)sim_device(sim)->axes;
+    unsigned number = sim_unit_named(sim, name);
+    PyObject *result = NULL;
+    if (number > 0 && axis >= 1 && axis <= axes)
+        result = axis_tuple(sim, number, (unsigned)axis);
+    else
+        PyErr_Format(PyExc_ValueError, "expected a unit of this bus and a motor from 1 to %d, found unit %s, motor %d", axes, name,
+                     axis);
+    leave(self);
+    return result;
+}
+
 /* ---- The host --------------------------------------------------------------------------------------------------------- */
 
 /* Returns the tick at which the last byte will have passed. */
@@ -483,6 +523,7 @@ static PyMethodDef sim_methods[] = {
     METHOD("call", sim_call, METH_VARARGS, "call(method, params): do a method of the control socket; JSON in, JSON out."),
     METHOD("now", sim_now_, METH_NOARGS, "now(): present tick, us."),
     METHOD("next_event", sim_next_event_, METH_NOARGS, "next_event(): tick before which nothing happens, or None."),
+    METHOD("axis", sim_axis_, METH_VARARGS, "axis(unit, motor): (position, true_position, state, speed, fault, led)."),
     METHOD("advance", sim_advance_, METH_O, "advance(tick): let time pass up to the tick."),
     METHOD("wait_byte", sim_wait_byte, METH_VARARGS,
            "wait_byte(tick, count=1, stop=-1): let time pass until the host has so many bytes, or that one, up to the tick."),

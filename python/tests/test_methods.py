@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""Every method of docs/CONTROL.md has its counterpart."""
+
+import pathlib
+import re
+
+import pytest
+
+import rkm04
+from rkm04._parts import Faults, Inputs, Plant, Power
+
+CONTROL = pathlib.Path(__file__).resolve().parents[2] / "docs" / "CONTROL.md"
+
+COUNTERPARTS = {
+    "units": rkm04.Bus.units,
+    "state": rkm04.Unit.state,
+    "di.set": Inputs.set,
+    "reset": rkm04.Unit.reset,
+    "power": Power.__call__,
+    "switch": rkm04.Unit.set_switch,
+    "clock": rkm04.Bus.clock,
+    "advance": rkm04.Bus.advance,
+    "wait": rkm04.Bus.wait,
+    "subscribe": rkm04.Bus.events,
+    "unsubscribe": rkm04.Events.close,
+    "trace.start": rkm04.Bus.trace,
+    "trace.stop": rkm04.Bus.trace,
+    "plant.get": Plant.state,
+    "plant.set": Plant.set,
+    "fault.inject": Faults.inject,
+    "fault.clear": Faults.clear,
+    "fault.list": Faults.list,
+    "snapshot": rkm04.Bus.snapshot,
+    "restore": rkm04.Bus.restore,
+    "shutdown": rkm04.Bus.close,
+}
+
+
+def documented():
+    names = re.findall(r"^### (`.*)$", CONTROL.read_text(encoding="utf-8"), re.M)
+    return [name for heading in names for name in re.findall(r"`([^`]+)`", heading)]
+
+
+def test_every_method_has_its_counterpart():
+    assert sorted(documented()) == sorted(COUNTERPARTS)
+
+
+@pytest.mark.parametrize("method", documented())
+def test_every_method_is_known_in_this_process(method):
+    with rkm04.Bus() as bus:
+        try:
+            bus.call(method)
+        except rkm04.RefusedError as error:
+            assert error.code != -32601, error
+
