@@ -296,6 +296,11 @@ class Bus:
             raise TypeError(f"expected a bus in this process, as rkm04.Bus() makes it, found {self!r}")
         return self._transport.sim
 
+    @property
+    def ready(self) -> Dict[str, Any]:
+        """What `rkm04 serve` says in its line READY: `pty`, `link`, `tcp`, …; None for what there is not, as in this process."""
+        return self.call("ready")
+
     # ---- Units ----
 
     @property

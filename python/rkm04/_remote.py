@@ -260,14 +260,21 @@ class PtyHost(Host):
 class RemoteBus(Bus):
     """A bus of a running `rkm04 serve`; made by connect() and serve(). What a Bus can do, it can, in the time of that clock.
 
-    link: the pty that host software opens; None if it is not known. ready: what READY says, of a bus that serve() has started.
+    link: the pty that host software opens; None if it is not known. rfc2217_url: what pyserial opens instead, of a bus that
+    serve() has started; otherwise None.
     """
 
     def __init__(self, transport: ControlSocket, link: Optional[str], process: "Optional[Process]" = None) -> None:
         super().__init__(transport=transport)
         self.link = link
         self._process = process
-        self.ready: Dict[str, Any] = process.ready if process is not None else {}
+        address = process.ready.get("rfc2217") if process is not None else None
+        self.rfc2217_url: Optional[str] = None if address is None else f"rfc2217://{address}"
+
+    @property
+    def bus(self) -> "RemoteBus":
+        """This bus."""
+        return self
 
     def record(self, path: Any, force: bool = False) -> Any:
         """Not possible with a running emulator: start it with serve(record=…)."""
@@ -353,7 +360,7 @@ def serve(units: Union[int, str] = 1, *, clock: str = "real", device: str = "rkm
     clock: "real", "xN" (N times as fast), "max", "stepped". plant, record: paths of files. arguments: more options of
     `rkm04 serve`. The rest: as for Bus. Raises Error with what rkm04 has said if it does not start.
     """
-    options = ["--node", str(units), "--clock", clock, "--device", device]
+    options = ["--rfc2217", "127.0.0.1:0", "--node", str(units), "--clock", clock, "--device", device]
     given = {"--framing": framing, "--plant": plant, "--seed": seed, "--version-text": version_text, "--record": record,
              "--turnaround": None if turnaround is None else to_us(turnaround)}
     for name, value in given.items():

@@ -13,6 +13,7 @@ CONTROL = pathlib.Path(__file__).resolve().parents[2] / "docs" / "CONTROL.md"
 
 COUNTERPARTS = {
     "units": rkm04.Bus.units,
+    "ready": rkm04.Bus.ready,
     "state": rkm04.Unit.state,
     "di.set": Inputs.set,
     "reset": rkm04.Unit.reset,

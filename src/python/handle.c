@@ -196,6 +196,16 @@ static json_t *method_clock(struct handle *handle, const json_t *params, struct 
     return json_pack("{s:I, s:s}", "t_us", (json_int_t)sim_now(&handle->sim), "clock", "stepped");
 }
 
+/* There is no port to the outside. */
+static json_t *method_ready(struct handle *handle, const json_t *params, struct refusal *refusal)
+{
+    static const char *const none[] = {NULL};
+    if (!params_known(params, none, refusal))
+        return NULL;
+    return json_pack("{s:I, s:n, s:n, s:n, s:n, s:n}", "t_us", (json_int_t)sim_now(&handle->sim), "pty", "link", "port", "tcp",
+                     "rfc2217");
+}
+
 static json_t *method_trace_start(struct handle *handle, const json_t *params, struct refusal *refusal)
 {
     return trace_set_start(&handle->traces, &handle->sim, params, refusal);
@@ -253,6 +263,7 @@ static const struct {
     const char *name;
     handle_method *function;
 } methods[] = {
+    {"ready", method_ready},
     {"clock", method_clock},
     {"advance", method_advance},
     {"wait", method_wait},
