@@ -121,7 +121,7 @@ class ControlSocket(Transport):
     def host(self) -> "PtyHost":
         if self._host is None:
             if self._link is None:
-                raise Error("expected the link of the bus, as in rkm04.connect(path, link=\"/tmp/rkm04\"), to send and hear bytes")
+                raise Error("to send and hear bytes: expected the link of the bus, as in connect(path, link=\"/tmp/rkm04\")")
             self._host = PtyHost(self, self._link)
         return self._host
 
@@ -278,8 +278,8 @@ class RemoteBus(Bus):
 
     def record(self, path: Any, force: bool = False) -> Any:
         """Not possible with a running emulator: start it with serve(record=…)."""
-        raise Error("a running emulator cannot begin a recording: expected rkm04.serve(record=\"x.record\"), or snapshot(file=…), "
-                    "which is a recording of all that has come in")
+        raise Error("a running emulator cannot begin a recording: expected rkm04.serve(record=\"x.record\"), or "
+                    "snapshot(file=…), which is a recording of all that has come in")
 
     def close(self) -> None:
         """End the connection, and the emulator if serve() has started it."""

@@ -83,8 +83,8 @@ static PyObject *module_frame(PyObject *module, PyObject *args)
     return NULL;
 }
 
-/* The first whole message among bytes on the wires: (bytes up to its end, dnode, snode, message), or None. Times between the bytes
- * do not count. */
+/* The first whole message among bytes on the wires: (bytes up to its end, dnode, snode, message), or None. Times between the
+ * bytes do not count. */
 static PyObject *module_unframe(PyObject *module, PyObject *args)
 {
     (void)module;

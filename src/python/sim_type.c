@@ -236,8 +236,8 @@ static PyObject *sim_axis_(struct sim_object *self, PyObject *args)
     if (number > 0 && axis >= 1 && axis <= axes)
         result = axis_tuple(sim, number, (unsigned)axis);
     else
-        PyErr_Format(PyExc_ValueError, "expected a unit of this bus and a motor from 1 to %d, found unit %s, motor %d", axes, name,
-                     axis);
+        PyErr_Format(PyExc_ValueError, "expected a unit of this bus and a motor from 1 to %d, found unit %s, motor %d", axes,
+                     name, axis);
     leave(self);
     return result;
 }
