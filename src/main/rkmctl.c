@@ -18,7 +18,8 @@
 #define MESSAGE_MAX_LOWEST 64
 #define LINE_NUMBER_MAX 255
 
-const char *argp_program_version = "rkmctl " RKM04_VERSION;
+/* The C library looks for it: it has to be visible whatever the build hides. */
+__attribute__((visibility("default"))) const char *argp_program_version = "rkmctl " RKM04_VERSION;
 
 struct options {
     struct client_request request;
