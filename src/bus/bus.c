@@ -274,13 +274,13 @@ static bool configure_plant(struct bus *bus)
     char *said = NULL;
     size_t length;
     FILE *errors = text ? open_memstream(&said, &length) : NULL;
-    bool well = !text || (errors && sim_configure_plants(&bus->sim, bus->options->plant, text, strlen(text), errors));
+    bool ok = !text || (errors && sim_configure_plants(&bus->sim, bus->options->plant, text, strlen(text), errors));
     if (errors)
         fclose(errors);
     if (said)
         log_text(said);
     free(said);
-    return well;
+    return ok;
 }
 
 /* For snapshots to files, which only clients of a control socket can ask for. */
@@ -365,14 +365,14 @@ bool bus_begin_files(struct bus *bus)
 
 bool bus_end(struct bus *bus)
 {
-    bool well = true;
+    bool ok = true;
     bus_ports_close(&bus->ports);
     if (!bus_files_end(&bus->files))
-        well = false;
+        ok = false;
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
         if (bus->unit[at].open && !flash_file_close(&bus->unit[at].flash))
-            well = false;
-    return well;
+            ok = false;
+    return ok;
 }
 
 void bus_free(struct bus *bus)

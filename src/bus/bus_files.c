@@ -126,20 +126,20 @@ void bus_files_flush(struct bus_files *files)
 bool bus_files_end(struct bus_files *files)
 {
     const struct bus_options *options = files->options;
-    bool well = !files->failed;
+    bool ok = !files->failed;
     for (unsigned i = 0; i < BUS_FILES_MAX; i++) {
         if (files->trace[i])
-            well = check_written(options->trace[i], trace_file_end(files->trace[i])) && well;
+            ok = check_written(options->trace[i], trace_file_end(files->trace[i])) && ok;
         if (files->wire[i])
-            well = check_written(options->wire[i], wire_file_end(files->wire[i])) && well;
+            ok = check_written(options->wire[i], wire_file_end(files->wire[i])) && ok;
         files->trace[i] = NULL;
         files->wire[i] = NULL;
     }
     if (files->record)
-        well = check_written(options->record, record_end(files->record)) && well;
+        ok = check_written(options->record, record_end(files->record)) && ok;
     if (files->record_stream && output_file_close(files->record_stream) != 0)
-        well = check_written(options->record, errno);
+        ok = check_written(options->record, errno);
     files->record = NULL;
     files->record_stream = NULL;
-    return well;
+    return ok;
 }

@@ -108,10 +108,10 @@ static bool ends_in_json(const char *file)
 static bool print_json(const struct coverage *coverage, FILE *out)
 {
     json_t *object = coverage_json(coverage);
-    bool well = object != NULL && json_dumpf(object, out, JSON_INDENT(2) | JSON_REAL_PRECISION(4)) == 0;
-    well = fputc('\n', out) != EOF && well;
+    bool ok = object != NULL && json_dumpf(object, out, JSON_INDENT(2) | JSON_REAL_PRECISION(4)) == 0;
+    ok = fputc('\n', out) != EOF && ok;
     json_decref(object);
-    return well;
+    return ok;
 }
 
 static bool open_file(FILE **out, const char *name, const struct output_kind *kind, unsigned flags)
@@ -147,22 +147,22 @@ static bool write_file(const struct coverage *coverage, FILE **file, const char 
     if (!out)
         return true;
     errno = 0;
-    bool well = output_file_empty(out);
-    if (well && json)
-        well = print_json(coverage, out);
-    else if (well)
+    bool ok = output_file_empty(out);
+    if (ok && json)
+        ok = print_json(coverage, out);
+    else if (ok)
         coverage_print(coverage, out);
-    well = !ferror(out) && well;
-    well = output_file_close(out) == 0 && well;
-    if (!well)
+    ok = !ferror(out) && ok;
+    ok = output_file_close(out) == 0 && ok;
+    if (!ok)
         log_error("cannot write the coverage to %s: %s", name, strerror(errno ? errno : ENOMEM));
-    return well;
+    return ok;
 }
 
 bool coverage_write(const struct coverage *coverage, struct coverage_files *files)
 {
-    bool well = write_file(coverage, &files->text, files->text_name, false);
-    return write_file(coverage, &files->json, files->json_name, true) && well;
+    bool ok = write_file(coverage, &files->text, files->text_name, false);
+    return write_file(coverage, &files->json, files->json_name, true) && ok;
 }
 
 void coverage_close(struct coverage_files *files)

@@ -101,11 +101,11 @@ bool client_print_emulator_causes(const char *port, const struct rkm04_framing *
     if (!connect_beside(&cause, port))
         return false;
     json_t *units = call(&cause, "units", NULL);
-    bool well = units != NULL, printed = false;
+    bool ok = units != NULL, printed = false;
     json_array_foreach(json_object_get(units, "units"), i, unit) {
-        well = well && i < UNITS_MAX && json_is_string(unit) && read_unit(&cause, json_string_value(unit));
+        ok = ok && i < UNITS_MAX && json_is_string(unit) && read_unit(&cause, json_string_value(unit));
     }
-    if (well) {
+    if (ok) {
         printed = print_framing(units, framing);
         printed = print_units(&cause) || printed;
     }

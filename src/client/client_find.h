@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* client_find.h: the emulators of this user that are running now: whoever answers on a control socket (/proc/net/unix). */
+/* client_find.h: the emulators of this user that are running now: those that answer on a control socket (/proc/net/unix). */
 #ifndef RKM04_CLIENT_FIND_H
 #define RKM04_CLIENT_FIND_H
 
@@ -11,7 +11,7 @@
 
 struct client_found {
     char control[PATH_MAX]; /* of the control socket */
-    char port[PATH_MAX];    /* of its bus, as --port takes it; empty: it has several buses, or told none */
+    char port[PATH_MAX];    /* of its bus, as --port takes it; empty: it has several buses, or reported none */
 };
 
 /* Find at most CLIENT_FOUND_MAX of them. Returns their number. */

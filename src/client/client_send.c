@@ -13,7 +13,7 @@
 #include "text/text.h"
 
 enum { SET_COMMAND = 2, HEAD = 2 /* message number and motor */ };
-enum { FLAG_WELL, FLAG_BAD_VALUE, FLAG_UNKNOWN, FLAG_OVERFLOW }; /* of the answer, P1 */
+enum { FLAG_OK, FLAG_BAD_VALUE, FLAG_UNKNOWN, FLAG_OVERFLOW }; /* of the answer, P1 */
 
 #define PROGRESS_AFTER_US 2000000u
 #define PROGRESS_WIDTH 40

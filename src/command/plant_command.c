@@ -12,13 +12,13 @@ static bool add_counters(struct sim *sim, unsigned number, json_t *motors)
 {
     size_t i;
     json_t *motor;
-    bool well = true;
+    bool ok = true;
     json_array_foreach(motors, i, motor) {
         unsigned which = (unsigned)json_integer_value(json_object_get(motor, "motor"));
-        well = well && which >= 1 && which <= sim_device(sim)->axes &&
+        ok = ok && which >= 1 && which <= sim_device(sim)->axes &&
                json_object_set_new(motor, "position", json_integer(sim_axis(sim, number, which).position)) == 0;
     }
-    return well;
+    return ok;
 }
 
 /* All that there is to say of the plant of a unit. */
@@ -55,10 +55,10 @@ static json_t *configure_text(struct sim *sim, const char *text, bool object, st
     char *errors = NULL;
     size_t size;
     FILE *out = open_memstream(&errors, &size);
-    bool well = out && sim_configure_plants(sim, "plant", text, text ? strlen(text) : 0, out);
+    bool ok = out && sim_configure_plants(sim, "plant", text, text ? strlen(text) : 0, out);
     bool told = out && fclose(out) == 0 && size > 0;
-    json_t *result = well ? json_pack("{s:I}", "t_us", (json_int_t)sim_now(sim)) : NULL;
-    if (!well && told)
+    json_t *result = ok ? json_pack("{s:I}", "t_us", (json_int_t)sim_now(sim)) : NULL;
+    if (!ok && told)
         refuse_plant(refusal, errors, object);
     else if (!result)
         refuse(refusal, REFUSED_MEMORY, "out of memory");

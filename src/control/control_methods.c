@@ -161,8 +161,8 @@ bool control_handle_line(struct control_client *client, const char *line, size_t
     struct refusal refusal = {.code = REFUSED_MEMORY, .text = "out of memory"};
     struct control_context context = {.client = client, .request = &request};
     json_t *result = NULL;
-    bool well = rpc_read(&request, line, length, control->lines, &refusal);
-    if (well) {
+    bool ok = rpc_read(&request, line, length, control->lines, &refusal);
+    if (ok) {
         control_method *method = find(request.method);
         if (strcmp(request.method, "restore") == 0 && json_object_get(request.params, "file"))
             method = control_restore;

@@ -117,17 +117,17 @@ bool control_socket_open(struct control_socket *control, const char *path)
     struct sockaddr_un address;
     int folder;
     *control = (struct control_socket){.lock = -1, .fd = -1};
-    bool well = socket_address_find(path, &address, &folder) &&
+    bool ok = socket_address_find(path, &address, &folder) &&
                 snprintf(control->path, sizeof control->path, "%s", path) < (int)sizeof control->path &&
                 snprintf(control->lock_path, sizeof control->lock_path, "%s.lock", path) < (int)sizeof control->lock_path;
-    if (well)
-        well = make_socket(control, &address);
+    if (ok)
+        ok = make_socket(control, &address);
     else
         log_error("--control: cannot use %.100s: expected the path of a socket, its name (after the last /) at most %u "
                   "characters long, in an existing folder", path[0] ? path : "an empty path", SOCKET_NAME_SURE);
     if (folder >= 0)
         close(folder);
-    return well;
+    return ok;
 }
 
 void control_socket_release(struct control_socket *control)

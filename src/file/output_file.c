@@ -316,10 +316,10 @@ static bool check_replaced(const char *path, const struct output_kind *kind, uns
     if (!check_free(&status, path, true, why))
         return false;
     int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NOFOLLOW | O_NONBLOCK);
-    bool well = check_kind(fd, kind, flags, why);
+    bool ok = check_kind(fd, kind, flags, why);
     if (fd >= 0)
         close(fd);
-    return well;
+    return ok;
 }
 
 /* A new file in the folder of `path`, whose name is in *name, to be freed. Returns NULL if there is none; errno says why. */
@@ -353,18 +353,18 @@ bool output_file_replace(const char *path, const struct output_kind *kind, unsig
     if (!check_replaced(path, kind, flags, why))
         return false;
     FILE *file = make_beside(path, &name);
-    bool well = file && write(context, file);
+    bool ok = file && write(context, file);
     int error = errno;
-    if (file && fclose(file) != 0 && well) {
-        well = false;
+    if (file && fclose(file) != 0 && ok) {
+        ok = false;
         error = errno;
     }
-    if (well && rename(name, path) != 0) {
-        well = false;
+    if (ok && rename(name, path) != 0) {
+        ok = false;
         error = errno;
     }
-    if (!well && file)
+    if (!ok && file)
         unlink(name);
     free(name);
-    return well || explain_error(why, error);
+    return ok || explain_error(why, error);
 }

@@ -70,7 +70,7 @@ static bool add_to_watch(struct line_watch *watch, int fd)
 }
 
 /* Look at the lines now and then, or no more. Returns false if it does not work (errno). */
-static bool look_regularly(struct line_watch *watch, bool on)
+static bool set_polling(struct line_watch *watch, bool on)
 {
     struct itimerspec spec = {0};
     if (watch->looking == on)
@@ -106,7 +106,7 @@ bool line_watch_open(struct line_watch *watch)
     if (watch->notices >= 0 && add_to_watch(watch, watch->notices))
         return true;
     int why = errno;
-    if (watch->fd >= 0 && look_regularly(watch, true)) {
+    if (watch->fd >= 0 && set_polling(watch, true)) {
         log_error("cannot use inotify: %s (fs.inotify.max_user_instances?); checking every %d ms for clients", strerror(why),
                   LOOK_MS);
         return true;
@@ -132,7 +132,7 @@ static bool watch_line(struct line_watch *watch, struct line *line)
     if (line->mark < 0 && watch->notices >= 0 && !watch->looking)
         log_error("inotify cannot watch %s: %s; checking every %d ms for clients", line->path,
                   errno == ENOSPC ? "too many watches in use (fs.inotify.max_user_watches)" : strerror(errno), LOOK_MS);
-    return line->mark >= 0 || look_regularly(watch, true);
+    return line->mark >= 0 || set_polling(watch, true);
 }
 
 bool line_pty_open(struct line *line, struct line_watch *watch, line_notify *notify, void *context)
@@ -319,14 +319,14 @@ static bool count_exclusive(struct line *line)
 
 /* There seems to be a client: the system gives notice of a client that closes the line before it has closed it.
  * `closing`: there were such notices. Certain is only who is still there after more looks. */
-static void start_looks(struct line *line, bool closing)
+static void schedule_checks(struct line *line, bool closing)
 {
     if (line->mark < 0 || (line->certain && !closing && !line->doubtful))
         return;
     line->certain = false;
     if (closing || line->doubtful || line->looks == 0)
         line->looks = LOOKS;
-    look_regularly(line->watch, true);
+    set_polling(line->watch, true);
 }
 
 void line_pty_recount(struct line *line)
@@ -368,7 +368,7 @@ void line_pty_recount(struct line *line)
         line->clients = line->clients > closings ? line->clients - closings : 1;
     }
     if (others)
-        start_looks(line, closings > 0 || counted.all - counted.opens > closed);
+        schedule_checks(line, closings > 0 || counted.all - counted.opens > closed);
 }
 
 /* A client that has gone may have left the line cooked. Made raw as long as no client has come that might have meant it. */
@@ -404,5 +404,5 @@ void line_watch_update(struct line_watch *watch)
             make_raw_again(line);
         later = later || line->mark < 0 || line->looks > 0;
     }
-    look_regularly(watch, later);
+    set_polling(watch, later);
 }

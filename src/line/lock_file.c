@@ -21,7 +21,7 @@ static bool is_same_file(int fd, const char *path)
 }
 
 /* Is it a file that we have made? In a folder that all may write to, another user may have put another one there, or a second
- * name of a file that must not be written to; and its content would tell us what to remove. */
+ * name of a file that must not be written to; and its content would decide what we remove. */
 static bool is_own_file(int fd)
 {
     struct stat found;

@@ -57,7 +57,7 @@ static void add_turn(struct collector *collector, struct plot_motor *motor, cons
     plot_add_point(collector->curves, motor, point_before(leg, leg->us - past));
 }
 
-static void look_at_plan(struct collector *collector, unsigned axis, double now)
+static void add_planned_points(struct collector *collector, unsigned axis, double now)
 {
     struct plot_motor *motor = &collector->curves->motor[axis - 1];
     struct device_plan_point point[DEVICE_PLAN_POINTS];
@@ -82,7 +82,7 @@ static void look_at_plan(struct collector *collector, unsigned axis, double now)
         plot_add_point(collector->curves, motor, (struct plot_point){since + point[i].us, point[i].speed, point[i].position});
 }
 
-static void look_at_state(struct collector *collector, unsigned axis, double now)
+static void note_state(struct collector *collector, unsigned axis, double now)
 {
     const struct device_kind *kind = kind_of(collector);
     const struct device_axis state = sim_axis(collector->sim, collector->unit, axis);
@@ -107,7 +107,7 @@ static void thin_truths(struct collector *collector, struct plot_motor *motor)
     collector->truth_every *= 2;
 }
 
-static void look_at_truth(struct collector *collector, unsigned axis, double now)
+static void add_true_position(struct collector *collector, unsigned axis, double now)
 {
     struct plot_motor *motor = &collector->curves->motor[axis - 1];
     const struct plant *plant = collector->sim->unit[collector->unit - 1].plant;
@@ -122,16 +122,16 @@ static void look_at_truth(struct collector *collector, unsigned axis, double now
         motor->truth[motor->truths++] = (struct plot_point){now, 0, (double)position};
 }
 
-void collector_look(struct collector *collector)
+void collector_update(struct collector *collector)
 {
     double now = (double)sim_now(collector->sim);
     collector->looked = sim_now(collector->sim);
     if (!sim_powered(collector->sim, collector->unit))
         return;
     for (unsigned axis = 1; axis <= collector->curves->motors; axis++) {
-        look_at_plan(collector, axis, now);
-        look_at_state(collector, axis, now);
-        look_at_truth(collector, axis, now);
+        add_planned_points(collector, axis, now);
+        note_state(collector, axis, now);
+        add_true_position(collector, axis, now);
     }
 }
 
@@ -164,7 +164,7 @@ static void keep_event(struct collector *collector, const struct watch_event *ev
     }
 }
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct collector *collector = context;
     if (event->unit == collector->unit)
@@ -172,12 +172,12 @@ static void see(void *context, const struct watch_event *event)
 }
 
 /* The same for who cannot look after each advance: pulses are wanted so that events come with the slot they happen in. */
-static void see_and_look(void *context, const struct watch_event *event)
+static void on_event_and_update(void *context, const struct watch_event *event)
 {
     struct collector *collector = context;
-    see(context, event);
+    on_event(context, event);
     if (event->unit == collector->unit && sim_now(collector->sim) > collector->looked)
-        collector_look(collector);
+        collector_update(collector);
 }
 
 static void begin_levels(struct collector *collector)
@@ -203,10 +203,10 @@ void collector_begin(struct collector *collector, struct plot_curves *curves, st
                                WATCH_BIT(WATCH_VARIABLES) | WATCH_BIT(WATCH_COMMAND) | WATCH_BIT(WATCH_POSITION);
     if (follow)
         collector->watcher.kinds |= WATCH_BIT(WATCH_STEP);
-    collector->watcher.on_event = follow ? see_and_look : see;
+    collector->watcher.on_event = follow ? on_event_and_update : on_event;
     collector->watcher.context = collector;
     sim_watch(sim, &collector->watcher);
-    collector_look(collector);
+    collector_update(collector);
 }
 
 void collector_end(struct collector *collector)
@@ -214,7 +214,7 @@ void collector_end(struct collector *collector)
     struct plot_curves *curves = collector->curves;
     double us = (double)sim_now(collector->sim);
     sim_unwatch(collector->sim, &collector->watcher);
-    collector_look(collector);
+    collector_update(collector);
     curves->end = us;
     for (unsigned i = 0; i < curves->motors; i++) {
         struct plot_motor *motor = &curves->motor[i];

@@ -17,11 +17,11 @@ struct collector {
 };
 
 /* Begin to watch unit 1.. of `sim`; it must stay until collector_end(). `follow`: look at each slot in which something happens,
- * for who cannot call collector_look() after each advance. */
+ * for who cannot call collector_update() after each advance. */
 void collector_begin(struct collector *collector, struct plot_curves *curves, struct sim *sim, unsigned unit, bool follow);
 
 /* Look at the present plans. To be called after each advance that ended with something happening. */
-void collector_look(struct collector *collector);
+void collector_update(struct collector *collector);
 
 /* The run has ended. */
 void collector_end(struct collector *collector);

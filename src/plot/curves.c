@@ -49,7 +49,7 @@ void plot_free(struct plot_curves *curves)
 
 /* ---- Points --------------------------------------------------------------------------------------------------------- */
 
-/* Does b lie on the way from a to c? Slopes tell: a corner shows however close to the next point it is. */
+/* Does b lie on the way from a to c? Slopes decide: a corner is visible however close to the next point it is. */
 static bool is_between(const struct plot_point *a, const struct plot_point *b, const struct plot_point *c)
 {
     if (b->us - a->us < INTERVAL_MIN || c->us - b->us < INTERVAL_MIN)

@@ -22,7 +22,7 @@ const char *check_warning_name(enum check_warning warning)
     return warnings[warning].name;
 }
 
-const char *check_warning_says(enum check_warning warning)
+const char *check_warning_text(enum check_warning warning)
 {
     return warnings[warning].says;
 }
@@ -119,7 +119,7 @@ static bool read_sources(struct check *check)
     return true;
 }
 
-static bool look_at(struct check *check, struct check_motor *motor)
+static bool check_motor_program(struct check *check, struct check_motor *motor)
 {
     if (!flow_begin(&motor->flow, &motor->code, UINT16_MAX))
         return false;
@@ -137,7 +137,7 @@ static bool run_check(struct check *check)
     if (!map_texts(check) || !read_sources(check))
         return false;
     for (size_t i = 0; i < check->motor_count; i++)
-        if (!look_at(check, &check->motors[i]))
+        if (!check_motor_program(check, &check->motors[i]))
             return false;
     check_outputs(check);
     if (!check_variables(check) || !check_plant(check))
@@ -151,7 +151,7 @@ bool check_programs(const struct program_source *sources, size_t count, const st
 {
     struct check check = {.sources = sources, .count = count, .options = options, .found = found};
     *found = (struct diagnostics){0};
-    bool well = run_check(&check);
+    bool ok = run_check(&check);
     diagnostics_arrange(found, sources);
     for (size_t i = 0; i < check.motor_count; i++) {
         flow_end(&check.motors[i].flow);
@@ -162,5 +162,5 @@ bool check_programs(const struct program_source *sources, size_t count, const st
     free(check.texts);
     free(check.motors);
     planner_end(&check.planner);
-    return well;
+    return ok;
 }

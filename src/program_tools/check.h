@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* check.h: what is wrong with programs: everything that a unit refuses, and what it takes but somebody will not have meant.
+/* check.h: what is wrong with programs: everything that a unit refuses, and what it accepts but is probably wrong.
  * docs/CHECK.md has a page for each warning. */
 #ifndef RKM04_PROGRAM_TOOLS_CHECK_H
 #define RKM04_PROGRAM_TOOLS_CHECK_H
@@ -50,7 +50,7 @@ enum check_warning { CHECK_TABLE(CHECK_CONSTANT) CHECK_WARNINGS };
 
 /* Name of a warning, and what it says. */
 const char *check_warning_name(enum check_warning warning);
-const char *check_warning_says(enum check_warning warning);
+const char *check_warning_text(enum check_warning warning);
 
 /* The warning of this name; CHECK_WARNINGS: there is none. */
 enum check_warning check_warning_named(const char *name, size_t length);

@@ -18,7 +18,7 @@ static unsigned output_of(struct rkm04_command command)
 
 void check_outputs(struct check *check)
 {
-    unsigned done = 0; /* cleared somewhere, or told: bit n is output n */
+    unsigned done = 0; /* cleared somewhere, or reported: bit n is output n */
     for (size_t m = 0; m < check->motor_count; m++) {
         const struct code *code = &check->motors[m].code;
         for (size_t i = code->first; i < code->count; i++)

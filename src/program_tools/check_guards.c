@@ -25,7 +25,7 @@ static bool is_in(const struct flow *flow, uint32_t index, uint32_t component)
     return false;
 }
 
-static void look_at_guard(struct guards *guards, const struct flow_node *node, int32_t from, bool *several)
+static void check_guard(struct guards *guards, const struct flow_node *node, int32_t from, bool *several)
 {
     if (from == FLOW_SEVERAL)
         *several = true;
@@ -37,7 +37,7 @@ static void look_at_guard(struct guards *guards, const struct flow_node *node, i
         guards->use[from].used_up = true;
 }
 
-static void look_at_motions(struct guards *guards)
+static void check_guarded_motions(struct guards *guards)
 {
     const struct flow *flow = &guards->motor->flow;
     for (size_t i = 0; flow->complete && i < flow->node_count; i++)
@@ -46,8 +46,8 @@ static void look_at_motions(struct guards *guards)
         const struct flow_node *node = &flow->nodes[i];
         if (node->index == flow->code->count || !code_is_motion(flow->code->commands[node->index].command))
             continue;
-        look_at_guard(guards, node, node->in.m_from, &guards->several_m);
-        look_at_guard(guards, node, node->in.n_from, &guards->several_n);
+        check_guard(guards, node, node->in.m_from, &guards->several_m);
+        check_guard(guards, node, node->in.n_from, &guards->several_n);
     }
 }
 
@@ -75,7 +75,7 @@ void check_guards(struct check *check, const struct check_motor *motor)
     if (guards.use == NULL || guards.size == NULL) {
         check->found->no_memory = true;
     } else {
-        look_at_motions(&guards);
+        check_guarded_motions(&guards);
         for (size_t i = motor->code.first; i < motor->code.count; i++)
             if (motor->code.commands[i].command.op == 'M' || motor->code.commands[i].command.op == 'N')
                 report(check, &guards, i);

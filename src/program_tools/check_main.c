@@ -111,7 +111,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
 static int print_list(void)
 {
     for (unsigned i = 0; i < CHECK_WARNINGS; i++)
-        printf("%-20s %s\n", check_warning_name((enum check_warning)i), check_warning_says((enum check_warning)i));
+        printf("%-20s %s\n", check_warning_name((enum check_warning)i), check_warning_text((enum check_warning)i));
     return arguments_printed();
 }
 
@@ -120,13 +120,13 @@ static bool check_some(struct check_printer *printer, const struct options *opti
                        size_t count)
 {
     struct diagnostics found;
-    bool well = check_programs(sources, count, &options->check, &found);
+    bool ok = check_programs(sources, count, &options->check, &found);
     check_print(printer, sources, &found);
     const bool bad_plant = found.bad_plant;
     diagnostics_free(&found);
-    if (!well)
+    if (!ok)
         fputs("rkm04 check: out of memory\n", stderr);
-    return well && !bad_plant;
+    return ok && !bad_plant;
 }
 
 /* Check each file without a motor by itself, then those with one together. Returns false if something could not be done. */
@@ -135,23 +135,23 @@ static bool check_files(struct check_printer *printer, struct options *options)
     struct tool_files *files = &options->files;
     struct program_source *together = calloc(files->count + 1, sizeof *together);
     size_t count = 0;
-    bool well = together != NULL;
+    bool ok = together != NULL;
     for (size_t i = 0; together != NULL && i < files->count; i++) {
         struct tool_file *file = &files->list[i];
         if (!tool_file_read(file, "rkm04 check")) {
-            well = false;
+            ok = false;
         } else if (file->has_motor) {
             together[count++] = file->source;
             continue;
         } else {
-            well = check_some(printer, options, &file->source, 1) && well;
+            ok = check_some(printer, options, &file->source, 1) && ok;
         }
         tool_file_free(file);
     }
     if (count > 0)
-        well = check_some(printer, options, together, count) && well;
+        ok = check_some(printer, options, together, count) && ok;
     free(together);
-    return well;
+    return ok;
 }
 
 /* Read the file of --plant. Returns false if that is not possible, which is reported. */
@@ -183,11 +183,11 @@ int check_main(int argc, char **argv)
         return print_list();
     }
     check_print_begin(&printer, options.format, stdout);
-    bool well = read_plant(&options, &plant) && check_files(&printer, &options);
-    well = check_print_end(&printer) && well;
+    bool ok = read_plant(&options, &plant) && check_files(&printer, &options);
+    ok = check_print_end(&printer) && ok;
     program_text_free(&plant);
     tool_files_end(&options.files);
     if (arguments_printed() != 0)
         return STATUS_FAILURE;
-    return !well || printer.errors > 0 || (options.werror && printer.warnings > 0) ? STATUS_FAILURE : STATUS_SUCCESS;
+    return !ok || printer.errors > 0 || (options.werror && printer.warnings > 0) ? STATUS_FAILURE : STATUS_SUCCESS;
 }

@@ -27,7 +27,7 @@ static bool is_news(const struct look *look, enum check_warning warning, size_t 
 
 /* ---- R, G, H -------------------------------------------------------------------------------------------------------- */
 
-static void look_at_run(const struct look *look)
+static void check_run(const struct look *look)
 {
     const struct flow_state *in = look->in;
     const size_t i = look->index;
@@ -48,7 +48,7 @@ static void report_peak(const struct look *look, enum check_warning warning, siz
                at == look->index ? "this motion" : "this segment", peak);
 }
 
-static void look_at_single(const struct look *look)
+static void check_single(const struct look *look)
 {
     const struct flow_state *in = look->in;
     int64_t steps;
@@ -107,7 +107,7 @@ static uint32_t peak_between(const struct planner_point *points, size_t count, u
     return peak;
 }
 
-static void look_at_table(const struct look *look)
+static void check_table(const struct look *look)
 {
     const struct flow_state *in = look->in;
     struct planner_segment segments[RKM04_SEGMENTS_MAX];
@@ -131,7 +131,7 @@ static void look_at_table(const struct look *look)
     }
 }
 
-static void look_at_segment(const struct look *look)
+static void check_segment(const struct look *look)
 {
     const struct flow_state *in = look->in;
     const size_t i = look->index;
@@ -149,7 +149,7 @@ static void look_at_segment(const struct look *look)
                    "a segment without steps: no F, B or G before it");
 }
 
-static void look_at_mark(const struct look *look)
+static void check_mark(const struct look *look)
 {
     const size_t i = look->index;
     const unsigned number = look->command.argument;
@@ -158,25 +158,25 @@ static void look_at_mark(const struct look *look)
                    "T%u behind the first Y has no effect on this motion", number);
 }
 
-static void look_at_command(const struct look *look)
+static void check_command(const struct look *look)
 {
     switch (look->command.op) {
     case 'R':
-        look_at_run(look);
+        check_run(look);
         if (look->in->table == 1)
-            look_at_single(look);
+            check_single(look);
         else
-            look_at_table(look);
+            check_table(look);
         break;
     case 'G':
     case 'H':
-        look_at_single(look);
+        check_single(look);
         break;
     case 'Y':
-        look_at_segment(look);
+        check_segment(look);
         break;
     case 'T':
-        look_at_mark(look);
+        check_mark(look);
         break;
     default:
         break;
@@ -198,7 +198,7 @@ void check_motions(struct check *check, const struct check_motor *motor)
         look.index = node->index;
         look.command = motor->code.commands[node->index].command;
         look.in = &node->in;
-        look_at_command(&look);
+        check_command(&look);
     }
     free(look.told);
 }

@@ -103,7 +103,7 @@ static void drop_covered(struct diagnostics *found, const struct nolint *nolint)
     found->count = kept;
 }
 
-static void obey(struct check *check, const struct code *code, const struct code_comment *comment)
+static void apply_comment(struct check *check, const struct code *code, const struct code_comment *comment)
 {
     const struct program_source *source = &check->sources[comment->source];
     struct nolint nolint = {.source = comment->source, .to = source->length};
@@ -123,6 +123,6 @@ void check_nolint(struct check *check)
     for (size_t m = 0; m < check->motor_count; m++) {
         const struct code *code = &check->motors[m].code;
         for (size_t i = 0; i < code->comment_count; i++)
-            obey(check, code, &code->comments[i]);
+            apply_comment(check, code, &code->comments[i]);
     }
 }

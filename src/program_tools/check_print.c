@@ -158,7 +158,7 @@ static json_t *sarif_rules(void)
         json_array_append_new(rules, json_pack("{s:s, s:{s:s}}", "id", errors[i][0], "shortDescription", "text", errors[i][1]));
     for (unsigned i = 0; i < CHECK_WARNINGS; i++)
         json_array_append_new(rules, json_pack("{s:s, s:{s:s}}", "id", check_warning_name((enum check_warning)i),
-                                               "shortDescription", "text", check_warning_says((enum check_warning)i)));
+                                               "shortDescription", "text", check_warning_text((enum check_warning)i)));
     return rules;
 }
 

@@ -34,7 +34,7 @@ struct code {
     size_t command_room, comment_room;
 };
 
-/* What a reader is told that no command came of: errors, K and C75. `found`: RKM04_READ_COMMAND for these two. `next`: the offset
+/* What a reader reports that is no command: errors, K and C75. `found`: RKM04_READ_COMMAND for these two. `next`: the offset
  * at which reading goes on. */
 typedef void code_notice(void *context, size_t source, const struct rkm04_reader *reader, enum rkm04_read found,
                          struct rkm04_command command);

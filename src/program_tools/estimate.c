@@ -103,7 +103,7 @@ static bool leap(struct estimate_run *run, uint64_t limit)
         return false;
     end = (end + RKM04_SLOT_TICKS - 1) / RKM04_SLOT_TICKS * RKM04_SLOT_TICKS + 1;
     sim_advance(&run->sim, end < limit ? end : limit);
-    estimate_look(run);
+    estimate_update(run);
     return true;
 }
 

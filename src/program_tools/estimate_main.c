@@ -124,12 +124,12 @@ static int read_and_run(struct options *options)
     struct tool_files *files = &options->files;
     struct program_source *sources = calloc(files->count + 1, sizeof *sources);
     struct program_text plant = {0};
-    bool well = sources != NULL;
+    bool ok = sources != NULL;
     if (options->plant != NULL) {
         const char *wrong = program_text_read_raw(&plant, options->plant);
         if (wrong != NULL) {
             fprintf(stderr, "rkm04 estimate: cannot read %s: %s\n", options->plant, wrong);
-            well = false;
+            ok = false;
         }
         options->estimate.plant = plant.text != NULL ? plant.text : "";
         options->estimate.plant_length = plant.length;
@@ -137,10 +137,10 @@ static int read_and_run(struct options *options)
         options->estimate.errors = stderr;
     }
     for (size_t i = 0; sources != NULL && i < files->count; i++) {
-        well = tool_file_read(&files->list[i], "rkm04 estimate") && well;
+        ok = tool_file_read(&files->list[i], "rkm04 estimate") && ok;
         sources[i] = files->list[i].source;
     }
-    int status = well ? run_estimate(options, sources, files->count) : STATUS_FAILURE;
+    int status = ok ? run_estimate(options, sources, files->count) : STATUS_FAILURE;
     program_text_free(&plant);
     free(sources);
     return status;

@@ -40,7 +40,7 @@ struct estimate_run {
 
 /* estimate_watch.c: take down what happens, and after each leap what has become of it. */
 void estimate_watch(struct estimate_run *run);
-void estimate_look(struct estimate_run *run);
+void estimate_update(struct estimate_run *run);
 
 /* The place of a command of a motor 1..4. */
 struct estimate_place estimate_place_of(const struct estimate_run *run, unsigned motor, size_t index);

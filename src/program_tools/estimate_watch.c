@@ -18,7 +18,7 @@ static size_t index_of(const struct code *code, unsigned place)
     return number < count ? code->first + number : code->count;
 }
 
-static void see_motion(struct estimate_motor *motor, const struct watch_event *event)
+static void note_motion(struct estimate_motor *motor, const struct watch_event *event)
 {
     if (event->value) {
         motor->began = motor->in_motion = true;
@@ -31,7 +31,7 @@ static void see_motion(struct estimate_motor *motor, const struct watch_event *e
     }
 }
 
-static void see_collision(struct estimate_run *run, const struct watch_event *event)
+static void note_collision(struct estimate_run *run, const struct watch_event *event)
 {
     struct estimate *estimate = run->estimate;
     if (event->value == PLANT_FREE)
@@ -55,7 +55,7 @@ static void see_collision(struct estimate_run *run, const struct watch_event *ev
 
 static void close_motion(struct estimate_run *run, unsigned number);
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct estimate_run *run = context;
     if (event->motor == 0)
@@ -71,13 +71,13 @@ static void see(void *context, const struct watch_event *event)
     case WATCH_MOTION:
         if (event->value && motor->ended)
             close_motion(run, event->motor);
-        see_motion(motor, event);
+        note_motion(motor, event);
         break;
     case WATCH_STEP:
         motor->pulses++;
         break;
     case WATCH_PLANT:
-        see_collision(run, event);
+        note_collision(run, event);
         break;
     default:
         break;
@@ -87,7 +87,7 @@ static void see(void *context, const struct watch_event *event)
 void estimate_watch(struct estimate_run *run)
 {
     run->watcher = (struct watcher){.kinds = WATCH_BIT(WATCH_COMMAND) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_PLANT),
-                                    .on_event = see,
+                                    .on_event = on_event,
                                     .context = run};
     if (run->options->plant != NULL)
         run->watcher.kinds |= WATCH_BIT(WATCH_STEP); /* limit moves end somewhere */
@@ -191,7 +191,7 @@ static void ask_points(struct estimate_run *run, unsigned number)
         update_row(row, motor);
 }
 
-void estimate_look(struct estimate_run *run)
+void estimate_update(struct estimate_run *run)
 {
     for (unsigned number = 1; number <= RKM04_MOTORS; number++) {
         struct estimate_motor *motor = &run->motor[number - 1];

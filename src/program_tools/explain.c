@@ -61,7 +61,7 @@ static const char *direction_words(const struct writer *writer, unsigned directi
     return phrase(writer, directions == FLOW_FORWARD ? PHRASE_FORWARD : directions == FLOW_BACK ? PHRASE_BACK : PHRASE_EITHER);
 }
 
-/* S, V and A; what is not known is not told. */
+/* S, V and A; what is not known is not printed. */
 static void append_speeds(struct writer *writer, const struct flow_state *in, bool only_start)
 {
     const char *between = "; ";
@@ -222,16 +222,16 @@ static bool explain_motor(struct explanations *all, const struct program_source 
     struct code code;
     struct flow flow = {.complete = false};
     size_t index = 0;
-    bool well = true;
+    bool ok = true;
     code_begin(&code, sources, count);
-    for (size_t i = 0; well && i < count; i++)
-        well = sources[i].motor != motor || code_read(&code, i, texts[i], NULL, NULL);
-    well = well && flow_begin(&flow, &code, UINT16_MAX);
-    for (size_t i = 0; well && i < count; i++)
-        well = sources[i].motor != motor || explain_source(all, &code, &flow, i, texts[i], &index, language);
+    for (size_t i = 0; ok && i < count; i++)
+        ok = sources[i].motor != motor || code_read(&code, i, texts[i], NULL, NULL);
+    ok = ok && flow_begin(&flow, &code, UINT16_MAX);
+    for (size_t i = 0; ok && i < count; i++)
+        ok = sources[i].motor != motor || explain_source(all, &code, &flow, i, texts[i], &index, language);
     flow_end(&flow);
     code_free(&code);
-    return well;
+    return ok;
 }
 
 static int compare(const void *left, const void *right)
@@ -246,24 +246,24 @@ bool explain_programs(const struct program_source *sources, size_t count, enum e
                       struct explanations *all)
 {
     char **texts = calloc(count + 1, sizeof *texts);
-    bool well = texts != NULL;
+    bool ok = texts != NULL;
     *all = (struct explanations){0};
-    for (size_t i = 0; well && i < count; i++) {
+    for (size_t i = 0; ok && i < count; i++) {
         texts[i] = malloc(sources[i].length + 1);
-        well = texts[i] != NULL;
-        if (well && sources[i].length > 0)
+        ok = texts[i] != NULL;
+        if (ok && sources[i].length > 0)
             memcpy(texts[i], sources[i].text, sources[i].length);
-        if (well)
+        if (ok)
             program_text_map_in_place(texts[i], sources[i].length);
     }
-    for (unsigned motor = 0; well && motor <= RKM04_MOTORS; motor++)
-        well = explain_motor(all, sources, count, motor, texts, language);
+    for (unsigned motor = 0; ok && motor <= RKM04_MOTORS; motor++)
+        ok = explain_motor(all, sources, count, motor, texts, language);
     for (size_t i = 0; texts != NULL && i < count; i++)
         free(texts[i]);
     free(texts);
     if (all->count > 0)
         qsort(all->list, all->count, sizeof all->list[0], compare);
-    return well;
+    return ok;
 }
 
 void explain_free(struct explanations *all)

@@ -68,12 +68,12 @@ static bool report_errors(const struct program_source *sources, size_t count)
     const struct check_options options = {.off = UINT64_MAX};
     struct diagnostics found;
     struct check_printer printer;
-    bool well = check_programs(sources, count, &options, &found);
+    bool ok = check_programs(sources, count, &options, &found);
     check_print_begin(&printer, CHECK_TEXT, stderr);
     check_print(&printer, sources, &found);
-    well = check_print_end(&printer) && well && found.errors == 0;
+    ok = check_print_end(&printer) && ok && found.errors == 0;
     diagnostics_free(&found);
-    return well;
+    return ok;
 }
 
 /* Columns of a text in UTF-8. */
@@ -119,23 +119,23 @@ static int explain_files(struct options *options)
     struct tool_files *files = &options->files;
     struct program_source *sources = calloc(files->count + 1, sizeof *sources);
     struct explanations all = {0};
-    bool well = sources != NULL;
+    bool ok = sources != NULL;
     for (size_t i = 0; sources != NULL && i < files->count; i++) {
-        well = tool_file_read(&files->list[i], "rkm04 explain") && well;
+        ok = tool_file_read(&files->list[i], "rkm04 explain") && ok;
         sources[i] = files->list[i].source;
     }
-    well = well && report_errors(sources, files->count);
-    if (well && !explain_programs(sources, files->count, options->language, &all)) {
+    ok = ok && report_errors(sources, files->count);
+    if (ok && !explain_programs(sources, files->count, options->language, &all)) {
         fputs("rkm04 explain: out of memory\n", stderr);
-        well = false;
+        ok = false;
     }
-    if (well && options->json)
+    if (ok && options->json)
         print_json(&all, sources);
-    else if (well)
+    else if (ok)
         print_text(&all, sources);
     explain_free(&all);
     free(sources);
-    return well ? STATUS_SUCCESS : STATUS_FAILURE;
+    return ok ? STATUS_SUCCESS : STATUS_FAILURE;
 }
 
 int explain_main(int argc, char **argv)

@@ -61,7 +61,7 @@ static void leave(struct flow *flow, struct search *search, uint32_t node)
     search->components++;
 }
 
-static void look_from(struct flow *flow, struct search *search, uint32_t node)
+static void search_from(struct flow *flow, struct search *search, uint32_t node)
 {
     enter(search, node);
     while (search->deep > 0) {
@@ -91,7 +91,7 @@ size_t flow_find_cycles(struct flow *flow)
         flow->nodes[i].component = FLOW_NO_NODE;
     for (size_t i = 0; i < count; i++)
         if (search.index[i] == 0)
-            look_from(flow, &search, (uint32_t)i);
+            search_from(flow, &search, (uint32_t)i);
     free(memory);
     return search.components;
 }

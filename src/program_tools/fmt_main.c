@@ -133,9 +133,9 @@ static int format_file(const struct options *options, struct tool_file *file, js
     case FORMAT_DONE:
         break;
     }
-    bool well = use(options, file, text, length, all, &changed);
+    bool ok = use(options, file, text, length, all, &changed);
     free(text);
-    return !well || (options->check && changed) ? STATUS_FAILURE : STATUS_SUCCESS;
+    return !ok || (options->check && changed) ? STATUS_FAILURE : STATUS_SUCCESS;
 }
 
 int fmt_main(int argc, char **argv)

@@ -27,8 +27,8 @@ static bool write_all(int file, const char *text, size_t length)
 static int put_in_place(int file, const char *temporary, const char *path, const struct stat *old, const char *text,
                         size_t length)
 {
-    bool well = write_all(file, text, length) && fchmod(file, old->st_mode & 07777) == 0 && fsync(file) == 0;
-    int wrong = well ? 0 : errno;
+    bool ok = write_all(file, text, length) && fchmod(file, old->st_mode & 07777) == 0 && fsync(file) == 0;
+    int wrong = ok ? 0 : errno;
     if (close(file) != 0 && wrong == 0)
         wrong = errno;
     if (wrong == 0 && rename(temporary, path) != 0)

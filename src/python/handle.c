@@ -90,7 +90,7 @@ static bool set_plant(struct handle *handle, const json_t *options, struct refus
 
 static bool begin(struct handle *handle, struct refusal *refusal)
 {
-    struct sim_config config = {.out = handle_host_hear, .context = handle};
+    struct sim_config config = {.out = handle_host_receive, .context = handle};
     if (!read_config(handle->options, &config, refusal))
         return false;
     *refusal = (struct refusal){REFUSED_MEMORY, "out of memory"};

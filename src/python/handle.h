@@ -91,10 +91,10 @@ bool handle_host_write(struct handle *handle, const uint8_t *bytes, size_t lengt
 size_t handle_host_read(struct handle *handle, struct handle_byte *bytes, size_t length);
 
 /* For the config of the sim: bytes that reach the host. */
-void handle_host_hear(void *context, const uint8_t *bytes, size_t length);
+void handle_host_receive(void *context, const uint8_t *bytes, size_t length);
 
 /* What is under way to the host in characters of its own is received to its end, if the bus is at rest. */
-void handle_host_settle(struct handle *handle);
+void handle_host_finish(struct handle *handle);
 
 /* ---- Events ------------------------------------------------------------------------------------------------------------ */
 

@@ -24,7 +24,7 @@ static char *make_room(struct handle_subscription *subscription, size_t more)
     return subscription->text + subscription->length;
 }
 
-static void see(void *context, const struct watch_event *event)
+static void on_event(void *context, const struct watch_event *event)
 {
     struct handle_subscription *subscription = context;
     if (!event_filter_passes(&subscription->filter, event))
@@ -55,7 +55,7 @@ json_t *handle_subscribe(struct handle *handle, const json_t *params, struct ref
         .sim = sim,
         .number = ++handle->subscribed,
         .filter = filter,
-        .watcher = {.kinds = filter.kinds, .on_event = see, .context = subscription},
+        .watcher = {.kinds = filter.kinds, .on_event = on_event, .context = subscription},
     };
     sim_watch(sim, &subscription->watcher);
     return json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription", (int)subscription->number);

@@ -108,7 +108,7 @@ static void keep(struct handle *handle, uint8_t byte)
         host->lost++;
 }
 
-void handle_host_hear(void *context, const uint8_t *bytes, size_t length)
+void handle_host_receive(void *context, const uint8_t *bytes, size_t length)
 {
     struct handle *handle = context;
     struct line_received heard[LINE_RECEIVER_MAX];
@@ -122,7 +122,7 @@ void handle_host_hear(void *context, const uint8_t *bytes, size_t length)
     }
 }
 
-void handle_host_settle(struct handle *handle)
+void handle_host_finish(struct handle *handle)
 {
     struct line_received heard[LINE_RECEIVER_MAX];
     if (!handle->host.differs || sim_due(&handle->sim) != DEVICE_NEVER)

@@ -32,7 +32,7 @@ bool handle_advance(struct handle *handle, uint64_t tick)
         if (sim_now(sim) < tick && is_paused(handle))
             return false;
     }
-    handle_host_settle(handle);
+    handle_host_finish(handle);
     return true;
 }
 
@@ -55,7 +55,7 @@ bool handle_advance_to_bytes(struct handle *handle, uint64_t tick, size_t count,
         uint64_t now = sim_now(sim), next = earlier(sim_due(sim), faults_next(&sim->faults));
         next = earlier(next > now ? next : now + 1, slice_end(sim));
         sim_advance(sim, earlier(tick, next));
-        handle_host_settle(handle);
+        handle_host_finish(handle);
         if (is_paused(handle))
             return false;
     }
@@ -73,6 +73,6 @@ bool handle_advance_until(struct handle *handle, struct condition *condition, ui
         if (!*holds && is_paused(handle))
             return false;
     }
-    handle_host_settle(handle);
+    handle_host_finish(handle);
     return true;
 }

@@ -418,7 +418,7 @@ static PyObject *sim_frame(struct sim_object *self, PyObject *args)
 
 /* Let time pass until a whole message has come to the host, at most up to a tick; the bytes that led to it are taken. Returns
  * (dnode, snode, message), or None. */
-static PyObject *sim_hear_message(struct sim_object *self, PyObject *value)
+static PyObject *sim_receive_message(struct sim_object *self, PyObject *value)
 {
     static const char wanted_until[] = "(iiy#)";
     uint64_t tick;
@@ -537,7 +537,7 @@ static PyMethodDef sim_methods[] = {
     METHOD("purge", sim_purge_, METH_NOARGS, "purge(): forget what was written and has not set out."),
     METHOD("is_idle", sim_is_idle, METH_NOARGS, "is_idle(): no byte under way, no answer to come."),
     METHOD("frame", sim_frame, METH_VARARGS, "frame(node, message): bytes on the wires."),
-    METHOD("hear_message", sim_hear_message, METH_O, "hear_message(tick): (dnode, snode, message) or None at the tick."),
+    METHOD("hear_message", sim_receive_message, METH_O, "hear_message(tick): (dnode, snode, message) or None at the tick."),
     METHOD("events", sim_events, METH_O, "events(subscription): take (lines of JSON, lost, tick of the first lost)."),
     METHOD("close", sim_close, METH_NOARGS, "close(): end its files and free it."),
     {NULL, NULL, 0, NULL},

@@ -30,9 +30,9 @@ static bool put_string(json_t *head, const char *name, const char *text)
         return false;
     record_hex(stream, (const uint8_t *)text, strlen(text));
     snprintf(hex_name, sizeof hex_name, "%s_hex", name);
-    bool well = fclose(stream) == 0 && json_object_set_new(head, hex_name, json_string(hex)) == 0;
+    bool ok = fclose(stream) == 0 && json_object_set_new(head, hex_name, json_string(hex)) == 0;
     free(hex);
-    return well;
+    return ok;
 }
 
 static bool put_member(json_t *head, const char *name, json_t *value)
@@ -45,14 +45,14 @@ static bool put_device(json_t *head, const struct device_kind *kind, const struc
 {
     const char *name;
     json_t *settings = json_object(), *value;
-    bool well = settings != NULL;
-    if (well)
+    bool ok = settings != NULL;
+    if (ok)
         kind->put_settings(config, settings);
     json_object_foreach(settings, name, value)
-        well = well && (json_is_string(value) ? put_string(head, name, json_string_value(value))
+        ok = ok && (json_is_string(value) ? put_string(head, name, json_string_value(value))
                                               : json_object_set(head, name, value) == 0);
     json_decref(settings);
-    return well;
+    return ok;
 }
 
 static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
@@ -104,12 +104,12 @@ static bool write_flash(FILE *out, struct sim *sim, unsigned number)
 bool record_line_head(FILE *out, struct sim *sim, bool outputs)
 {
     json_t *head = json_object();
-    bool well = put_settings(head, sim, outputs) && json_dumpf(head, out, JSON_COMPACT) == 0;
+    bool ok = put_settings(head, sim, outputs) && json_dumpf(head, out, JSON_COMPACT) == 0;
     json_decref(head);
     putc('\n', out);
-    for (unsigned number = 1; well && number <= sim_units(sim); number++)
-        well = write_flash(out, sim, number);
-    return well;
+    for (unsigned number = 1; ok && number <= sim_units(sim); number++)
+        ok = write_flash(out, sim, number);
+    return ok;
 }
 
 /* ---- What comes in -------------------------------------------------------------------------------------------------- */
@@ -151,7 +151,7 @@ bool record_line_command(FILE *out, uint64_t now, const char *method, const json
 {
     begin(out, now);
     fprintf(out, ",\"command\":\"%s\",\"params\":", method);
-    bool well = params ? json_dumpf(params, out, JSON_COMPACT) == 0 : fputs("{}", out) >= 0;
+    bool ok = params ? json_dumpf(params, out, JSON_COMPACT) == 0 : fputs("{}", out) >= 0;
     fputs("}\n", out);
-    return well;
+    return ok;
 }

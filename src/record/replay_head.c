@@ -77,16 +77,16 @@ static bool read_nodes(struct replay *replay, struct node_list *nodes)
 {
     const json_t *list = json_object_get(replay->json, "nodes"), *node;
     size_t i;
-    bool well = json_is_array(list) && json_array_size(list) >= 1 && json_array_size(list) <= NODE_LIST_MAX;
-    nodes->count = well ? (unsigned)json_array_size(list) : 0;
+    bool ok = json_is_array(list) && json_array_size(list) >= 1 && json_array_size(list) <= NODE_LIST_MAX;
+    nodes->count = ok ? (unsigned)json_array_size(list) : 0;
     json_array_foreach((json_t *)list, i, node) {
-        well = well && json_is_integer(node) && json_integer_value(node) >= 1 &&
+        ok = ok && json_is_integer(node) && json_integer_value(node) >= 1 &&
                json_integer_value(node) <= replay->device->addresses;
-        if (well)
+        if (ok)
             nodes->node[i] = (uint8_t)json_integer_value(node);
     }
-    return well || replay_wrong(replay, "nodes", "expected \"nodes\", a list of 1 to %u addresses from 1 to %u", NODE_LIST_MAX,
-                                replay->device->addresses);
+    return ok || replay_wrong(replay, "nodes", "expected \"nodes\", a list of 1 to %u addresses from 1 to %u", NODE_LIST_MAX,
+                              replay->device->addresses);
 }
 
 /* Recordings that name no device are an RKM04's. */
@@ -131,11 +131,11 @@ static bool read_seed(struct replay *replay, uint64_t *seed)
 static bool read_settings(struct replay *replay, struct sim_config *config)
 {
     uint64_t turnaround;
-    bool well = read_nodes(replay, &config->nodes) && read_own(replay, &config->unit) &&
+    bool ok = read_nodes(replay, &config->nodes) && read_own(replay, &config->unit) &&
                 replay_flag(replay, "timed", true, &config->timed) &&
                 replay_number(replay, "turnaround", 0, SEGMENT_TURNAROUND_MAX, 0, &turnaround) &&
                 read_seed(replay, &config->seed) && replay_flag(replay, "outputs", false, &replay->outputs);
-    if (!well)
+    if (!ok)
         return false;
     config->turnaround = (uint32_t)turnaround;
     return true;
@@ -175,15 +175,15 @@ static bool set_plant(struct replay *replay, const char *plant)
     char *messages = NULL;
     size_t size;
     FILE *errors = open_memstream(&messages, &size);
-    bool well = errors && sim_configure_plants(replay->sim, "plant", plant, strlen(plant), errors);
+    bool ok = errors && sim_configure_plants(replay->sim, "plant", plant, strlen(plant), errors);
     if (errors)
         fclose(errors);
-    if (!well) {
+    if (!ok) {
         size_t length = messages ? strcspn(messages, "\n") : 0;
         replay_wrong(replay, NULL, "%.*s", (int)length, length > 0 ? messages : "the plant could not be set up");
     }
     free(messages);
-    return well;
+    return ok;
 }
 
 static bool power_up(struct replay *replay, const struct sim_config *config, const char *plant)
@@ -200,12 +200,12 @@ bool replay_begin(struct replay *replay)
         .flash = {.read = flash_read, .erase = flash_erase, .program = flash_program, .context = replay},
     };
     char *plant = NULL;
-    bool well = read_head(replay, &config, &plant) && !replay->ended;
-    if (well) {
+    bool ok = read_head(replay, &config, &plant) && !replay->ended;
+    if (ok) {
         replay->flash = calloc(config.nodes.count, replay->device->flash_blocks * replay->device->flash_block_size + 1u);
-        well = replay->flash ? read_images(replay, config.nodes.count) : replay_no_memory(replay);
+        ok = replay->flash ? read_images(replay, config.nodes.count) : replay_no_memory(replay);
     }
-    well = well && power_up(replay, &config, plant);
+    ok = ok && power_up(replay, &config, plant);
     free(plant);
-    return well;
+    return ok;
 }

@@ -145,10 +145,10 @@ static bool read_file(struct restore *restore, struct refusal *refusal)
     char *text = in ? malloc(RECORD_EMBEDDED_MAX + 1u) : NULL;
     size_t length = text ? fread(text, 1, RECORD_EMBEDDED_MAX + 1u, in) : 0;
     int error = errno;
-    bool well = text && !ferror(in) && length <= RECORD_EMBEDDED_MAX;
+    bool ok = text && !ferror(in) && length <= RECORD_EMBEDDED_MAX;
     if (in)
         fclose(in);
-    if (well) {
+    if (ok) {
         restore->text = text;
         restore->length = length;
         text = realloc(restore->text, length + 1u);

@@ -95,15 +95,15 @@ struct snapshot *snapshot_take(struct sim *sim)
         return NULL;
     snapshot->switches = sim->config.nodes;
     snapshot->faults = sim->faults;
-    bool well = segment_copy(&snapshot->segment, &sim->segment);
-    well = wire_monitor_begin(&snapshot->monitor, sim->monitor.framing, NULL, (struct wire_monitor_calls){0}) && well;
-    if (well)
+    bool ok = segment_copy(&snapshot->segment, &sim->segment);
+    ok = wire_monitor_begin(&snapshot->monitor, sim->monitor.framing, NULL, (struct wire_monitor_calls){0}) && ok;
+    if (ok)
         wire_monitor_copy(&snapshot->monitor, &sim->monitor, 0);
     if (sim->plant_text)
-        well = (snapshot->plant_text = strdup(sim->plant_text)) && well;
+        ok = (snapshot->plant_text = strdup(sim->plant_text)) && ok;
     for (unsigned at = 0; at < sim_units(sim); at++)
-        well = copy_unit(sim, snapshot, at) && well;
-    if (well)
+        ok = copy_unit(sim, snapshot, at) && ok;
+    if (ok)
         return snapshot;
     snapshot_free(snapshot);
     return NULL;
@@ -160,7 +160,7 @@ const char *snapshot_misfit(const struct sim *sim, const struct snapshot *snapsh
 
 /* ---- Telling what has changed --------------------------------------------------------------------------------------- */
 
-static void read_look(struct sim *sim, unsigned number, struct look *look)
+static void read_visible_state(struct sim *sim, unsigned number, struct look *look)
 {
     const struct device_kind *kind = sim_device(sim);
     const struct device_unit *unit = sim_core(sim, number);
@@ -199,7 +199,7 @@ static void report_change(struct sim *sim, unsigned number, unsigned motor, enum
 static void report_changes(struct sim *sim, unsigned number, const struct look *before)
 {
     struct look after;
-    read_look(sim, number, &after);
+    read_visible_state(sim, number, &after);
     report_change(sim, number, 0, WATCH_POWER, before->powered, after.powered);
     report_change(sim, number, 0, WATCH_INPUTS, (int32_t)before->inputs, (int32_t)after.inputs);
     report_change(sim, number, 0, WATCH_OUTPUTS, (int32_t)before->outputs, (int32_t)after.outputs);
@@ -231,14 +231,14 @@ static void put_unit(struct sim_unit *unit, const struct sim_unit *from, struct 
 
 static bool copy_plants(const struct snapshot *snapshot, uint64_t later, struct plant **plant)
 {
-    bool well = true;
+    bool ok = true;
     for (unsigned at = 0; at < snapshot->segment.units; at++) {
         if (!snapshot->unit[at].plant)
             continue;
         plant[at] = plant_copy(snapshot->unit[at].plant, later);
-        well = plant[at] && well;
+        ok = plant[at] && ok;
     }
-    return well;
+    return ok;
 }
 
 /* `sim` as it was, everything later by so many ticks. */
@@ -254,7 +254,7 @@ static bool put_shifted(struct sim *sim, const struct snapshot *snapshot, uint64
         return false;
     }
     for (unsigned number = 1; number <= sim_units(sim); number++)
-        read_look(sim, number, &before[number - 1u]);
+        read_visible_state(sim, number, &before[number - 1u]);
     bool unplugged = sim->faults.unplugged;
     segment_copy(&sim->segment, &snapshot->segment); /* there is memory for its units */
     segment_shift(&sim->segment, later);
@@ -283,7 +283,7 @@ bool snapshot_restore(struct sim *sim, const struct snapshot *snapshot)
 bool snapshot_move(struct sim *sim, uint64_t ticks)
 {
     struct snapshot *snapshot = snapshot_take(sim);
-    bool well = snapshot && put_shifted(sim, snapshot, ticks);
+    bool ok = snapshot && put_shifted(sim, snapshot, ticks);
     snapshot_free(snapshot);
-    return well;
+    return ok;
 }

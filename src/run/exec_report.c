@@ -152,30 +152,30 @@ static void report_waits(struct exec_run *run, const json_t *waits)
 static bool print_json(FILE *out, json_t *answers, struct exec_run *run, enum exec_end end, json_t *waits)
 {
     json_t *state = run->device->state(exec_run_unit(run), run->reached);
-    bool well = state != NULL && json_object_set_new(state, "end", json_string(end_name(end))) == 0 &&
+    bool ok = state != NULL && json_object_set_new(state, "end", json_string(end_name(end))) == 0 &&
                 json_object_set(state, "answers", answers) == 0 &&
                 (json_array_size(waits) == 0 || json_object_set(state, "waits", waits) == 0) &&
                 json_dumpf(state, out, JSON_COMPACT) == 0;
     json_decref(state);
     fputc('\n', out);
-    return well;
+    return ok;
 }
 
 bool report_end(struct report *report, struct exec_run *run, enum exec_end end, FILE *out)
 {
-    bool well = true;
+    bool ok = true;
     json_t *waits = waits_json(run, end);
     errno = 0;
     report_waits(run, waits);
     if (report->answers != NULL)
-        well = print_json(out, report->answers, run, end, waits);
+        ok = print_json(out, report->answers, run, end, waits);
     else
         print_table(out, run, end, json_array_size(waits) > 0);
     json_decref(waits);
     json_decref(report->answers);
     if (fflush(out) != 0 || ferror(out))
-        well = false;
-    if (!well)
+        ok = false;
+    if (!ok)
         fprintf(stderr, "rkm04 exec: cannot write the final state: %s\n", strerror(errno ? errno : EIO));
-    return well;
+    return ok;
 }

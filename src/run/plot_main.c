@@ -170,9 +170,9 @@ static bool is_wrong(const char *what, const char *why)
 
 /* ---- From programs ---------------------------------------------------------------------------------------------------- */
 
-static void look(void *context)
+static void on_advanced(void *context)
 {
-    collector_look(context);
+    collector_update(context);
 }
 
 static void ignore_answer(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length)
@@ -214,7 +214,7 @@ static bool draw_programs(struct options *options, struct plot_curves *curves)
     run.config = options->device.config;
     run.progress = isatty(STDERR_FILENO) != 0;
     run.answered = ignore_answer;
-    run.advanced = look;
+    run.advanced = on_advanced;
     run.context = &collector;
     bool is_right = exec_run_begin(&run) && (options->plant == NULL || attach_plant(&run.sim, options->plant));
     if (is_right) {

@@ -194,27 +194,27 @@ static bool check_written(const char *path, int error)
 static bool begin_files(struct files *files, struct sim *sim, const struct options *options)
 {
     char *error = NULL;
-    bool well = true;
-    for (size_t i = 0; well && i < options->traces; i++)
-        well = (files->trace[i] = trace_file_begin(sim, options->trace[i], options->output_flags, &error)) != NULL;
-    for (size_t i = 0; well && i < options->wires; i++)
-        well = (files->wire[i] = wire_file_begin(sim, options->wire[i], options->output_flags, &error)) != NULL;
-    if (!well)
+    bool ok = true;
+    for (size_t i = 0; ok && i < options->traces; i++)
+        ok = (files->trace[i] = trace_file_begin(sim, options->trace[i], options->output_flags, &error)) != NULL;
+    for (size_t i = 0; ok && i < options->wires; i++)
+        ok = (files->wire[i] = wire_file_begin(sim, options->wire[i], options->output_flags, &error)) != NULL;
+    if (!ok)
         fprintf(stderr, "rkm04 replay: %s\n", error ? error : "out of memory");
     free(error);
-    return well;
+    return ok;
 }
 
 static bool end_files(struct files *files, const struct options *options)
 {
-    bool well = true;
+    bool ok = true;
     for (size_t i = 0; i < options->traces; i++)
         if (files->trace[i])
-            well = check_written(options->trace[i], trace_file_end(files->trace[i])) && well;
+            ok = check_written(options->trace[i], trace_file_end(files->trace[i])) && ok;
     for (size_t i = 0; i < options->wires; i++)
         if (files->wire[i])
-            well = check_written(options->wire[i], wire_file_end(files->wire[i])) && well;
-    return well;
+            ok = check_written(options->wire[i], wire_file_end(files->wire[i])) && ok;
+    return ok;
 }
 
 /* ---- Report --------------------------------------------------------------------------------------------------------- */
@@ -250,9 +250,9 @@ static bool report_json(struct replay *replay, const char *name, enum replay_end
                                (json_int_t)counts.lines, "inputs", (json_int_t)counts.inputs, "bytes_in",
                                (json_int_t)counts.bytes_in, "bytes_out", (json_int_t)counts.bytes_out, "pulses",
                                (json_int_t)counts.steps, "whole", (int)counts.whole);
-    bool well = report && json_dumpf(report, stdout, JSON_COMPACT) == 0 && putchar('\n') != EOF;
+    bool ok = report && json_dumpf(report, stdout, JSON_COMPACT) == 0 && putchar('\n') != EOF;
     json_decref(report);
-    return well;
+    return ok;
 }
 
 static bool report_text(struct replay *replay, const char *name, enum replay_end end)
@@ -280,22 +280,22 @@ static int run_replay(struct replay *replay, FILE *in, const char *name, const s
     struct files files = {0};
     struct progress progress;
     enum replay_end end = REPLAY_WRONG;
-    bool well = true;
+    bool ok = true;
     begin_progress(&progress, replay, in);
     replay_until(replay, options->until);
     if (replay_sim(replay))
-        well = begin_files(&files, replay_sim(replay), options);
-    if (well)
+        ok = begin_files(&files, replay_sim(replay), options);
+    if (ok)
         end = replay_run(replay, update_progress, &progress);
     if (progress.shown)
         fputs("\r\033[K", stderr);
-    well = end_files(&files, options) && well;
-    if (!well && end == REPLAY_WRONG && replay_sim(replay))
+    ok = end_files(&files, options) && ok;
+    if (!ok && end == REPLAY_WRONG && replay_sim(replay))
         return STATUS_FAILURE;
-    well = (options->json ? report_json(replay, name, end) : report_text(replay, name, end)) && well;
+    ok = (options->json ? report_json(replay, name, end) : report_text(replay, name, end)) && ok;
     if (fflush(stdout) != 0)
-        well = check_written("standard output", errno);
-    return end == REPLAY_WRONG ? STATUS_USAGE : end == REPLAY_SAME && well ? STATUS_SUCCESS : STATUS_FAILURE;
+        ok = check_written("standard output", errno);
+    return end == REPLAY_WRONG ? STATUS_USAGE : end == REPLAY_SAME && ok ? STATUS_SUCCESS : STATUS_FAILURE;
 }
 
 int replay_main(int argc, char **argv)

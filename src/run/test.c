@@ -189,21 +189,21 @@ static bool run_all(struct test_case *tests, const struct options *options, int 
 {
     struct test_progress progress = {.wanted = isatty(STDERR_FILENO) != 0, .count = options->paths};
     const char *folder = options->no_records ? NULL : options->records != NULL ? options->records : ".";
-    bool well = true;
+    bool ok = true;
     for (size_t i = 0; i < options->paths && !test_case_interrupted(); i++) {
         unsigned number = 1;
         for (size_t before = 0; before < i; before++)
             number += test_case_alike(&tests[before], &tests[i]);
         progress.at = i + 1;
         scenario_set_readings(tests[i].scenario, &options->readings);
-        well = test_case_run(&tests[i], folder, options->output_flags, number, &progress) && well;
+        ok = test_case_run(&tests[i], folder, options->output_flags, number, &progress) && ok;
         if (!options->json)
             test_report_line(stdout, &tests[i]);
-        well = run_under_others(&tests[i], options, &progress) && well;
+        ok = run_under_others(&tests[i], options, &progress) && ok;
         if (fflush(stdout) != 0 && *wrong == 0)
             *wrong = errno;
     }
-    return well;
+    return ok;
 }
 
 /* `wrong`: an errno of before, or 0. */
@@ -222,16 +222,16 @@ static bool finish_file(FILE *file, const char *what, int wrong)
 
 static bool report_all(const struct test_case *tests, const struct options *options, FILE *junit, int wrong)
 {
-    bool well = true;
+    bool ok = true;
     if (junit != NULL) {
         test_report_junit(junit, tests, options->paths, options->strict);
-        well = finish_file(junit, options->junit, 0);
+        ok = finish_file(junit, options->junit, 0);
     }
     if (options->json)
         test_report_json(stdout, tests, options->paths);
     else if (options->paths > 1)
         test_report_sum(stdout, tests, options->paths);
-    return finish_file(stdout, "the results", wrong) && well;
+    return finish_file(stdout, "the results", wrong) && ok;
 }
 
 static int run_files(struct test_case *tests, const struct options *options)
@@ -251,15 +251,15 @@ static int run_files(struct test_case *tests, const struct options *options)
     }
     catch_signals();
     int wrong = 0;
-    bool well = run_all(tests, options, &wrong);
-    well = report_all(tests, options, junit, wrong) && well;
+    bool ok = run_all(tests, options, &wrong);
+    ok = report_all(tests, options, junit, wrong) && ok;
     if (test_case_interrupted())
         fputs("rkm04 test: interrupted\n", stderr);
     if (test_report_count(tests, options->paths, TEST_FAILED) > 0 ||
         (options->strict && test_report_dependent(tests, options->paths) > 0))
         return STATUS_FAILED;
-    well = well && !test_case_interrupted() && test_report_count(tests, options->paths, TEST_PASSED) == options->paths;
-    return well ? STATUS_SUCCESS : STATUS_FAILURE;
+    ok = ok && !test_case_interrupted() && test_report_count(tests, options->paths, TEST_PASSED) == options->paths;
+    return ok ? STATUS_SUCCESS : STATUS_FAILURE;
 }
 
 int test_main(int argc, char **argv)

@@ -152,11 +152,11 @@ static bool write_record(const char *path, unsigned flags, const char *text, siz
     FILE *file = output_file_open(path, &output_recording, flags | OUTPUT_MAY_WAIT, why);
     if (file == NULL)
         return false;
-    bool well = fwrite(text, 1, length, file) == length;
-    well = output_file_close(file) == 0 && well;
-    if (!well)
+    bool ok = fwrite(text, 1, length, file) == length;
+    ok = output_file_close(file) == 0 && ok;
+    if (!ok)
         *why = strdup(strerror(errno));
-    return well && output_file_spare(path); /* from the others of the run */
+    return ok && output_file_spare(path); /* from the others of the run */
 }
 
 static bool store_recording(struct test_case *test, const char *folder, unsigned flags, unsigned number, const char *text,
@@ -232,13 +232,13 @@ bool test_case_run(struct test_case *test, const char *folder, unsigned flags, u
 {
     char *record = NULL;
     size_t length = 0;
-    bool well = true;
+    bool ok = true;
     FILE *out = folder != NULL ? open_memstream(&record, &length) : NULL;
     test->outcome = run_once(test, out, &test->result, progress);
     if (out != NULL && fclose(out) != 0)
         test->result.record_error = errno;
     if (test->outcome == TEST_FAILED && folder != NULL)
-        well = store_recording(test, folder, flags, number, record, length);
+        ok = store_recording(test, folder, flags, number, record, length);
     free(record);
-    return well;
+    return ok;
 }

@@ -173,7 +173,7 @@ bool test_report_json(FILE *out, const struct test_case *tests, size_t count)
                              (json_int_t)test_report_count(tests, count, TEST_PASSED), "failed",
                              (json_int_t)test_report_count(tests, count, TEST_FAILED), "dependent",
                              (json_int_t)test_report_dependent(tests, count), "results", list);
-    bool well = json != NULL && json_dumpf(json, out, JSON_INDENT(2)) == 0 && fputc('\n', out) != EOF;
+    bool ok = json != NULL && json_dumpf(json, out, JSON_INDENT(2)) == 0 && fputc('\n', out) != EOF;
     json_decref(json);
-    return well;
+    return ok;
 }

@@ -55,9 +55,9 @@ static bool do_wait(struct running *running, const struct scenario_step *step)
     struct condition *condition = arm_condition(running, step);
     while (!running->over && !condition_holds(condition) && sim_now(running->sim) < begin + step->within)
         running_advance(running, begin + step->within, condition);
-    bool well = !running->over && check_wait(running, step, condition, begin);
+    bool ok = !running->over && check_wait(running, step, condition, begin);
     condition_free(condition);
-    return well;
+    return ok;
 }
 
 static bool do_expect(struct running *running, const struct scenario_step *step)
@@ -142,12 +142,12 @@ static bool do_call(struct running *running, const struct scenario_step *step)
 {
     struct refusal refusal = {0};
     json_t *result = sim_command(running->sim, step->method, step->json, &refusal);
-    bool well = result != NULL;
+    bool ok = result != NULL;
     json_decref(result);
     if (running->over)
         return false;
-    return well || running_failed(running, step, sim_now(running->sim), running_text("%s to succeed", step->method),
-                                  running_text("refused: %s", refusal.text));
+    return ok || running_failed(running, step, sim_now(running->sim), running_text("%s to succeed", step->method),
+                                running_text("refused: %s", refusal.text));
 }
 
 /* ---- The whole ------------------------------------------------------------------------------------------------------ */

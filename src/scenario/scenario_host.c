@@ -194,10 +194,10 @@ bool running_send(struct running *running, const struct scenario_step *step)
         return running_no_memory(running);
     if (step->answer != ANSWER_UNASKED)
         start_listening(&running->host);
-    bool well = send_bytes(running, bytes, length, &passed);
+    bool ok = send_bytes(running, bytes, length, &passed);
     free(bytes);
-    if (step->answer == ANSWER_UNASKED || !well)
-        return well;
+    if (step->answer == ANSWER_UNASKED || !ok)
+        return ok;
     while (!running->over && !running->host.answered && sim_now(running->sim) < passed + step->within)
         running_advance(running, passed + step->within, NULL);
     running->host.listening = false;

@@ -19,14 +19,14 @@ static const char *const known[] = {
 
 /* ---- Values --------------------------------------------------------------------------------------------------------- */
 
-static const char *text_of(const struct config_node *map, const char *key, bool *well)
+static const char *text_of(const struct config_node *map, const char *key, bool *ok)
 {
     const struct config_node *node = config_get(map, key);
     if (node == NULL)
         return NULL;
     if (config_type(node) == CONFIG_TEXT)
         return config_text(node);
-    *well = config_error(node, "expected %s, a text", key);
+    *ok = config_error(node, "expected %s, a text", key);
     return NULL;
 }
 
@@ -54,9 +54,9 @@ static bool read_readings(struct scenario *scenario, const struct config_node *r
     char text[32], error[READINGS_ERROR_SIZE];
     const struct config_node *map = config_get(root, "readings"), *node = config_get(root, "speed_change_latency");
     struct rkm04_readings *readings = &scenario->settings.readings;
-    bool well = map == NULL || readings_read_map(readings, &scenario->named, map);
+    bool ok = map == NULL || readings_read_map(readings, &scenario->named, map);
     if (node == NULL)
-        return well;
+        return ok;
     if (!read_time_up_to(root, "speed_change_latency", LATENCY_MAX, &latency))
         return false;
     if (latency % 1000 != 0)
@@ -64,69 +64,69 @@ static bool read_readings(struct scenario *scenario, const struct config_node *r
     snprintf(text, sizeof text, "speed-change=%u", (unsigned)(latency / 1000));
     if (!readings_read(readings, &scenario->named, text, error))
         return config_error(node, "%s", error);
-    return well;
+    return ok;
 }
 
 /* The kind of all units. What is a setting of the RKM04 alone stands in a scenario for it alone. */
 static bool read_device(struct scenario *scenario, const struct config_node *root)
 {
     static const char *const own[] = {"framing", "readings", "speed_change_latency", "version_text"};
-    bool well = true;
-    const char *name = text_of(root, "device", &well);
+    bool ok = true;
+    const char *name = text_of(root, "device", &ok);
     const struct device_kind *kind = name ? device_kind_named(name) : &rkm04_device;
     if (!kind)
         return config_error(config_get(root, "device"), "expected a device, one that `rkm04 devices' lists, found \"%.40s\"",
                             name);
     for (size_t i = 0; kind != &rkm04_device && i < sizeof own / sizeof own[0]; i++)
         if (config_get(root, own[i]))
-            well = config_error(config_get(root, own[i]), "the device %s has no %s", kind->name, own[i]);
+            ok = config_error(config_get(root, own[i]), "the device %s has no %s", kind->name, own[i]);
     scenario->config.device = kind;
-    return well;
+    return ok;
 }
 
 static bool read_line(struct scenario *scenario, const struct config_node *root)
 {
-    bool well = read_device(scenario, root);
-    if (!well)
+    bool ok = read_device(scenario, root);
+    if (!ok)
         return false;
     uint64_t turnaround = SEGMENT_TURNAROUND;
     struct sim_config *config = &scenario->config;
-    const char *units = text_of(root, "units", &well), *framing = text_of(root, "framing", &well);
-    const char *baud = text_of(root, "baud", &well);
+    const char *units = text_of(root, "units", &ok), *framing = text_of(root, "framing", &ok);
+    const char *baud = text_of(root, "baud", &ok);
     if (!node_list_read_up_to(&config->nodes, units != NULL ? units : "1", config->device->addresses))
-        well = config->device == &rkm04_device
+        ok = config->device == &rkm04_device
                    ? config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED)
                    : config_error(config_get(root, "units"), NODE_LIST_FORMAT, config->device->addresses);
     scenario->settings.framing = rkm04_framing_named(framing != NULL ? framing : "hdlc");
     if (scenario->settings.framing == NULL)
-        well = config_error(config_get(root, "framing"), "expected framing, hdlc or plain, found \"%.20s\"", framing);
+        ok = config_error(config_get(root, "framing"), "expected framing, hdlc or plain, found \"%.20s\"", framing);
     config->timed = baud == NULL || strcmp(baud, "0") != 0;
     if (baud != NULL && strcmp(baud, "0") != 0 && strcmp(baud, "19200") != 0)
-        well = config_error(config_get(root, "baud"), "expected baud, 19200 or 0, found \"%.20s\"", baud);
-    well = read_time_up_to(root, "turnaround", SEGMENT_TURNAROUND_MAX, &turnaround) && well;
-    well = read_readings(scenario, root) && well;
+        ok = config_error(config_get(root, "baud"), "expected baud, 19200 or 0, found \"%.20s\"", baud);
+    ok = read_time_up_to(root, "turnaround", SEGMENT_TURNAROUND_MAX, &turnaround) && ok;
+    ok = read_readings(scenario, root) && ok;
     config->turnaround = (uint32_t)turnaround;
-    return well;
+    return ok;
 }
 
 static bool read_rest(struct scenario *scenario, const struct config_node *root)
 {
-    bool well = true;
+    bool ok = true;
     int64_t seed = 1;
     const struct config_node *node = config_get(root, "seed");
-    scenario->name = text_of(root, "name", &well);
-    text_of(root, "description", &well);
-    scenario->settings.version_text = text_of(root, "version_text", &well);
+    scenario->name = text_of(root, "name", &ok);
+    text_of(root, "description", &ok);
+    scenario->settings.version_text = text_of(root, "version_text", &ok);
     if (scenario->settings.version_text != NULL && strlen(scenario->settings.version_text) > VERSION_MAX)
-        well = config_error(config_get(root, "version_text"), "expected version_text of up to %u bytes", VERSION_MAX);
+        ok = config_error(config_get(root, "version_text"), "expected version_text of up to %u bytes", VERSION_MAX);
     put_settings(scenario);
     if (node != NULL)
-        well = config_integer(node, "seed", 0, INT64_MAX, &seed) && well;
+        ok = config_integer(node, "seed", 0, INT64_MAX, &seed) && ok;
     scenario->config.seed = (uint64_t)seed;
     scenario->timeout = TIMEOUT;
-    well = read_time_up_to(root, "timeout", TIME_VALUE_MAX, &scenario->timeout) && well;
+    ok = read_time_up_to(root, "timeout", TIME_VALUE_MAX, &scenario->timeout) && ok;
     node = config_get(root, "allow_faults");
-    return (node == NULL || config_flag(node, "allow_faults", &scenario->allow_faults)) && well;
+    return (node == NULL || config_flag(node, "allow_faults", &scenario->allow_faults)) && ok;
 }
 
 /* ---- Files ---------------------------------------------------------------------------------------------------------- */
@@ -197,7 +197,7 @@ static int list_length(const struct config_node *map, const char *key)
 
 static bool read_always(struct scenario_reader *reader, const struct config_node *root)
 {
-    bool well = true;
+    bool ok = true;
     int count = list_length(root, "always");
     struct scenario *scenario = reader->scenario;
     scenario->always_node = config_get(root, "always");
@@ -205,16 +205,16 @@ static bool read_always(struct scenario_reader *reader, const struct config_node
     for (int i = 0; i < count; i++) {
         json_t *json = scenario_condition(reader, config_at(scenario->always_node, (size_t)i), 0, false);
         if (json == NULL || json_array_append_new(scenario->always, json) != 0)
-            well = false;
+            ok = false;
     }
-    return well && count >= 0;
+    return ok && count >= 0;
 }
 
 /* Steps before stimuli: a stimulus may clear a fault that a step injects. */
 static bool read_lists(struct scenario_reader *reader, const struct config_node *root)
 {
     struct scenario *scenario = reader->scenario;
-    bool well = read_always(reader, root);
+    bool ok = read_always(reader, root);
     int steps = list_length(root, "steps"), stimuli = list_length(root, "stimuli");
     if (config_get(root, "steps") == NULL)
         return config_error(root, "expected steps, a list of what is to be done");
@@ -225,14 +225,14 @@ static bool read_lists(struct scenario_reader *reader, const struct config_node 
     if (scenario->step == NULL || scenario->stimulus == NULL)
         return config_error(root, "out of memory");
     for (size_t i = 0; i < (size_t)steps; i++) {
-        well = scenario_step_read(reader, config_at(config_get(root, "steps"), i), &scenario->step[i]) && well;
+        ok = scenario_step_read(reader, config_at(config_get(root, "steps"), i), &scenario->step[i]) && ok;
         scenario->steps = i + 1;
     }
     for (size_t i = 0; i < (size_t)stimuli; i++) {
-        well = scenario_stimulus_read(reader, config_at(config_get(root, "stimuli"), i), &scenario->stimulus[i]) && well;
+        ok = scenario_stimulus_read(reader, config_at(config_get(root, "stimuli"), i), &scenario->stimulus[i]) && ok;
         scenario->stimuli = i + 1;
     }
-    return well;
+    return ok;
 }
 
 /* ---- The line ------------------------------------------------------------------------------------------------------- */
@@ -266,18 +266,18 @@ static bool try_power_up(struct scenario_reader *reader, const struct config_nod
     size_t length;
     bool inside = reader->scenario->plant != NULL && reader->scenario->plant_name == NULL;
     FILE *out = inside ? open_memstream(&said, &length) : errors;
-    bool well = out != NULL && scenario_power_up(reader->scenario, reader->sim, out);
+    bool ok = out != NULL && scenario_power_up(reader->scenario, reader->sim, out);
     if (!inside)
-        return well;
+        return ok;
     if (out != NULL)
         fclose(out);
-    if (!well && said != NULL) {
+    if (!ok && said != NULL) {
         const char *error = strstr(said, "error: ");
         said[strcspn(said, "\n")] = '\0';
         config_error(config_get(root, "plant"), "%s", error != NULL ? error + strlen("error: ") : "out of memory");
     }
     free(said);
-    return well;
+    return ok;
 }
 
 static bool read_inputs(struct scenario_reader *reader, const struct config_node *root)
@@ -296,19 +296,19 @@ static bool read_all(struct scenario_reader *reader, const struct config_node *r
 {
     if (config_type(root) != CONFIG_MAP)
         return config_error(root, "expected a map with steps");
-    bool well = config_keys(root, known);
-    well = read_line(reader->scenario, root) && well;
-    well = read_rest(reader->scenario, root) && well;
-    well = read_plant(reader, root) && well;
-    if (!well) /* without a line nothing can be tried out */
+    bool ok = config_keys(root, known);
+    ok = read_line(reader->scenario, root) && ok;
+    ok = read_rest(reader->scenario, root) && ok;
+    ok = read_plant(reader, root) && ok;
+    if (!ok) /* without a line nothing can be tried out */
         return false;
     reader->sim = calloc(1, sizeof *reader->sim);
     if (reader->sim == NULL)
         return config_error(root, "out of memory");
-    well = try_power_up(reader, root, errors) && read_inputs(reader, root) && read_lists(reader, root);
+    ok = try_power_up(reader, root, errors) && read_inputs(reader, root) && read_lists(reader, root);
     sim_end(reader->sim);
     free(reader->sim);
-    return well;
+    return ok;
 }
 
 struct scenario *scenario_read(const char *name, const char *text, size_t length, const struct scenario_files *files,

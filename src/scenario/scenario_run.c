@@ -306,11 +306,11 @@ static bool power_up(const struct scenario *scenario, struct sim *sim)
     char *said = NULL;
     size_t length;
     FILE *nowhere = open_memstream(&said, &length);
-    bool well = nowhere != NULL && scenario_power_up(scenario, sim, nowhere);
+    bool ok = nowhere != NULL && scenario_power_up(scenario, sim, nowhere);
     if (nowhere != NULL)
         fclose(nowhere);
     free(said);
-    return well;
+    return ok;
 }
 
 enum scenario_end scenario_run(const struct scenario *scenario, FILE *record, bool (*interrupted)(void *context, uint64_t tick),

@@ -94,13 +94,13 @@ json_t *scenario_condition(struct scenario_reader *reader, const struct config_n
     if (unit > 0 && json_is_object(json) && json_object_get(json, "unit") == NULL)
         json_object_set_new(json, "unit", json_string(reader->sim->unit[unit - 1].name));
     struct condition *condition = condition_read(reader->sim, json, &refusal);
-    bool well = condition != NULL && (waits || !condition->messages);
+    bool ok = condition != NULL && (waits || !condition->messages);
     if (condition == NULL)
         config_error(node, "%s", refusal.text);
-    else if (!well)
+    else if (!ok)
         config_error(node, "expected something that lasts: a message can only be waited for, with wait or when");
     condition_free(condition);
-    if (well)
+    if (ok)
         return json;
     json_decref(json);
     return NULL;
@@ -219,10 +219,10 @@ static bool read_program(struct scenario_reader *reader, const struct config_nod
     char *path = NULL;
     size_t length;
     char *text = scenario_file(reader, file, &path, &length);
-    bool well = text != NULL && set_program(reader, node, step, path, text, length);
+    bool ok = text != NULL && set_program(reader, node, step, path, text, length);
     free(path);
     free(text);
-    return well;
+    return ok;
 }
 
 /* ---- What is expected ----------------------------------------------------------------------------------------------- */

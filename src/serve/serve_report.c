@@ -116,15 +116,15 @@ json_t *serve_report_json(const struct bus_options *options, struct bus *const *
                              (int)options->baud, "turnaround", (int)options->turnaround, "clock", options->clock_text,
                              "readings", kind->readings ? kind->readings->json(&options->device.config) : NULL, "flash",
                              options->flash, "control", control, "device", kind->name);
-    bool well = ready && rest && json_object_update(ready, rest) == 0;
+    bool ok = ready && rest && json_object_update(ready, rest) == 0;
     json_decref(rest);
-    if (well && options->lines > 1) {
+    if (ok && options->lines > 1) {
         lines = json_array();
-        for (unsigned i = 0; well && i < options->lines; i++)
-            well = json_array_append_new(lines, ports_json(buses[i])) == 0;
-        well = json_object_set_new(ready, "lines", lines) == 0 && well;
+        for (unsigned i = 0; ok && i < options->lines; i++)
+            ok = json_array_append_new(lines, ports_json(buses[i])) == 0;
+        ok = json_object_set_new(ready, "lines", lines) == 0 && ok;
     }
-    if (well)
+    if (ok)
         return ready;
     json_decref(ready);
     return NULL;

@@ -70,10 +70,10 @@ bool sim_configure_plants(struct sim *sim, const char *name, const char *text, s
     char *copy = NULL;
     if (text) {
         struct config_tree *tree = config_read(name, text, length, errors);
-        bool well = tree && read_plants(sim, config_root(tree), &plants);
+        bool ok = tree && read_plants(sim, config_root(tree), &plants);
         config_free(tree);
-        copy = well ? strndup(text, length) : NULL;
-        if (well && !copy)
+        copy = ok ? strndup(text, length) : NULL;
+        if (ok && !copy)
             fprintf(errors, "%s: error: out of memory\n", name);
         if (!copy) {
             free_plants(&plants);

@@ -267,21 +267,21 @@ static bool read_all(struct config_tree *tree, const char *text, size_t length)
 {
     struct reader reader = {.tree = tree};
     yaml_parser_t parser;
-    bool well = true;
+    bool ok = true;
     if (!yaml_parser_initialize(&parser))
         return short_of_memory(tree);
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
-    while (well && !reader.ended) {
+    while (ok && !reader.ended) {
         yaml_event_t event;
         if (!yaml_parser_parse(&parser, &event)) {
-            well = parser_error(tree, &parser);
+            ok = parser_error(tree, &parser);
             break;
         }
-        well = read_event(&reader, &event);
+        ok = read_event(&reader, &event);
         yaml_event_delete(&event);
     }
     yaml_parser_delete(&parser);
-    return well;
+    return ok;
 }
 
 struct config_tree *config_read(const char *name, const char *text, size_t length, FILE *errors)
@@ -442,14 +442,14 @@ static void list_names(FILE *out, const char *const *names)
 bool config_keys(const struct config_node *node, const char *const *names)
 {
     FILE *errors = node->tree->errors;
-    bool well = true;
+    bool ok = true;
     for (size_t i = 0; node->type == CONFIG_MAP && i < node->count; i++) {
         size_t at = 0;
         while (names[at] && strcmp(names[at], node->key[i]) != 0)
             at++;
         if (names[at])
             continue;
-        well = false;
+        ok = false;
         fprintf(errors, "%s:%zu:%zu: error: expected ", node->tree->name, node->item[i]->key_line, node->item[i]->key_column);
         list_names(errors, names);
         char found[MESSAGE_SIZE];
@@ -457,7 +457,7 @@ bool config_keys(const struct config_node *node, const char *const *names)
         invisible_note(found, sizeof found);
         fprintf(errors, ", %s\n", found);
     }
-    return well;
+    return ok;
 }
 
 /* ---- JSON ----------------------------------------------------------------------------------------------------------- */

@@ -272,7 +272,7 @@ bool readings_read_json(struct rkm04_readings *readings, const json_t *json, cha
 
 bool readings_read_map(struct rkm04_readings *readings, readings_set *named, const struct config_node *map)
 {
-    bool well = true;
+    bool ok = true;
     char error[READINGS_ERROR_SIZE];
     if (config_type(map) != CONFIG_MAP)
         return config_error(map, "expected readings, a map as in {hold-exit: latch}");
@@ -282,15 +282,15 @@ bool readings_read_map(struct rkm04_readings *readings, readings_set *named, con
         unsigned at = find(name, strlen(name));
         if (at == READINGS) {
             unknown_name(name, strlen(name), error);
-            well = config_key_error(map, i, "%s", error);
+            ok = config_key_error(map, i, "%s", error);
         } else if (!read_value(readings, at, text, strlen(text))) {
             wrong_value(&table[at], text, strlen(text), error);
-            well = config_error(value, "%s", error);
+            ok = config_error(value, "%s", error);
         } else {
             *named = *named | 1u << at;
         }
     }
-    return well;
+    return ok;
 }
 
 /* ---- Writing -------------------------------------------------------------------------------------------------------- */

@@ -47,9 +47,9 @@ static bool can_connect(void)
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     int fd = socket(AF_UNIX, SOCK_STREAM, 0);
     strcpy(address.sun_path, path);
-    bool well = connect(fd, (const struct sockaddr *)&address, sizeof address) == 0;
+    bool ok = connect(fd, (const struct sockaddr *)&address, sizeof address) == 0;
     close(fd);
-    return well;
+    return ok;
 }
 
 /* Another emulator has made the socket and been killed. */
@@ -58,8 +58,8 @@ static void leave_stale(void)
     pid_t child = fork();
     if (child == 0) {
         struct control_socket socket;
-        bool well = control_socket_open(&socket, path) && listen(socket.fd, 1) == 0;
-        raise(well ? SIGKILL : SIGTERM);
+        bool ok = control_socket_open(&socket, path) && listen(socket.fd, 1) == 0;
+        raise(ok ? SIGKILL : SIGTERM);
         _exit(1);
     }
     int status;

@@ -155,20 +155,20 @@ static size_t read_all(const uint8_t *text, size_t length)
     do {
         struct rkm04_command command = UNTOUCHED;
         got = rkm04_read(&reader, &command);
-        bool well = last <= reader.start && reader.start <= reader.at && reader.at <= length && ++steps <= length + 1;
+        bool ok = last <= reader.start && reader.start <= reader.at && reader.at <= length && ++steps <= length + 1;
         if (got == RKM04_READ_END)
-            well = well && reader.at == length;
+            ok = ok && reader.at == length;
         else
-            well = well && reader.at > reader.start;
+            ok = ok && reader.at > reader.start;
         if (got == RKM04_READ_COMMAND)
-            well = well && rkm04_command_valid(command);
+            ok = ok && rkm04_command_valid(command);
         else
-            well = well && command.op == UNTOUCHED.op && command.argument == UNTOUCHED.argument;
+            ok = ok && command.op == UNTOUCHED.op && command.argument == UNTOUCHED.argument;
         if (got == RKM04_READ_BAD_VALUE)
-            well = well && reader.wrong > reader.start && reader.wrong <= length;
+            ok = ok && reader.wrong > reader.start && reader.wrong <= length;
         if (got == RKM04_READ_UNKNOWN)
-            well = well && reader.wrong == reader.start;
-        if (!well)
+            ok = ok && reader.wrong == reader.start;
+        if (!ok)
             ck_abort_msg("result %d, start %zu, wrong %zu, at %zu of %.*s", got, reader.start, reader.wrong, reader.at,
                          (int)length, (const char *)text);
         last = reader.at;

@@ -396,17 +396,17 @@ static const char *read_file(const char *name)
 static bool try_report(const char *name)
 {
     struct coverage_files files;
-    bool well = coverage_open(&files, name, 0);
+    bool ok = coverage_open(&files, name, 0);
     coverage_close(&files);
-    return well;
+    return ok;
 }
 
 static bool write_report(const char *name)
 {
     struct coverage_files files;
-    bool well = coverage_open(&files, name, 0) && coverage_write(&coverage, &files);
+    bool ok = coverage_open(&files, name, 0) && coverage_write(&coverage, &files);
     coverage_close(&files);
-    return well;
+    return ok;
 }
 
 START_TEST(the_text_lists_what_is_covered_and_what_is_missing)

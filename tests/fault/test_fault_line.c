@@ -48,7 +48,7 @@ static void assert_as(const struct heard *found, size_t at, const struct heard *
 }
 
 /* The line works again. */
-static void assert_well(void)
+static void assert_answered(void)
 {
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 1);
     ck_assert_uint_eq(rig.host.count, ANSWER);
@@ -66,7 +66,7 @@ START_TEST(a_byte_dropped_to_the_host_is_missing_and_the_others_come_when_they_w
         assert_as(&rig.host, k, &clean, k + 1, ANSWER - 1 - k);
         ck_assert_uint_eq(rig.news, 1);
         ck_assert_uint_eq(rig.told[0].unit, 1);
-        assert_well();
+        assert_answered();
     }
 }
 END_TEST
@@ -78,7 +78,7 @@ START_TEST(a_flipped_byte_to_the_host_differs_in_the_bits_of_the_mask)
         clean.byte[k] ^= 129;
         ck_assert_uint_eq(rig.host.count, ANSWER);
         assert_as(&rig.host, 0, &clean, 0, ANSWER);
-        assert_well();
+        assert_answered();
     }
 }
 END_TEST
@@ -93,7 +93,7 @@ START_TEST(a_byte_to_the_host_comes_twice_and_the_next_ones_later)
         for (unsigned i = k + 1; i < ANSWER; i++)
             ck_assert_uint_eq(rig.host.tick[i], clean.tick[i]); /* when the byte behind it would have come */
         ck_assert_uint_eq((rig.host.tick[ANSWER] * 12 - clean.tick[ANSWER - 1] * 12 + 12) / 6250, 1);
-        assert_well();
+        assert_answered();
     }
 }
 END_TEST
@@ -107,7 +107,7 @@ START_TEST(a_byte_is_inserted_before_one_to_the_master)
         ck_assert_uint_eq(rig.host.byte[k], 85);
         ck_assert_uint_eq(rig.host.tick[k], clean.tick[k]);
         ck_assert_mem_eq(rig.host.byte + k + 1, clean.byte + k, ANSWER - k);
-        assert_well();
+        assert_answered();
     }
 }
 END_TEST
@@ -125,7 +125,7 @@ START_TEST(all_that_can_happen_to_a_byte_can_happen_to_one)
     ck_assert_mem_eq(rig.host.byte, "\1\x7c\x7c", 3);
     ck_assert_mem_eq(rig.host.byte + 3, clean.byte + 1, ANSWER - 1);
     ck_assert_uint_eq(rig.news, 3);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -145,7 +145,7 @@ START_TEST(a_byte_dropped_to_the_units_leaves_a_gap_and_the_request_is_not_under
             settle();
             ck_assert_uint_eq(counters(1).requests, 1);
         }
-        assert_well();
+        assert_answered();
     }
 }
 END_TEST
@@ -159,7 +159,7 @@ START_TEST(a_flipped_byte_to_the_units_spoils_the_frame)
         ck_assert_uint_eq(counters(2).dropped, 1);
         ck_assert_uint_eq(rig.line.byte[k], clean_line.byte[k] ^ 1u);
         ck_assert_uint_eq(rig.line.tick[k], clean_line.tick[k]);
-        assert_well();
+        assert_answered();
     }
 }
 END_TEST
@@ -174,7 +174,7 @@ START_TEST(a_byte_to_the_units_comes_twice_and_those_behind_it_wait)
     assert_as(&rig.line, 0, &clean_line, 0, 4);
     for (unsigned k = 0; k <= REQUEST; k++)
         ck_assert_uint_eq(rig.line.tick[k], BEGIN + ((k + 1) * 6250 + 11) / 12);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -200,7 +200,7 @@ START_TEST(a_flag_inserted_into_a_request_spoils_it_and_before_it_does_no_harm)
     rig_end();
     version_with(_i, "{'kind': 'insert', 'byte': 126, 'direction': 'to_units', 'count': 1}");
     ck_assert_uint_eq(rig.host.count, ANSWER);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -224,7 +224,7 @@ START_TEST(with_local_echo_the_host_hears_its_request_before_the_answer)
     assert_as(&rig.host, 0, &clean_line, 0, REQUEST);
     assert_as(&rig.host, REQUEST, &clean, 0, ANSWER);
     json_decref(run_command("fault.clear", "{}"));
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -233,7 +233,7 @@ START_TEST(an_echo_may_end_after_some_bytes)
     version_with(_i, "{'kind': 'echo', 'count': 3}");
     ck_assert_uint_eq(rig.host.count, 3 + ANSWER);
     assert_as(&rig.host, 0, &clean_line, 0, 3);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -252,7 +252,7 @@ START_TEST(a_break_spoils_the_request_under_way_and_is_one_framing_error)
     assert_news(1, "1 break: over");
     ck_assert_uint_eq(rig.told[0].tick, BEGIN + 1000);
     ck_assert_uint_eq(rig.told[1].tick, BEGIN + 21000);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -263,7 +263,7 @@ START_TEST(a_break_cuts_an_answer_short)
     ck_assert_uint_lt(rig.host.count, ANSWER);
     assert_as(&rig.host, 0, &clean, 0, rig.host.count - 1); /* the one that it began in may be anything */
     run(20000);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -277,7 +277,7 @@ START_TEST(on_a_line_without_time_nothing_gets_through_a_break)
     run(999999);
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 0);
     run(1);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -289,7 +289,7 @@ START_TEST(a_break_on_an_idle_line_harms_nobody)
     ck_assert_uint_eq(rig.news, 6);
     ck_assert_uint_eq(rig.lost, 3);
     ck_assert_uint_eq(rig.host.count, 0);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -301,7 +301,7 @@ START_TEST(a_break_stays_when_bytes_begin_to_take_time)
     sim_set_timed(&rig.sim, true);
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 0);
     run(1000000);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -316,7 +316,7 @@ START_TEST(with_the_cable_cut_there_is_silence_until_it_is_mended)
     run(1900000);
     ck_assert_uint_eq(answers_to(1, VERSION, 1), 0);
     run(100000);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -331,7 +331,7 @@ START_TEST(a_cable_cut_during_an_answer_ends_it_at_the_host_and_not_at_the_unit)
     ck_assert_uint_eq(counters(1).answers, 1);
     ck_assert_uint_eq(counters(2).others, 2); /* the others hear it on their side of the cut */
     run(1000000);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -362,7 +362,7 @@ START_TEST(an_unplugged_adapter_is_told_when_it_goes_and_when_it_comes_back)
         ck_assert(rig.plug[i].plugged == (i % 2 == 1));
     }
     assert_news(0, "1 unplugged: the adapter is unplugged");
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -373,7 +373,7 @@ START_TEST(what_was_under_way_when_the_adapter_was_unplugged_is_lost)
     ck_assert_uint_eq(rig.line.count, 2); /* the byte that was being sent is cut off from the units only */
     ck_assert_uint_eq(counters(1).requests, 0);
     run(1000000);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 
@@ -390,7 +390,7 @@ START_TEST(an_adapter_unplugged_twice_over_comes_back_when_both_faults_are_over)
     json_decref(run_command("fault.clear", params));
     ck_assert_uint_eq(rig.plugs, 2);
     ck_assert(rig.plug[1].plugged);
-    assert_well();
+    assert_answered();
 }
 END_TEST
 

@@ -42,15 +42,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memset(&sim, 0, sizeof sim);
     const char *nodes = size > 0 && data[0] == 'u' ? "3,5,5" : "3";
     FUZZ_CHECK(node_list_read(&config.nodes, nodes) && sim_begin(&sim, &config), "no memory");
-    bool well = sim_configure_plants(&sim, "plant", (const char *)data, size, errors);
+    bool ok = sim_configure_plants(&sim, "plant", (const char *)data, size, errors);
     fflush(errors);
-    FUZZ_CHECK(well == (length == 0), "%d: %s", well, said);
-    if (well) {
+    FUZZ_CHECK(ok == (length == 0), "%d: %s", ok, said);
+    if (ok) {
         run_programs();
         check_state();
-        well = sim_configure_plants(&sim, "plant", (const char *)data, size, errors); /* unless a motor has left its end stops */
+        ok = sim_configure_plants(&sim, "plant", (const char *)data, size, errors); /* unless a motor has left its end stops */
         fflush(errors);
-        FUZZ_CHECK(well == (length == 0), "%d: %s", well, said);
+        FUZZ_CHECK(ok == (length == 0), "%d: %s", ok, said);
         run_programs();
     }
     sim_end(&sim);

@@ -26,16 +26,16 @@ static bool run_file(const char *path, size_t size)
 {
     FILE *in = fopen(path, "rb");
     uint8_t *data = malloc(size + (size == 0)); /* of just this size, so that a read behind its end is noticed */
-    bool well = in && data && fread(data, 1, size, in) == size;
+    bool ok = in && data && fread(data, 1, size, in) == size;
     if (in)
         fclose(in);
-    if (well) {
+    if (ok) {
         present = path;
         LLVMFuzzerTestOneInput(data, size);
         files++;
     }
     free(data);
-    return well;
+    return ok;
 }
 
 static bool run(const char *path);
@@ -43,19 +43,19 @@ static bool run(const char *path);
 static bool run_folder(const char *path)
 {
     struct dirent **list;
-    bool well = true;
+    bool ok = true;
     int count = scandir(path, &list, NULL, alphasort);
     for (int i = 0; i < count; i++) {
         char *inside = NULL;
         if (list[i]->d_name[0] != '.' && asprintf(&inside, "%s/%s", path, list[i]->d_name) > 0) {
-            well = run(inside) && well;
+            ok = run(inside) && ok;
             free(inside);
         }
         free(list[i]);
     }
     if (count >= 0)
         free(list);
-    return well && count >= 0;
+    return ok && count >= 0;
 }
 
 static bool run(const char *path)
@@ -68,13 +68,13 @@ static bool run(const char *path)
 
 int main(int count, char **paths)
 {
-    bool well = count > 1;
+    bool ok = count > 1;
     for (int i = 1; i < count; i++) {
         if (!run(paths[i])) {
             fprintf(stderr, "cannot read %s\n", paths[i]);
-            well = false;
+            ok = false;
         }
     }
     printf("%lu inputs\n", files);
-    return well && files > 0 ? 0 : 1;
+    return ok && files > 0 ? 0 : 1;
 }

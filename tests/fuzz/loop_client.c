@@ -63,14 +63,14 @@ static void sent_line(struct client *client, const char *line, size_t length)
     struct refusal refusal;
     if (strspn(line, " \t\r") >= length)
         return;
-    bool well = rpc_read(&request, line, length, lines_there, &refusal);
-    enum due_kind kind = well ? kind_of(request.method) : DUE_OTHER;
+    bool ok = rpc_read(&request, line, length, lines_there, &refusal);
+    enum due_kind kind = ok ? kind_of(request.method) : DUE_OTHER;
     if (kind == DUE_SHUTDOWN) {
         client->shutdowns++;
         client->shutdowns_silent += !request.id;
     }
     if (request.id)
-        expect(client, kind, request.id, well ? request.params : NULL, request.line);
+        expect(client, kind, request.id, ok ? request.params : NULL, request.line);
     else if (kind == DUE_SUBSCRIBE)
         client->silent_subscribe = true;
     rpc_end(&request);

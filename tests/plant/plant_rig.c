@@ -27,13 +27,13 @@ bool plant_rig_configure(struct plant_rig *rig, const char *plant)
     char *said = NULL;
     size_t length;
     FILE *errors = open_memstream(&said, &length);
-    bool well = sim_configure_plants(&rig->sim, "plant", plant, plant ? strlen(plant) : 0, errors);
+    bool ok = sim_configure_plants(&rig->sim, "plant", plant, plant ? strlen(plant) : 0, errors);
     fclose(errors);
     ck_assert_uint_lt(length, sizeof rig->errors);
     strcpy(rig->errors, said);
     free(said);
-    ck_assert_msg(well == (rig->errors[0] == '\0'), "taken: %d, said: %s", well, rig->errors);
-    return well;
+    ck_assert_msg(ok == (rig->errors[0] == '\0'), "taken: %d, said: %s", ok, rig->errors);
+    return ok;
 }
 
 bool plant_rig_begin(struct plant_rig *rig, const char *nodes, const char *plant)

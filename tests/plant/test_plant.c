@@ -15,8 +15,8 @@ static struct plant_rig rig;
 
 static void begin(const char *plant)
 {
-    bool well = plant_rig_begin(&rig, "1", plant);
-    ck_assert_msg(well, "%s", rig.errors);
+    bool ok = plant_rig_begin(&rig, "1", plant);
+    ck_assert_msg(ok, "%s", rig.errors);
 }
 
 static void teardown(void)

@@ -19,8 +19,8 @@ static void teardown(void)
 /* Run a program of motor 1 with this plant. Returns how many steps were lost. */
 static int64_t lost(const char *plant, const char *program)
 {
-    bool well = plant_rig_begin(&rig, "1", plant);
-    ck_assert_msg(well, "%s", rig.errors);
+    bool ok = plant_rig_begin(&rig, "1", plant);
+    ck_assert_msg(ok, "%s", rig.errors);
     plant_rig_program(&rig, 1, '1', program);
     plant_rig_run(&rig, 100 * SECOND);
     return counter(&rig, 1) - true_position(&rig, 1);

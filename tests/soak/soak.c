@@ -146,7 +146,7 @@ static void report_day(const struct soak *soak, double days, struct memory memor
 
 static bool report(const struct soak *soak, struct memory first, struct memory last, struct memory most)
 {
-    bool well = !MEMORY_JUDGED || (last.heap <= first.heap + HEAP_SLACK && last.resident <= first.resident + RESIDENT_SLACK);
+    bool ok = !MEMORY_JUDGED || (last.heap <= first.heap + HEAP_SLACK && last.resident <= first.resident + RESIDENT_SLACK);
     double seconds = elapsed(), days = (double)sim_now(&soak->sim) / (double)DAY;
     printf("{\"virtual_days\":%.3f,\"seconds\":%.1f,\"times_real\":%.0f,\"seed\":%" PRIu64 ",\"units\":%u,\"rounds\":%" PRIu64
            ",\"requests\":%" PRIu64 ",\"answers\":%" PRIu64 ",\"jobs\":%" PRIu64 ",\"steps\":%" PRIu64 ",\"stores\":%" PRIu64
@@ -155,11 +155,11 @@ static bool report(const struct soak *soak, struct memory first, struct memory l
            ",\"resident_begin\":%zu,\"resident_end\":%zu,\"resident_most\":%zu"
            ",\"well\":%s}\n", days, seconds, days * 86400 / seconds, options.seed, UNITS, soak->rounds, soak->requests,
            soak->answers, soak->jobs, soak->steps_done, soak->stores, soak->garbage, soak->faults, soak->resets, soak->snapshots,
-           first.heap, last.heap, most.heap, first.resident, last.resident, most.resident, well ? "true" : "false");
-    if (!well)
+           first.heap, last.heap, most.heap, first.resident, last.resident, most.resident, ok ? "true" : "false");
+    if (!ok)
         fprintf(stderr, "soak: memory has grown: heap from %zu to %zu bytes, resident from %zu to %zu\n", first.heap, last.heap,
                 first.resident, last.resident);
-    return well;
+    return ok;
 }
 
 static bool live(struct soak *soak)
@@ -210,7 +210,7 @@ int main(int argc, char **argv)
     read_options(argc, argv);
     elapsed();
     begin(&soak);
-    bool well = live(&soak);
+    bool ok = live(&soak);
     sim_end(&soak.sim);
-    return well ? EXIT_SUCCESS : EXIT_FAILURE;
+    return ok ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -24,9 +24,9 @@ static const char *read_json(const char *text)
     struct rkm04_readings readings = {0};
     json_t *json = json_loads(text, JSON_DECODE_ANY, NULL);
     ck_assert_ptr_nonnull(json);
-    bool well = readings_read_json(&readings, json, error);
+    bool ok = readings_read_json(&readings, json, error);
     json_decref(json);
-    return well ? readings_text(&readings, out) : error;
+    return ok ? readings_text(&readings, out) : error;
 }
 
 /* The canonical text of a map of YAML, or what was reported. */
@@ -39,10 +39,10 @@ static const char *read_map(const char *text)
     free(said);
     FILE *errors = open_memstream(&said, &length);
     struct config_tree *tree = config_read("x", text, strlen(text), errors);
-    bool well = tree && readings_read_map(&readings, &named, config_root(tree));
+    bool ok = tree && readings_read_map(&readings, &named, config_root(tree));
     config_free(tree);
     fclose(errors);
-    return well ? readings_text(&readings, out) : said;
+    return ok ? readings_text(&readings, out) : said;
 }
 
 #define ALL \

@@ -30,7 +30,7 @@ void pulses_put(struct pulses *pulses, unsigned number, uint32_t tick, uint8_t i
 }
 
 /* When does the lane go on? The pin is at 0. */
-static inline void look_ahead(struct pulse_lane *lane, uint32_t now)
+static inline void set_next(struct pulse_lane *lane, uint32_t now)
 {
     lane->idle = lane->in == lane->out;
     if (lane->idle) {
@@ -45,7 +45,7 @@ void pulses_refresh(struct pulses *pulses)
 {
     for (unsigned i = 0; i < PULSES_LANES; i++)
         if (pulses->lane[i].idle && pulses->lane[i].in != pulses->lane[i].out)
-            look_ahead(&pulses->lane[i], 0);
+            set_next(&pulses->lane[i], 0);
 }
 
 /* Do what is due in a lane. */
@@ -77,7 +77,7 @@ static void play(struct pulses *pulses, unsigned number, const struct pulse_pins
             lane->free = now + PULSES_SETTLE;
         }
     }
-    look_ahead(lane, now);
+    set_next(lane, now);
 }
 
 uint32_t pulses_play(struct pulses *pulses, const struct pulse_pins *pins, uint32_t now, uint32_t latest)
