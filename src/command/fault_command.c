@@ -260,7 +260,7 @@ static bool read_unit_and_direction(struct sim *sim, const json_t *params, unsig
         refuse(refusal, REFUSED_PARAMS, "direction: expected \"to_units\", \"to_master\" or \"both\"");
     else if (fault->unit > 0 && fault->direction != FAULT_TO_HOST)
         refuse(refusal, REFUSED_PARAMS,
-               "direction: with unit expected \"to_master\": all units hear the same bytes of the master");
+               "direction: with unit expected \"to_master\": all units receive the same bytes of the host");
     else
         return true;
     return false;

@@ -159,7 +159,7 @@ static rlim_t count_files(const struct bus_options *options)
            (options->coverage ? FILES_COVERAGE : 0);
 }
 
-/* The lowest `ulimit -n' with so many free numbers: some have been taken by whoever started us. */
+/* The lowest `ulimit -n' with so many free numbers: some are in use already by the process that started us. */
 static rlim_t find_limit(rlim_t files)
 {
     int number = 0;
