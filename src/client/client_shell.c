@@ -51,7 +51,7 @@ static const char help[] =
 
 /* ---- Commands --------------------------------------------------------------------------------------------------------- */
 
-static enum exit_status say_usage(const struct state *state, const char *text, const char *found)
+static enum exit_status report_usage(const struct state *state, const char *text, const char *found)
 {
     if (state->is_person)
         fprintf(stderr, "%s, found '%s'\n", text, found);
@@ -140,7 +140,7 @@ static enum exit_status set_number(const struct state *state, char *const *word,
     char text[64];
     snprintf(text, sizeof text, "expected a %s 0 to %u", word[0], high);
     if (count != 2 || !number_read(word[1], 0, high, &value))
-        return say_usage(state, text, count < 2 ? "nothing" : word[1]);
+        return report_usage(state, text, count < 2 ? "nothing" : word[1]);
     *number = (unsigned)value;
     return STATUS_SUCCESS;
 }
@@ -155,7 +155,7 @@ static enum exit_status choose_node(struct state *state, char *const *word, int 
 static enum exit_status show_help(const struct state *state, char *const *word, int count)
 {
     if (count > 1)
-        return client_help_show(word[1]) ? STATUS_SUCCESS : say_usage(state, "expected the name of a command", word[1]);
+        return client_help_show(word[1]) ? STATUS_SUCCESS : report_usage(state, "expected the name of a command", word[1]);
     fputs(help, stdout);
     for (unsigned i = 0; client_help_name(i) != NULL; i++)
         printf(" %s%s", client_help_name(i), i % 12 == 11 ? "\n " : "");
@@ -166,9 +166,9 @@ static enum exit_status show_help(const struct state *state, char *const *word, 
 static enum exit_status do_words(struct state *state, char **word, int count)
 {
     if (count == -1)
-        return say_usage(state, "expected the end of what stands in quotes", "the end of the line");
+        return report_usage(state, "expected the end of what stands in quotes", "the end of the line");
     if (count == -2)
-        return say_usage(state, "expected at most 64 words", "more");
+        return report_usage(state, "expected at most 64 words", "more");
     if (count == 0)
         return STATUS_SUCCESS;
     if (strcmp(word[0], "node") == 0)
@@ -182,7 +182,7 @@ static enum exit_status do_words(struct state *state, char **word, int count)
         return STATUS_SUCCESS;
     }
     if (strcmp(word[0], "shell") == 0)
-        return say_usage(state, "expected another command than the shell itself", word[0]);
+        return report_usage(state, "expected another command than the shell itself", word[0]);
     return run(state, word, count);
 }
 

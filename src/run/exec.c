@@ -107,7 +107,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case ARGP_KEY_END:
         if (exec_inputs_are_none(&options->inputs))
             argp_error(state, "no program given");
-        exec_inputs_settle(&options->inputs, options->device.kind, state);
+        exec_inputs_complete(&options->inputs, options->device.kind, state);
         if (options->json && options->trace != NULL && strcmp(options->trace, "-") == 0)
             argp_error(state, "--json and --trace - cannot both use standard output");
         return 0;

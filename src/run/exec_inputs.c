@@ -46,7 +46,7 @@ void exec_inputs_stimulus(struct exec_inputs *inputs, const char *path)
     inputs->stimulus = path;
 }
 
-void exec_inputs_settle(struct exec_inputs *inputs, const struct device_kind *device, struct argp_state *state)
+void exec_inputs_complete(struct exec_inputs *inputs, const struct device_kind *device, struct argp_state *state)
 {
     for (size_t i = 0; i < inputs->programs; i++) {
         struct exec_program *program = &inputs->program[i];

@@ -45,7 +45,7 @@ void exec_inputs_stimulus(struct exec_inputs *inputs, const char *path);
 
 /* At the end of the command line, when the device is known: which motors, which files. What is wrong ends the program by
  * argp_error(). */
-void exec_inputs_settle(struct exec_inputs *inputs, const struct device_kind *device, struct argp_state *state);
+void exec_inputs_complete(struct exec_inputs *inputs, const struct device_kind *device, struct argp_state *state);
 
 /* Was neither given? */
 bool exec_inputs_are_none(const struct exec_inputs *inputs);

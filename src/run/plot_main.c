@@ -122,7 +122,7 @@ static void end_options(struct options *options, struct argp_state *state)
 {
     if (exec_inputs_are_none(&options->inputs))
         argp_error(state, "no program, trace or recording given");
-    exec_inputs_settle(&options->inputs, options->device.kind, state);
+    exec_inputs_complete(&options->inputs, options->device.kind, state);
     if (options->from >= options->until)
         argp_error(state, "--from: expected a time before --until");
     const char *dot = options->output == NULL ? NULL : strrchr(options->output, '.');
