@@ -9,6 +9,15 @@ if(RKM04_HOST)
   install(FILES packaging/systemd/system/rkm04@.service DESTINATION lib/systemd/system)
   install(FILES packaging/systemd/user/rkm04@.service DESTINATION lib/systemd/user)
 endif()
+# Completion in the shells, from what the programs say of themselves.
+if(RKM04_HOST AND NOT CMAKE_CROSSCOMPILING)
+  install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} -E env RKM04=${PROJECT_BINARY_DIR}/rkm04
+    RKMCTL=${PROJECT_BINARY_DIR}/rkmctl ${PROJECT_SOURCE_DIR}/tools/completions ${PROJECT_BINARY_DIR}/completions
+    COMMAND_ERROR_IS_FATAL ANY)")
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/completions/bash/ DESTINATION share/bash-completion/completions)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/completions/zsh/ DESTINATION share/zsh/vendor-completions)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/completions/fish/ DESTINATION share/fish/vendor_completions.d)
+endif()
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN man EXCLUDE)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES packaging/debian/copyright THIRD-PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -113,4 +113,12 @@ test_programs_and_man_pages_are_installed() {
     done
 }
 
+test_completions_lie_where_the_shells_look() {
+    install_there
+    for file in bash-completion/completions/rkm04 bash-completion/completions/rkmctl zsh/vendor-completions/_rkm04 \
+        zsh/vendor-completions/_rkmctl fish/vendor_completions.d/rkm04.fish fish/vendor_completions.d/rkmctl.fish; do
+        [[ -s $staged/share/$file ]] || fail "no $file"
+    done
+}
+
 run_cases "$@"
