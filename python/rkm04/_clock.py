@@ -53,7 +53,6 @@ class Clock:
     """Virtual time in µs, of a bus or, as long as there is none, of a counter."""
 
     def __init__(self, bus: Optional[Bus] = None) -> None:
-        self.bus: Optional[Bus] = None
         self._sim: Optional[Sim] = None
         self.port: Optional[Callable[[], Any]] = None  # a weak reference to the port that is open onto the bus
         self.input = bytearray()  # bytes that the host has received and the port has not read
@@ -71,12 +70,15 @@ class Clock:
 
     def attach(self, bus: Bus) -> None:
         """Go by this bus from now on."""
-        if self.bus is not None and self.bus is not bus:
+        if self._sim is not None:
             raise RuntimeError("virtual time goes by one bus: expected no second one")
-        if self.bus is None:
-            self._sim = bus.simulation
-            self._base -= bus.now
-            self.bus = bus
+        self._sim = bus.simulation
+        self._base -= bus.now
+
+    @property
+    def has_bus(self) -> bool:
+        """Does it go by a bus?"""
+        return self._sim is not None
 
     @property
     def now(self) -> int:

@@ -13,7 +13,6 @@ FORM = "rkm04://NAME, or rkm04://?node=1&plant=FILE&framing=hdlc&seed=1&device=r
 
 _named: Dict[str, Any] = {}
 _made: Dict[str, Any] = {}
-_clocks: Dict[int, Tuple[Any, Clock]] = {}
 _numbers = itertools.count(1)
 
 
@@ -22,7 +21,7 @@ def clock_of(bus: Any) -> Clock:
     known: Optional[Clock] = getattr(bus, "_clock", None)
     active = _virtual_time.active_clock()
     if active is not None and active is not known:
-        if known is None and active.bus is None:
+        if known is None and not active.has_bus:
             active.attach(bus)
             bus._clock = active
             return active

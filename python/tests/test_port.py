@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """`rkm04://`: a port of pyserial onto a bus in this process."""
 
+import gc
 import threading
 import time
+import weakref
 
 import pytest
 import serial
@@ -213,6 +215,20 @@ def test_a_bus_has_one_open_port(url, port):
 def test_a_port_that_is_forgotten_is_closed(url):
     serial.serial_for_url(url)
     serial.serial_for_url(url).close()
+
+
+def test_buses_with_ports_are_freed():
+    buses = []
+    for _ in range(20):
+        bus = rkm04.Bus()
+        with rkm04.virtual_time(bus), serial.serial_for_url(rkm04.publish(bus, "freed"), baudrate=19200, timeout=1) as port:
+            port.write(VERSION)
+            assert port.read(24) == VERSION_ANSWER
+        rkm04.unpublish("freed")
+        buses.append(weakref.ref(bus))
+        del bus, port
+    gc.collect()
+    assert [bus() for bus in buses] == [None] * 20
 
 
 def test_not_opened_at_once(url):
