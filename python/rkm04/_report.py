@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 import re
 import shlex
 from pathlib import Path
@@ -96,7 +97,9 @@ def _keep_recording(bus: Any, path: Path) -> str:
         bus.snapshot(file=str(path), force=True)
     except (Error, OSError) as error:
         return f"not kept: {error}"
-    return f"{path}\nrepeat it: rkm04 replay --wire bus.log --trace run.vcd {shlex.quote(str(path))}"
+    near = os.path.relpath(path)
+    shown = str(path) if near.startswith("..") else near
+    return f"{shown}\nrepeat it: rkm04 replay --wire bus.log --trace run.vcd {shlex.quote(shown)}"
 
 
 # ---- Assertions --------------------------------------------------------------------------------------------------------------

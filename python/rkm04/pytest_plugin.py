@@ -74,7 +74,9 @@ def rkm04_serve(request: pytest.FixtureRequest) -> Iterator[Any]:
     """A running `rkm04 serve` with a pty, for software that is not Python. Settings: marker rkm04."""
     from . import serve
 
-    with serve(**_settings(request.node)) as server:
+    directory = _record_directory(request.config)
+    directory.mkdir(parents=True, exist_ok=True)
+    with serve(**_settings(request.node), arguments=["--allow-folder", str(directory)]) as server:
         request.node.stash.setdefault(_BUSES, []).append(server)
         yield server
 
@@ -171,7 +173,7 @@ def _record_directory(config: pytest.Config) -> Path:
     """Where recordings of failures are kept: with the traces, else in pytest's cache."""
     directory = config.getoption("--rkm04-trace")
     if directory:
-        return Path(directory)
+        return Path(directory).absolute()
     cache = getattr(config, "cache", None)
     return Path(cache.mkdir("rkm04")) if cache is not None else Path(tempfile.gettempdir())
 

@@ -28,6 +28,12 @@ def test_suite_in_virtual_time():
     assert "test_exploration.py::test_move_to PASSED" in output
 
 
+@pytest.mark.parametrize("transport", ["pty", "rfc2217"])
+def test_suite_over_a_running_emulator(transport):
+    status, output = run_pytest(EXAMPLES, f"--rkm04-transport={transport}", "test_axis.py")
+    assert status == 0, output
+
+
 def test_exploration_shows_that_a_retry_executes_a_program_twice():
     status, output = run_pytest(EXAMPLES, "explore_move_by.py")
     assert status == 1, output

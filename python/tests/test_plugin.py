@@ -211,6 +211,41 @@ def test_it(rkm04_bus, rkm04_port, rkm04_time, n):
     result.assert_outcomes(passed=8)
 
 
+@pytest.mark.parametrize("transport", ["pty", "rfc2217"])
+def test_the_same_test_runs_over_a_running_emulator(run, transport):
+    result = run("""
+@pytest.mark.rkm04(units="2", clock="max")
+def test_it(rkm04_bus, rkm04_port, rkm04_time):
+    assert rkm04_time is None and not rkm04_port.startswith("rkm04:")
+    with serial.serial_for_url(rkm04_port, baudrate=19200, timeout=10) as port:
+        port.write(bytes.fromhex("7E020001FD627E"))
+        assert len(port.read(24)) == 24
+    assert rkm04_bus.dialogue.sent("Version", node=2)
+    assert False
+""", f"--rkm04-transport={transport}", "--rkm04-trace", "traces")
+    result.assert_outcomes(failed=1)
+    result.stdout.re_match_lines([
+        r" +\d+ +\d+  host > 2 +1 Version \| 7E 02 00 01 .. .. 7E",
+        r"unit 2 at \d+ us: on; .*",
+        r"traces/test_it.py-test_it.record",
+    ])
+
+
+def test_a_program_that_is_not_python(run):
+    result = run("""
+import subprocess
+from pathlib import Path
+
+def test_it(rkm04_serve):
+    rkmctl = Path(rkm04.__file__).parent / "bin" / "rkmctl"
+    subprocess.run([rkmctl, "-p", rkm04_serve.link, "-m", "3", "set", "=42"], check=True, timeout=60)
+    assert rkm04_serve.unit(1).motor(3).wait(position=42, limit="5s")
+    rkm04_serve.faults.inject("no_answer", count=1)
+""")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines("*injected fault 1 (no_answer) has never acted*")
+
+
 def test_help_names_the_options(pytester):
     result = pytester.runpytest_inprocess("--help")
     text = " ".join(result.stdout.str().split())

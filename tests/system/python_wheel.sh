@@ -47,6 +47,14 @@ with rkm04.serve() as bus:
     same "$(env/bin/python -c 'import rkm04, sys; print("pytest" in sys.modules, rkm04.__version__)')" "False 0.1.0" "import"
 }
 
+test_wheel_lets_a_program_that_does_not_know_it_open_the_url() {
+    install_wheel "$python"
+    cd "$folder" && "$folder/env/bin/python" -c 'import serial
+port = serial.serial_for_url("rkm04://?node=1", 19200, timeout=1)
+port.write(bytes.fromhex("7E010001998D7E"))
+assert len(port.read(24)) == 24' || fail "pyserial does not find rkm04://"
+}
+
 # tests_with "VERSION PATH": the tests of the package with the wheel.
 tests_with() {
     local version=${1%% *}
