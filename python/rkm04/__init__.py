@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import serial
 
 from ._bus import Bus, Host
-from ._clock import NothingToCome
+from ._clock import NothingToCome, TimeLimitError
 from ._dialogue import Dialogue, Exchange
 from ._errors import BusyError, ClosedError, Error, NoAnswerError, ProgramError, RefusedError, WaitError
 from ._message import Message, request
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Bus", "BusyError", "ClosedError", "Dialogue", "Error", "Events", "Exchange", "Exploration", "ExplorationFailed",
            "Fault", "Host", "Message", "Motor", "NoAnswerError", "NothingToCome", "ProgramError", "RefusedError", "RemoteBus",
-           "Unit", "WaitError", "__version__", "connect", "explore", "publish", "request", "serve", "unpublish", "virtual_time"]
+           "TimeLimitError", "Unit", "WaitError", "__version__", "connect", "explore", "publish", "request", "serve", "unpublish",
+           "virtual_time"]
 
 _LATER = {"Exploration": "_explore", "ExplorationFailed": "_explore", "explore": "_explore", "RemoteBus": "_remote",
           "connect": "_remote", "serve": "_remote"}

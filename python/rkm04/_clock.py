@@ -35,6 +35,10 @@ class NothingToCome(Error):
     """Somebody waits without a time limit for something that cannot come: no byte is under way, and no thread can send one."""
 
 
+class TimeLimitError(Error):
+    """The program under test has waited for longer than the limit of virtual time."""
+
+
 class _Waiter:
     """A thread that waits: until when (None: without limit), for what, and what it has been told."""
 
@@ -58,6 +62,7 @@ class Clock:
         self.input = bytearray()  # bytes that the host has received and the port has not read
         self.last_byte = 0  # time at which the last of them came
         self.on_input: Optional[Callable[[], Any]] = None  # a weak reference to who is told when `input` has become longer
+        self.limit: Optional[int] = None  # time after which whoever waits gets TimeLimitError
         self._base = 0
         self._looks = 0
         self._agenda: List[Tuple[int, Callable[[], Any]]] = []
@@ -128,11 +133,14 @@ class Clock:
 
     def wait(self, deadline: Optional[int], ready: Callable[[], bool], what: str = "a wait", count: int = 1,
              stop: int = -1) -> bool:
-        """Wait until `ready()` or `deadline` (µs; None: no limit). Returns `ready()`. Raises NothingToCome.
+        """Wait until `ready()` or `deadline` (µs; None: no limit). Returns `ready()`. Raises NothingToCome, TimeLimitError.
 
         count, stop: `ready()` does not hold before so many bytes have come, or the byte `stop` has.
         """
         self._looks = 0
+        if self.limit is not None and self.now >= self.limit:
+            raise TimeLimitError(f"{what} after the limit of virtual time: expected that the program ends before "
+                                 f"{self.limit / 1e6:g} s")
         if self._is_alone():
             return self._wait_alone(deadline, ready, what, count, stop)
         return self._wait_with_others(deadline, ready, what)

@@ -16,6 +16,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tupl
 
 from ._message import Message
 from ._ports import clock_of
+from ._time import to_us
 
 REPLAY = "RKM04_REPLAY"  # environment variable: the faults of one run
 KINDS = ("lost byte", "flipped bit", "late answer", "no answer", "wrong check value", "power cycle", "input flickers",
@@ -107,6 +108,7 @@ class Options:
     late: Union[str, int] = "1s"
     inputs: Sequence[int] = ()
     seed: int = 1
+    limit: Union[str, int] = "3600s"
 
     def __post_init__(self) -> None:
         for kind in self.faults:
@@ -321,8 +323,9 @@ def _smallest(run: Callable[[Tuple[Fault, ...]], Run], failed: Run) -> Run:
 class Session:
     """The buses of the run under way, and the faults that they get when they are made."""
 
-    def __init__(self, faults: Sequence[Fault], keeps: bool) -> None:
+    def __init__(self, faults: Sequence[Fault], limit: Union[str, int], keeps: bool) -> None:
         self.faults = faults
+        self.limit = to_us(limit)
         self.keeps = keeps  # the report of a failure is wanted in full
         self.buses: List[Any] = []
         self.learned: List[Facts] = []
@@ -331,6 +334,7 @@ class Session:
         """Inject the faults of this run into a bus that has just been made."""
         mine = [each for each in self.faults if each.bus == len(self.buses)]
         self.buses.append(bus)
+        clock_of(bus).limit = clock_of(bus).now + self.limit
         before: Dict[Tuple[str, Any], int] = {}
         for each in sorted(mine, key=lambda each: int(each.values.get("skip", 0))):
             values = each.values
@@ -351,10 +355,10 @@ class Session:
 _session: Optional[Session] = None
 
 
-def begin_session(faults: Sequence[Fault], keeps: bool = False) -> Session:
+def begin_session(faults: Sequence[Fault], limit: Union[str, int], keeps: bool = False) -> Session:
     """From now on, buses that are made belong to this run."""
     global _session
-    _session = Session(faults, keeps)
+    _session = Session(faults, limit, keeps)
     return _session
 
 
@@ -416,7 +420,8 @@ Test = TypeVar("Test", bound=Callable[..., Any])
 
 def explore(test: Optional[Callable[..., Any]] = None, *, faults: Sequence[Union[str, Dict[str, Any]]] = Options.faults,
             at: str = "each message", budget: int = 200, pairs: bool = False, late: Union[str, int] = "1s",
-            inputs: Sequence[int] = (), seed: int = 1, bus: Optional[Callable[[], Any]] = None) -> Any:
+            inputs: Sequence[int] = (), seed: int = 1, limit: Union[str, int] = "3600s",
+            bus: Optional[Callable[[], Any]] = None) -> Any:
     """Run a test again and again, each time with one fault at another place, and report the smallest set of faults under which
     it fails.
 
@@ -431,9 +436,10 @@ def explore(test: Optional[Callable[..., Any]] = None, *, faults: Sequence[Union
     late: by how much an answer is late: µs, or a string with a unit.
     inputs: the inputs that flicker, 1 to 8.
     seed: for the choice of pairs.
+    limit: virtual time after which a run that still waits fails: µs, or a string with a unit.
     bus: makes the bus of each run of a function; None: `Bus()`.
     """
-    options = Options(tuple(faults), at, budget, pairs, late, tuple(inputs), seed)
+    options = Options(tuple(faults), at, budget, pairs, late, tuple(inputs), seed, limit)
     if test is None:
         def mark(function: Test) -> Test:
             setattr(function, ATTRIBUTE, options)
@@ -448,7 +454,7 @@ def _explore_function(test: Callable[..., Any], options: Options, make: Optional
     from ._virtual_time import virtual_time
 
     def run(faults: Tuple[Fault, ...]) -> Run:
-        session = begin_session(faults)
+        session = begin_session(faults, options.limit)
         line = (make or Bus)()
         try:
             bus_made(line)

@@ -25,9 +25,9 @@ class _Next:
         return [*self._item.listchain()[:-1], self]
 
 
-def _run(item: Any, nextitem: Any, faults: Tuple[Fault, ...], keeps: bool = False) -> Run:
+def _run(item: Any, nextitem: Any, options: Options, faults: Tuple[Fault, ...], keeps: bool = False) -> Run:
     """Run the test once with these faults. keeps: with all that the report of a failure has."""
-    session = _explore.begin_session(faults, keeps)
+    session = _explore.begin_session(faults, options.limit, keeps)
     try:
         reports = runtestprotocol(item, nextitem=nextitem, log=False)
         failed = next((report for report in reports if report.failed), None)
@@ -55,15 +55,15 @@ def explore_item(item: Any, nextitem: Optional[pytest.Item], options: Options, p
     """The reports of the test: those of its first run, or of the run that failed with the smallest set of faults."""
     neighbour = _Next(item)
     replay = os.environ.get(_explore.REPLAY)
-    first = _run(item, neighbour, () if replay is None else tuple(_explore.parse_faults(replay)), True)
+    first = _run(item, neighbour, options, () if replay is None else tuple(_explore.parse_faults(replay)), True)
     reports: List[pytest.TestReport] = first.details
     skipped = any(report.skipped for report in reports)
     if first.failure is None and replay is None and not skipped:
         progress = _explore.Progress(item.name, sys.__stderr__)
-        result = _explore.explore_runs(lambda faults: _run(item, neighbour, faults), first, options, progress, part)
+        result = _explore.explore_runs(lambda faults: _run(item, neighbour, options, faults), first, options, progress, part)
         text = result.report(f"pytest {_whole(item.nodeid)!r}")
         if not result:
-            reports = _run(item, neighbour, result.failures[0].faults, True).details
+            reports = _run(item, neighbour, options, result.failures[0].faults, True).details
         for report in reports:
             report.user_properties.append(("rkm04_runs", result.runs))
             if report.when == "call" or report.failed:

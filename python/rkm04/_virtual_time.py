@@ -19,6 +19,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 from serial.serialutil import Timeout
 
 from ._clock import Clock
+from ._time import Time, to_us
 
 _REAL_TIME = ("_pytest", "pytest", "pluggy", "xdist", "execnet", "rkm04", "subprocess", "multiprocessing", "concurrent",
               "debugpy", "_pydevd_bundle", "pydevd", "faulthandler", "pdb", "bdb", "coverage", "importlib")
@@ -212,7 +213,7 @@ def active_clock() -> Optional[Clock]:
 
 
 @contextmanager
-def virtual_time(bus: Any = None, *, start: Optional[float] = None) -> Iterator[VirtualTime]:
+def virtual_time(bus: Any = None, *, start: Optional[float] = None, limit: Optional[Time] = "86400s") -> Iterator[VirtualTime]:
     """Let the time of the program under test be that of `bus`.
 
     While the context lasts, `time.sleep`, `time.time`, `time.monotonic`, `time.perf_counter` (and their `_ns`),
@@ -221,6 +222,8 @@ def virtual_time(bus: Any = None, *, start: Optional[float] = None) -> Iterator[
 
     bus: a `Bus`. None: the first bus that a port is opened on (`rkm04://...`); until then time is a counter.
     start: the value of `time.time()` at the beginning, seconds since 1970; None: the present one.
+    limit: virtual time after which whoever waits gets TimeLimitError, so that a program which waits in vain comes to an end.
+        None: no limit.
 
     The value of the context has `now`, the seconds of virtual time that have passed.
     """
@@ -231,9 +234,13 @@ def virtual_time(bus: Any = None, *, start: Optional[float] = None) -> Iterator[
 
     clock = Clock() if bus is None else clock_of(bus)
     _active = VirtualTime(clock, start)
+    before = clock.limit
+    if limit is not None and before is None:
+        clock.limit = clock.now + to_us(limit)
     _replace()
     try:
         yield _active
     finally:
+        clock.limit = before
         _active = None
         _put_back()

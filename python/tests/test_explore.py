@@ -145,6 +145,22 @@ def test_a_function_that_fails_without_faults_raises_its_own_error():
         rkm04.explore(fails)
 
 
+def test_a_run_that_waits_in_vain_fails():
+    def move(bus):
+        url = rkm04.publish(bus, "explored")
+        try:
+            with serial.serial_for_url(url, baudrate=19200, timeout=1) as port:
+                port.write(VERSION)
+                answer = b""
+                while len(answer) < 24:
+                    answer += port.read(1)
+        finally:
+            rkm04.unpublish("explored")
+
+    with pytest.raises(rkm04.ExplorationFailed, match=r"fails with: TimeLimitError: .* before 60 s"):
+        rkm04.explore(move, faults=["no answer"], limit="60s")
+
+
 def test_pairs_find_what_needs_two_faults():
     def retries_once(bus):
         for _ in range(2):

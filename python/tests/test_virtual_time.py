@@ -222,6 +222,14 @@ def test_without_a_bus_time_goes_by_the_first_port():
             assert now.now == 3 + port.bus.now / 1e6
 
 
+def test_a_program_that_waits_in_vain_comes_to_an_end(bus):
+    with rkm04.virtual_time(bus, limit="100s"):
+        with pytest.raises(rkm04.TimeLimitError, match=r"time.sleep\(\) after the limit of virtual time: .* before 100 s"):
+            while bus.unit(1).motor(1).position != 1:
+                time.sleep(1)
+    assert bus.now == 100_000_000
+
+
 def test_start_sets_the_date():
     with rkm04.Bus() as bus, rkm04.virtual_time(bus, start=0):
         time.sleep(60)
