@@ -499,7 +499,6 @@ static enum profile_answer start_from_rest(struct rkm04_motion *motion, uint64_t
     set_goal(motion, goal);
     motion->forward = (goal->kind == PROFILE_TO_PLACE ? goal->way : goal->speed) > 0;
     motion->done = 0;
-    motion->changed = false;
     motion->moving = true;
     profile_plan(motion);
     ramp_begin(&motion->ramp, &motion->profile, tick, rate);

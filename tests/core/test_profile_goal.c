@@ -131,6 +131,22 @@ START_TEST(a_stop_on_the_way_takes_the_deceleration)
 }
 END_TEST
 
+/* The ramp goes on as it was, but places on it are kept rounded from here on: that makes the way of a stop no step longer. */
+START_TEST(a_whole_way_of_a_stop_stays_whole_behind_a_goal_on_the_way)
+{
+    const uint64_t at = 123457 + 2 * (uint64_t)_i;
+    ck_assert_int_eq(go(0, PROFILE_FOR_EVER, 0, 900), PROFILE_MOVES);
+    run(at);
+    uint32_t before = pulses;
+    ck_assert_int_eq(go(at, PROFILE_FOR_EVER, 0, 1000), PROFILE_MOVES);
+    run(920000);
+    ck_assert_uint_eq(before + pulses, 600);
+    ck_assert_int_eq(go(920000, PROFILE_TO_STOP, 0, 0), PROFILE_MOVES);
+    run(RKM04_NEVER - 1);
+    ck_assert_uint_eq(pulses, 120);
+}
+END_TEST
+
 START_TEST(a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on)
 {
     const int thousands = _i / 2, way = 120 + 1000 * thousands;
@@ -239,6 +255,7 @@ int main(void)
     tcase_add_loop_test(goal, a_motion_for_ever_keeps_its_speed, 0, 2);
     tcase_add_loop_test(goal, a_speed_in_the_same_direction_is_taken_on_the_way, 0, 2);
     tcase_add_loop_test(goal, a_stop_on_the_way_takes_the_deceleration, 0, 2);
+    tcase_add_loop_test(goal, a_whole_way_of_a_stop_stays_whole_behind_a_goal_on_the_way, 0, 40);
     tcase_add_loop_test(goal, a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on, 0, 6);
     tcase_add_loop_test(goal, a_place_ahead_that_is_too_near_is_reached_by_a_turn, 0, 2);
     tcase_add_loop_test(goal, a_place_behind_or_passed_is_reached_by_a_turn, 0, 2);
