@@ -10,10 +10,8 @@
 static void stop_with_fault(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_fault fault)
 {
     motor->state = RKM04_FAULTY;
-    if (motor->fault == RKM04_FAULT_NONE) {
-        motor->fault = (uint8_t)fault;
-        report_event(unit, motor, unit->now, RKM04_EVENT_FAULT, fault);
-    }
+    motor->fault = (uint8_t)fault;
+    report_event(unit, motor, unit->now, RKM04_EVENT_FAULT, fault);
 }
 
 void execute_dwell(const struct rkm04_unit *unit, struct rkm04_motor *motor, uint32_t slots)
@@ -154,12 +152,11 @@ COMMAND(write_position)
     set_position(unit, motor, (int32_t)n);
 }
 
-/* Steps and direction from the counter to a place; 64 bits, as the difference may need 33 (U3). */
+/* Steps and direction from the counter to a place (no steps: any direction); 64 bits, as the difference may need 33 (U3). */
 static uint32_t distance_to(const struct rkm04_motor *motor, int64_t place, bool *forward)
 {
     int64_t way = place - motor->position;
-    if (way != 0)
-        *forward = way > 0;
+    *forward = way > 0;
     return (uint32_t)(way < 0 ? -way : way);
 }
 
@@ -176,7 +173,7 @@ COMMAND(absolute)
 COMMAND(home)
 {
     UNUSED(n);
-    bool forward = motor->forward;
+    bool forward;
     uint32_t steps = distance_to(motor, 0, &forward);
     motion_begin_steps(unit, motor, steps, forward);
 }
