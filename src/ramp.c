@@ -240,8 +240,8 @@ uint64_t ramp_quiet_until(const struct rkm04_ramp *ramp)
 uint64_t ramp_quiet_pulses(const struct rkm04_ramp *ramp, uint32_t most)
 {
     int64_t w = ramp->w.whole + 1;
-    if (ramp->slope > 0)
-        w += 2 * ramp->slope * (int64_t)(ramp->end.tick - ramp->at);
+    if (ramp->slope > 0) /* the mean speed of the leg, which its first pulses do not reach */
+        w += ramp->slope * (int64_t)(ramp->end.tick - ramp->at);
     uint64_t quiet = ramp_quiet_until(ramp), fastest = ramp->next + (uint64_t)(ramp->step / w) * most;
     if (most != UINT32_MAX && fastest < quiet) /* an endless motion is quiet for ever */
         quiet = fastest;
