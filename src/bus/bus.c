@@ -22,7 +22,7 @@ static void log_fault(struct bus *bus, const struct watch_event *event)
                bus->sim.unit[event->unit - 1u].name, event->motor, sim_device(&bus->sim)->fault_name(fault),
                (unsigned)sim_axis(&bus->sim, event->unit, event->motor).index);
     if (bus->coverage)
-        coverage_fault(bus->coverage, fault);
+        sim_device(&bus->sim)->coverage->fault(bus->coverage, fault);
 }
 
 /* A fault on every byte must not fill the log. */
@@ -41,7 +41,7 @@ static void on_event(void *context, const struct watch_event *event)
     if (event->kind == WATCH_FAULT)
         log_fault(bus, event);
     else if (event->kind == WATCH_MESSAGE)
-        bus_coverage_message(bus->coverage, event->message);
+        bus_coverage_message(bus->coverage, sim_device(&bus->sim), event->message);
     else if (event->kind == WATCH_POWER)
         bus_log_at(&bus->log, event->tick, "unit %s: power %s", unit, event->value ? "on" : "off");
     else if (event->kind == WATCH_PLANT)

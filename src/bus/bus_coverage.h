@@ -8,6 +8,6 @@
 
 /* A message has passed (WATCH_MESSAGE). Requests count if a unit may execute them, answers if they are whole: what a collision
  * leaves of one is dropped, where the framing can detect it. */
-void bus_coverage_message(struct coverage *coverage, const struct wire_message *message);
+void bus_coverage_message(struct coverage *coverage, const struct device_kind *device, const struct wire_message *message);
 
 #endif

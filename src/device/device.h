@@ -149,6 +149,14 @@ struct device_option {
     void (*list)(FILE *out);
 };
 
+/* What clients have used of all that there is (coverage.h). */
+struct device_coverage {
+    void (*begin)(struct coverage *coverage, const struct device_config *config); /* make the list; nothing has been used */
+    void (*request)(struct coverage *coverage, uint8_t dnode, const uint8_t *message, size_t length);
+    void (*answer)(struct coverage *coverage, const uint8_t *message, size_t length);
+    void (*fault)(struct coverage *coverage, unsigned fault);
+};
+
 #define DEVICE_READINGS_MAX 64u /* of a kind */
 #define DEVICE_TRIED_MAX 8u     /* values of one reading */
 #define DEVICE_TEXT_SIZE 320u   /* bytes of a text that names readings */
@@ -285,7 +293,7 @@ struct device_kind {
     /* Is the axis in a motion without an end of its own? Then the text says so: "is in an endless motion". */
     bool (*is_endless)(const struct device_unit *unit, unsigned axis, char text[DEVICE_ERROR_SIZE]);
 
-    bool has_coverage;       /* coverage.h knows its messages and commands */
+    const struct device_coverage *coverage; /* NULL: not known */
 };
 
 /* The kind of this name, or the one at `at` from 0 on: NULL if there is none. */

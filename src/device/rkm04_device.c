@@ -358,6 +358,15 @@ static json_t *describe(const struct device_unit *unit, uint64_t t_us)
     return rkm04_json_describe(core_of(unit), t_us);
 }
 
+static void begin_coverage(struct coverage *coverage, const struct device_config *config)
+{
+    const struct rkm04_config settings = rkm04_settings(config);
+    coverage_begin(coverage, &settings.readings);
+}
+
+static const struct device_coverage coverage_of_rkm04 = {
+    .begin = begin_coverage, .request = coverage_request, .answer = coverage_answer, .fault = coverage_fault};
+
 const struct device_kind rkm04_device = {
     .name = "rkm04",
     .description = DESCRIPTION,
@@ -416,5 +425,5 @@ const struct device_kind rkm04_device = {
     .repeat_size = sizeof(struct rkm04_repeat),
     .find_repeat = find_repeat,
     .is_endless = is_endless,
-    .has_coverage = true,
+    .coverage = &coverage_of_rkm04,
 };

@@ -268,7 +268,7 @@ static bool draw_scenario(const struct options *options, struct plot_curves *cur
     struct test_case test = {0};
     FILE *recording = tmpfile();
     bool is_right = recording != NULL || is_wrong("cannot keep a recording", strerror(errno));
-    if (is_right && test_case_read(&test, path) != 0)
+    if (is_right && test_case_read(&test, path, &options->device) != 0)
         is_right = false;
     if (is_right) {
         enum scenario_end end = scenario_run(test.scenario, recording, NULL, NULL, &test.result);

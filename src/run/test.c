@@ -22,8 +22,7 @@ struct options {
     size_t paths;
     unsigned output_flags; /* of output_file.h */
     bool stdin_taken, json, no_records, strict;
-    struct rkm04_readings readings;
-    readings_set named; /* by --readings */
+    struct device_arguments device; /* whose readings --readings names */
     enum test_readings_mode mode;
     const char *junit, *records;
 };
@@ -91,7 +90,7 @@ static void take_readings(struct argp_state *state, struct options *options, con
 {
     bool all = strcmp(text, "all") == 0, pairs = strcmp(text, "pairs") == 0;
     if (!all && !pairs)
-        readings_option_read(&options->readings, &options->named, text, state);
+        device_arguments_add(&options->device, "readings", text, state);
     else if (options->mode != TEST_READINGS_ONE)
         argp_error(state, "--readings: expected all or pairs once");
     else
@@ -102,6 +101,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->device;
+        return 0;
     case 'x':
         options->junit = text;
         return 0;
@@ -141,7 +143,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
 
 static void parse_options(int argc, char **argv, struct options *options)
 {
-    static const struct argp argp = {option_table, parse_option, "SCENARIO...", doc, NULL, NULL, NULL};
+    options->device.own = "readings";
+    options->device.without = DEVICE_OPTION_BUS;
+    const struct argp_child children[] = {{.argp = device_arguments_argp(&options->device)}, {0}};
+    const struct argp argp = {option_table, parse_option, "SCENARIO...", doc, children, NULL, NULL};
     argp_err_exit_status = STATUS_USAGE;
     arguments_parse(&argp, argc, argv, options);
 }
@@ -162,11 +167,18 @@ static int read_all(struct test_case *tests, const struct options *options)
 {
     int status = STATUS_SUCCESS;
     for (size_t i = 0; i < options->paths; i++) {
-        int wrong = test_case_read(&tests[i], options->path[i]);
+        int wrong = test_case_read(&tests[i], options->path[i], &options->device);
         if (wrong == STATUS_USAGE || status == STATUS_SUCCESS)
             status = wrong != STATUS_SUCCESS ? wrong : status;
     }
     return status;
+}
+
+/* The readings of the command line, if they are those of the scenario's device; else the defaults. */
+static const struct device_config *base_of(const struct options *options, const struct test_case *test)
+{
+    static const struct device_config defaults;
+    return scenario_device(test->scenario) == options->device.kind ? &options->device.config : &defaults;
 }
 
 /* Under other readings, if that is wanted. Returns false if out of memory. */
@@ -175,7 +187,7 @@ static bool run_under_others(struct test_case *test, const struct options *optio
     if (options->mode == TEST_READINGS_ONE || test->outcome == TEST_NOT_RUN || test->outcome == TEST_BROKEN)
         return true;
     fflush(stdout); /* who waits sees the first result */
-    test_readings_run(test, &options->readings, options->named, options->mode, progress);
+    test_readings_run(test, base_of(options, test), options->mode, progress);
     if (!options->json)
         test_report_readings(stdout, test);
     if (test->under != NULL && !test->under->broken)
@@ -195,7 +207,7 @@ static bool run_all(struct test_case *tests, const struct options *options, int 
         for (size_t before = 0; before < i; before++)
             number += test_case_alike(&tests[before], &tests[i]);
         progress.at = i + 1;
-        scenario_set_readings(tests[i].scenario, &options->readings);
+        scenario_set_readings(tests[i].scenario, base_of(options, &tests[i]));
         ok = test_case_run(&tests[i], folder, options->output_flags, number, &progress) && ok;
         if (!options->json)
             test_report_line(stdout, &tests[i]);
@@ -275,6 +287,7 @@ int test_main(int argc, char **argv)
     }
     for (size_t i = 0; tests != NULL && i < options.paths; i++)
         test_case_free(&tests[i]);
+    device_arguments_free(&options.device);
     free(tests);
     free(options.path);
     return status;

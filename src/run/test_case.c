@@ -75,9 +75,13 @@ static char *read_file(void *context, const char *path, size_t *length, const ch
     return text;
 }
 
-int test_case_read(struct test_case *test, const char *path)
+int test_case_read(struct test_case *test, const char *path, const struct device_arguments *device)
 {
-    static const struct scenario_files files = {.read = read_file, .map = program_text_map, .diagnose = diagnose_text};
+    const struct scenario_files files = {.read = read_file,
+                                         .map = program_text_map,
+                                         .diagnose = diagnose_text,
+                                         .device = device->kind,
+                                         .config = &device->config};
     bool standard = strcmp(path, "-") == 0;
     const char *why = "";
     size_t length;

@@ -3,6 +3,7 @@
 #ifndef RKM04_RUN_TEST_CASE_H
 #define RKM04_RUN_TEST_CASE_H
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -15,9 +16,11 @@ enum test_outcome {
     TEST_BROKEN /* memory was short: it says nothing about the scenario */
 };
 
+#define TEST_NO_READING UINT_MAX
+
 /* One other value of a reading. */
 struct test_choice {
-    unsigned at, value; /* at READINGS: none */
+    unsigned at, value; /* at TEST_NO_READING: none */
 };
 
 /* A run that ended otherwise than the first one. */
@@ -29,6 +32,7 @@ struct test_variant {
 
 /* What came of it under other readings (test_readings.h fills it in). */
 struct test_readings {
+    const struct device_readings *readings; /* of the scenario's device; NULL: it has none */
     size_t planned, runs, passed; /* the first run is counted */
     bool broken;                  /* memory was short */
     size_t variants;
@@ -53,9 +57,10 @@ struct test_progress {
     const struct test_case *test;
 };
 
-/* Read the file `path`, "-" for standard input. Errors are reported on stderr.
+/* Read the file `path`, "-" for standard input. `device`: what the command line says; it is for scenarios that name
+ * none. Errors are reported on stderr.
  * Returns 0, or what the exit status is to be. */
-int test_case_read(struct test_case *test, const char *path);
+int test_case_read(struct test_case *test, const char *path, const struct device_arguments *device);
 
 /* Run it. `folder`: where the record of a failure goes; NULL: it is not kept. `flags`: of output_file.h, for the record.
  * `number`: 2, 3, … for the second, third of a run whose files are called alike. A record that cannot be written is reported on

@@ -88,7 +88,7 @@ static void print_readings(FILE *out, const struct test_case *test)
     fprintf(out, "\nreadings: %s", test_readings_text(test->under, text));
     for (size_t i = 0; i < test->under->variants; i++) {
         const struct test_variant *variant = &test->under->variant[i];
-        fprintf(out, "\n%s: ", test_variant_text(variant, text));
+        fprintf(out, "\n%s: ", test_variant_text(test->under, variant, text));
         if (variant->outcome == TEST_FAILED) {
             print_escaped(out, test->file);
             fprintf(out, ":%zu:%zu: expected ", variant->result.line, variant->result.column);

@@ -4,13 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CHOICES_MAX (READINGS * READINGS_TRIED_MAX)
+#define CHOICES_MAX (DEVICE_READINGS_MAX * DEVICE_TRIED_MAX)
 
 /* The runs of one scenario. */
 struct trial {
     struct test_case *test;
     struct test_progress *progress;
-    struct rkm04_readings base;
+    const struct device_readings *readings; /* of the device */
+    struct device_config base;
     struct test_choice choice[CHOICES_MAX];
     bool changes[CHOICES_MAX]; /* alone it changes the result */
     unsigned choices;
@@ -18,12 +19,15 @@ struct trial {
 
 /* ---- Runs ----------------------------------------------------------------------------------------------------------- */
 
-/* Every other value of each reading that is free. */
-static void list_choices(struct trial *trial, readings_set fixed)
+/* Every other value of each reading that neither the command line nor the scenario has chosen. */
+static void list_choices(struct trial *trial)
 {
-    for (unsigned at = 0; at < READINGS; at++) {
-        unsigned values[READINGS_TRIED_MAX], count = readings_tried(at, values);
-        for (unsigned i = 0; i < count && !(fixed >> at & 1u); i++)
+    const struct device_config *own = scenario_config(trial->test->scenario);
+    for (unsigned at = 0; at < trial->readings->count; at++) {
+        unsigned values[DEVICE_TRIED_MAX], count = trial->readings->tried(at, values);
+        if (trial->readings->is_chosen(own, at) || trial->readings->is_chosen(&trial->base, at))
+            continue;
+        for (unsigned i = 0; i < count; i++)
             trial->choice[trial->choices++] = (struct test_choice){at, values[i]};
     }
 }
@@ -43,12 +47,12 @@ static bool run_under(struct trial *trial, struct test_choice first, struct test
 {
     struct test_readings *under = trial->test->under;
     struct test_variant variant = {.choice = {first, second}};
-    struct rkm04_readings readings = trial->base;
+    struct device_config readings = trial->base;
     if (test_case_interrupted())
         return false;
-    readings_put(&readings, first.at, first.value);
-    if (second.at < READINGS)
-        readings_put(&readings, second.at, second.value);
+    trial->readings->put(&readings, first.at, first.value);
+    if (second.at != TEST_NO_READING)
+        trial->readings->put(&readings, second.at, second.value);
     scenario_set_readings(trial->test->scenario, &readings);
     variant.outcome = test_case_try(trial->test, &variant.result, trial->progress);
     bool counts = variant.outcome == TEST_PASSED || variant.outcome == TEST_FAILED;
@@ -65,7 +69,7 @@ static bool run_under(struct trial *trial, struct test_choice first, struct test
 
 static void run_singles(struct trial *trial)
 {
-    static const struct test_choice none = {READINGS, 0};
+    static const struct test_choice none = {TEST_NO_READING, 0};
     for (unsigned i = 0; i < trial->choices; i++)
         trial->changes[i] = run_under(trial, trial->choice[i], none);
 }
@@ -81,14 +85,17 @@ static void run_pairs(struct trial *trial)
             }
 }
 
-void test_readings_run(struct test_case *test, const struct rkm04_readings *base, readings_set named,
-                       enum test_readings_mode mode, struct test_progress *progress)
+void test_readings_run(struct test_case *test, const struct device_config *base, enum test_readings_mode mode,
+                       struct test_progress *progress)
 {
-    struct trial trial = {.test = test, .progress = progress, .base = *base};
+    struct trial trial = {
+        .test = test, .progress = progress, .readings = scenario_device(test->scenario)->readings, .base = *base};
     test->under = calloc(1, sizeof *test->under);
     if (test->under == NULL)
         return;
-    list_choices(&trial, named | scenario_readings(test->scenario));
+    test->under->readings = trial.readings;
+    if (trial.readings != NULL)
+        list_choices(&trial);
     test->under->planned = 1 + trial.choices;
     test->under->runs = 1;
     test->under->passed = test->outcome == TEST_PASSED;
@@ -125,9 +132,9 @@ const char *test_readings_text(const struct test_readings *under, char text[TEST
         const struct test_choice *choice = under->variant[i].choice;
         if (named_before(under, i))
             continue;
-        end += snprintf(text + end, TEST_READINGS_TEXT_SIZE - (size_t)end, "%s%s", before, readings_name(choice[0].at));
-        if (choice[1].at < READINGS)
-            end += snprintf(text + end, TEST_READINGS_TEXT_SIZE - (size_t)end, " with %s", readings_name(choice[1].at));
+        end += snprintf(text + end, TEST_READINGS_TEXT_SIZE - (size_t)end, "%s%s", before, under->readings->name(choice[0].at));
+        if (choice[1].at != TEST_NO_READING)
+            end += snprintf(text + end, TEST_READINGS_TEXT_SIZE - (size_t)end, " with %s", under->readings->name(choice[1].at));
         before = ", ";
     }
     if (under->runs < under->planned)
@@ -135,10 +142,10 @@ const char *test_readings_text(const struct test_readings *under, char text[TEST
     return text;
 }
 
-const char *test_variant_text(const struct test_variant *variant, char text[READINGS_TEXT_SIZE])
+const char *test_variant_text(const struct test_readings *under, const struct test_variant *variant, char text[DEVICE_TEXT_SIZE])
 {
-    struct rkm04_readings readings = {0};
-    for (unsigned i = 0; i < 2 && variant->choice[i].at < READINGS; i++)
-        readings_put(&readings, variant->choice[i].at, variant->choice[i].value);
-    return readings_text(&readings, text);
+    struct device_config config = {.node = 1};
+    for (unsigned i = 0; i < 2 && variant->choice[i].at != TEST_NO_READING; i++)
+        under->readings->put(&config, variant->choice[i].at, variant->choice[i].value);
+    return under->readings->text(&config, text);
 }

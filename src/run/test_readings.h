@@ -20,10 +20,10 @@ enum test_readings_mode {
     TEST_READINGS_PAIRS /* and under each two other values of two readings */
 };
 
-/* Run a scenario that has been run under `base` under others, too; those in `named`, and those that it names itself, keep
- * their value. test->under has what came of it, NULL: out of memory. */
-void test_readings_run(struct test_case *test, const struct rkm04_readings *base, readings_set named,
-                       enum test_readings_mode mode, struct test_progress *progress);
+/* Run a scenario that has been run under the readings of `base` under others, too; those that are chosen there, and those that it
+ * names itself, keep their value. test->under has what came of it, NULL: out of memory. */
+void test_readings_run(struct test_case *test, const struct device_config *base, enum test_readings_mode mode,
+                       struct test_progress *progress);
 
 /* Does the result depend on a reading? */
 bool test_readings_depends(const struct test_case *test);
@@ -32,6 +32,6 @@ bool test_readings_depends(const struct test_case *test);
 const char *test_readings_text(const struct test_readings *under, char text[TEST_READINGS_TEXT_SIZE]);
 
 /* The readings of a variant, as in "hold-exit=latch". Returns `text`. */
-const char *test_variant_text(const struct test_variant *variant, char text[READINGS_TEXT_SIZE]);
+const char *test_variant_text(const struct test_readings *under, const struct test_variant *variant, char text[DEVICE_TEXT_SIZE]);
 
 #endif

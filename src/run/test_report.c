@@ -81,13 +81,13 @@ void test_report_line(FILE *out, const struct test_case *test)
 
 void test_report_readings(FILE *out, const struct test_case *test)
 {
-    char text[TEST_READINGS_TEXT_SIZE], readings[READINGS_TEXT_SIZE];
+    char text[TEST_READINGS_TEXT_SIZE], readings[DEVICE_TEXT_SIZE];
     if (test->under == NULL)
         return;
     fprintf(out, "%s: %s\n", test->file, test_readings_text(test->under, text));
     for (size_t i = 0; i < test->under->variants; i++) {
         const struct test_variant *variant = &test->under->variant[i];
-        fprintf(out, "  %s: ", test_variant_text(variant, readings));
+        fprintf(out, "  %s: ", test_variant_text(test->under, variant, readings));
         if (variant->outcome == TEST_FAILED)
             print_failure(out, test, &variant->result);
         else
@@ -124,18 +124,18 @@ static json_t *failure_json(const struct scenario_result *result)
 /* What came of it under other readings: those it depends on, and the runs that ended otherwise. */
 static json_t *readings_runs_json(const struct test_readings *under)
 {
-    char text[READINGS_TEXT_SIZE];
+    char text[DEVICE_TEXT_SIZE];
     json_t *list = json_array(), *names = json_object();
     for (size_t i = 0; i < under->variants; i++) {
         const struct test_variant *variant = &under->variant[i];
         bool failed = variant->outcome == TEST_FAILED;
-        json_t *json = json_pack("{s:s, s:s, s:I}", "readings", test_variant_text(variant, text), "result",
+        json_t *json = json_pack("{s:s, s:s, s:I}", "readings", test_variant_text(under, variant, text), "result",
                                  failed ? "fail" : "pass", "t_us", (json_int_t)variant->result.tick);
         if (failed)
             json_object_set_new(json, "failure", failure_json(&variant->result));
         json_array_append_new(list, json);
-        for (unsigned part = 0; part < 2 && variant->choice[part].at < READINGS; part++)
-            json_object_set_new(names, readings_name(variant->choice[part].at), json_true());
+        for (unsigned part = 0; part < 2 && variant->choice[part].at != TEST_NO_READING; part++)
+            json_object_set_new(names, under->readings->name(variant->choice[part].at), json_true());
     }
     json_t *depends = json_array();
     const char *name;

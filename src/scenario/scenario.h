@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "device/device.h"
 #include "text/text.h"
 
 struct scenario;
@@ -23,6 +24,9 @@ struct scenario_files {
      * NULL: it is not said. */
     int (*diagnose)(const char *name, const char *text, size_t length, FILE *out);
     void *context;
+    /* What a scenario is about that names no device, and the settings of that device it begins with. NULL: an RKM04 as it is. */
+    const struct device_kind *device;
+    const struct device_config *config;
 };
 
 /* Read and check the text of a scenario. Errors go to `errors`, a line each: NAME:LINE:COLUMN: error: expected …. Returns NULL
@@ -35,10 +39,11 @@ void scenario_free(struct scenario *scenario);
 const char *scenario_name(const struct scenario *scenario);
 
 /* Run it under these readings from now on; those that it names itself stay as it has them. */
-void scenario_set_readings(struct scenario *scenario, const struct rkm04_readings *readings);
+void scenario_set_readings(struct scenario *scenario, const struct device_config *readings);
 
-/* The readings that it names itself. */
-readings_set scenario_readings(const struct scenario *scenario);
+/* The kind of its units, and their settings; what the scenario names itself is chosen in them. */
+const struct device_kind *scenario_device(const struct scenario *scenario);
+const struct device_config *scenario_config(const struct scenario *scenario);
 
 enum scenario_end {
     SCENARIO_PASSED,

@@ -68,12 +68,14 @@ struct scenario_stimulus {
     uint64_t after;
 };
 
+#define SCENARIO_FILES_MAX 8u
+
 struct scenario {
     struct config_tree *tree;
     const char *name;
     struct sim_config config;
-    struct rkm04_config settings; /* of an RKM04, as in `config` */
-    readings_set named;      /* readings that it fixes itself */
+    unsigned files;
+    char *file[SCENARIO_FILES_MAX]; /* texts that options of the device name */
     char *plant;             /* text of the plant; NULL: none */
     char *plant_name;        /* for messages */
     size_t plant_length;
@@ -93,6 +95,7 @@ struct scenario_reader {
     const char *name; /* of the file */
     struct scenario *scenario;
     const struct scenario_files *files;
+    FILE *errors;
     struct sim *sim; /* one to try out on what is read; nothing of it is seen */
 };
 

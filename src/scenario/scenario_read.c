@@ -9,12 +9,13 @@
 
 #define TIMEOUT 60000000u /* ticks */
 #define STEPS_MAX 10000u  /* and stimuli, and conditions of `always` */
-#define LATENCY_MAX 2000000u
-#define VERSION_MAX 255u
+#define KEYS_MAX 64u  /* of a scenario, with those of a device */
+#define KEY_SIZE 40u
 
+/* Keys of every scenario. Those of the device's options come to them. */
 static const char *const known[] = {
-    "name",  "description", "device", "units", "framing", "baud", "turnaround", "speed_change_latency", "readings",
-    "version_text", "seed", "plant",   "di",          "timeout", "allow_faults", "always", "stimuli", "steps", NULL,
+    "name", "description", "device", "units", "baud", "turnaround", "seed", "plant", "di", "timeout", "allow_faults", "always",
+    "stimuli", "steps", NULL,
 };
 
 /* ---- Values --------------------------------------------------------------------------------------------------------- */
@@ -30,12 +31,6 @@ static const char *text_of(const struct config_node *map, const char *key, bool 
     return NULL;
 }
 
-static void put_settings(struct scenario *scenario)
-{
-    if (scenario->config.device == &rkm04_device)
-        rkm04_settings_put(&scenario->config.unit, &scenario->settings);
-}
-
 static bool read_time_up_to(const struct config_node *map, const char *key, uint64_t most, uint64_t *ticks)
 {
     const struct config_node *node = config_get(map, key);
@@ -47,64 +42,88 @@ static bool read_time_up_to(const struct config_node *map, const char *key, uint
            config_error(node, "expected %s of at most %llu us", key, (unsigned long long)most);
 }
 
-/* speed_change_latency is the older name of the reading speed-change. */
-static bool read_readings(struct scenario *scenario, const struct config_node *root)
+/* The value of a key that is an option of the device. */
+static bool read_option(struct scenario_reader *reader, const struct device_option *option, const char *key,
+                        const struct config_node *node)
 {
-    uint64_t latency = 0;
-    char text[32], error[READINGS_ERROR_SIZE];
-    const struct config_node *map = config_get(root, "readings"), *node = config_get(root, "speed_change_latency");
-    struct rkm04_readings *readings = &scenario->settings.readings;
-    bool ok = map == NULL || readings_read_map(readings, &scenario->named, map);
-    if (node == NULL)
-        return ok;
-    if (!read_time_up_to(root, "speed_change_latency", LATENCY_MAX, &latency))
-        return false;
-    if (latency % 1000 != 0)
-        return config_error(node, "expected speed_change_latency in whole ms");
-    snprintf(text, sizeof text, "speed-change=%u", (unsigned)(latency / 1000));
-    if (!readings_read(readings, &scenario->named, text, error))
-        return config_error(node, "%s", error);
-    return ok;
+    struct scenario *scenario = reader->scenario;
+    struct device_config *config = &scenario->config.unit;
+    char error[DEVICE_ERROR_SIZE];
+    if (option->read_node)
+        return option->read_node(config, key, node);
+    if (config_type(node) != CONFIG_TEXT)
+        return config_error(node, "expected %s, a text", key);
+    if (!option->read_file)
+        return option->read(config, config_text(node), error) || config_error(node, "%s: %s", key, error);
+    if (scenario->files == SCENARIO_FILES_MAX)
+        return config_error(node, "expected at most %u files as options", SCENARIO_FILES_MAX);
+    size_t length;
+    char *path = NULL, *text = scenario_file(reader, node, &path, &length);
+    scenario->file[scenario->files++] = text;
+    bool is_right = text != NULL && option->read_file(config, path, text, length, reader->errors);
+    free(path);
+    return is_right;
 }
 
-/* The kind of all units. What is a setting of the RKM04 alone stands in a scenario for it alone. */
-static bool read_device(struct scenario *scenario, const struct config_node *root)
+/* All keys of the scenario, which have to be known; the options of the device are read. */
+static bool read_options(struct scenario_reader *reader, const struct config_node *root)
 {
-    static const char *const own[] = {"framing", "readings", "speed_change_latency", "version_text"};
-    bool ok = true;
-    const char *name = text_of(root, "device", &ok);
-    const struct device_kind *kind = name ? device_kind_named(name) : &rkm04_device;
-    if (!kind)
-        return config_error(config_get(root, "device"), "expected a device, one that `rkm04 devices' lists, found \"%.40s\"",
-                            name);
-    for (size_t i = 0; kind != &rkm04_device && i < sizeof own / sizeof own[0]; i++)
-        if (config_get(root, own[i]))
-            ok = config_error(config_get(root, own[i]), "the device %s has no %s", kind->name, own[i]);
-    scenario->config.device = kind;
-    return ok;
+    const struct device_kind *kind = reader->scenario->config.device;
+    char own[KEYS_MAX][KEY_SIZE];
+    const char *keys[KEYS_MAX + 1u];
+    size_t count = 0, options = 0;
+    bool is_right = true;
+    for (; known[count] != NULL; count++)
+        keys[count] = known[count];
+    for (const struct device_option *option = kind->options; option && option->name && count < KEYS_MAX; option++) {
+        snprintf(own[options], KEY_SIZE, "%s", option->name);
+        for (char *at = own[options]; *at != '\0'; at++)
+            *at = *at == '-' ? '_' : *at;
+        keys[count++] = own[options++];
+    }
+    keys[count] = NULL;
+    if (!config_keys(root, keys))
+        return false;
+    for (size_t i = 0; i < options; i++) {
+        const struct config_node *node = config_get(root, own[i]);
+        const struct device_option *option = device_option_keyed(kind, own[i]);
+        is_right = (node == NULL || read_option(reader, option, own[i], node)) && is_right;
+    }
+    return is_right;
+}
+
+/* The kind of all units. */
+static bool read_device(struct scenario_reader *reader, const struct config_node *root)
+{
+    struct scenario *scenario = reader->scenario;
+    bool is_right = true;
+    char names[DEVICE_ERROR_SIZE];
+    const char *name = text_of(root, "device", &is_right);
+    const struct device_kind *assumed = reader->files->device ? reader->files->device : &rkm04_device;
+    scenario->config.device = name ? device_kind_named(name) : assumed;
+    if (reader->files->config && scenario->config.device == assumed)
+        scenario->config.unit = *reader->files->config;
+    if (scenario->config.device)
+        return is_right;
+    return config_error(config_get(root, "device"), "expected a device, one that `rkm04 devices' lists, found \"%.40s\"%s", name,
+                        nearest_hint(name, device_kind_names(names)));
 }
 
 static bool read_line(struct scenario *scenario, const struct config_node *root)
 {
-    bool ok = read_device(scenario, root);
-    if (!ok)
-        return false;
+    bool ok = true;
     uint64_t turnaround = SEGMENT_TURNAROUND;
     struct sim_config *config = &scenario->config;
-    const char *units = text_of(root, "units", &ok), *framing = text_of(root, "framing", &ok);
+    const char *units = text_of(root, "units", &ok);
     const char *baud = text_of(root, "baud", &ok);
     if (!node_list_read_up_to(&config->nodes, units != NULL ? units : "1", config->device->addresses))
         ok = config->device == &rkm04_device
                    ? config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED)
                    : config_error(config_get(root, "units"), NODE_LIST_FORMAT, config->device->addresses);
-    scenario->settings.framing = rkm04_framing_named(framing != NULL ? framing : "hdlc");
-    if (scenario->settings.framing == NULL)
-        ok = config_error(config_get(root, "framing"), "expected framing, hdlc or plain, found \"%.20s\"", framing);
     config->timed = baud == NULL || strcmp(baud, "0") != 0;
     if (baud != NULL && strcmp(baud, "0") != 0 && strcmp(baud, "19200") != 0)
         ok = config_error(config_get(root, "baud"), "expected baud, 19200 or 0, found \"%.20s\"", baud);
     ok = read_time_up_to(root, "turnaround", SEGMENT_TURNAROUND_MAX, &turnaround) && ok;
-    ok = read_readings(scenario, root) && ok;
     config->turnaround = (uint32_t)turnaround;
     return ok;
 }
@@ -116,10 +135,6 @@ static bool read_rest(struct scenario *scenario, const struct config_node *root)
     const struct config_node *node = config_get(root, "seed");
     scenario->name = text_of(root, "name", &ok);
     text_of(root, "description", &ok);
-    scenario->settings.version_text = text_of(root, "version_text", &ok);
-    if (scenario->settings.version_text != NULL && strlen(scenario->settings.version_text) > VERSION_MAX)
-        ok = config_error(config_get(root, "version_text"), "expected version_text of up to %u bytes", VERSION_MAX);
-    put_settings(scenario);
     if (node != NULL)
         ok = config_integer(node, "seed", 0, INT64_MAX, &seed) && ok;
     scenario->config.seed = (uint64_t)seed;
@@ -296,7 +311,9 @@ static bool read_all(struct scenario_reader *reader, const struct config_node *r
 {
     if (config_type(root) != CONFIG_MAP)
         return config_error(root, "expected a map with steps");
-    bool ok = config_keys(root, known);
+    if (!read_device(reader, root))
+        return false;
+    bool ok = read_options(reader, root);
     ok = read_line(reader->scenario, root) && ok;
     ok = read_rest(reader->scenario, root) && ok;
     ok = read_plant(reader, root) && ok;
@@ -315,7 +332,7 @@ struct scenario *scenario_read(const char *name, const char *text, size_t length
                                FILE *errors)
 {
     struct scenario *scenario = calloc(1, sizeof *scenario);
-    struct scenario_reader reader = {.name = name, .scenario = scenario, .files = files};
+    struct scenario_reader reader = {.name = name, .scenario = scenario, .files = files, .errors = errors};
     if (scenario == NULL) {
         fprintf(errors, "%s: error: out of memory\n", name);
         return NULL;
@@ -343,21 +360,26 @@ void scenario_free(struct scenario *scenario)
     json_decref(scenario->di);
     free(scenario->plant);
     free(scenario->plant_name);
+    for (unsigned i = 0; i < scenario->files; i++)
+        free(scenario->file[i]);
     config_free(scenario->tree);
     free(scenario);
 }
 
-void scenario_set_readings(struct scenario *scenario, const struct rkm04_readings *readings)
+void scenario_set_readings(struct scenario *scenario, const struct device_config *readings)
 {
-    for (unsigned at = 0; at < READINGS; at++)
-        if (!(scenario->named >> at & 1u))
-            readings_put(&scenario->settings.readings, at, readings_get(readings, at));
-    put_settings(scenario);
+    if (scenario->config.device->readings)
+        scenario->config.device->readings->take_others(&scenario->config.unit, readings);
 }
 
-readings_set scenario_readings(const struct scenario *scenario)
+const struct device_kind *scenario_device(const struct scenario *scenario)
 {
-    return scenario->named;
+    return scenario->config.device;
+}
+
+const struct device_config *scenario_config(const struct scenario *scenario)
+{
+    return &scenario->config.unit;
 }
 
 const char *scenario_name(const struct scenario *scenario)

@@ -319,10 +319,8 @@ static bool start_serve(struct serve *serve)
     const struct bus_options *options = &serve->options;
     if (!start_signals(serve)) /* before anything is made that would have to be removed */
         return false;
-    if (is_coverage_wanted(serve)) {
-        const struct rkm04_config settings = rkm04_settings(&options->device.config);
-        coverage_begin(&serve->coverage, &settings.readings);
-    }
+    if (is_coverage_wanted(serve))
+        options->device.kind->coverage->begin(&serve->coverage, &options->device.config);
     serve->idle.data = serve;
     if (!check_uv("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
         !reserve_files(serve) || !start_control(serve) || !run_buses(serve))

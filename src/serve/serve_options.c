@@ -409,7 +409,7 @@ static void check_device(struct bus_options *options, const struct argp_state *s
         argp_error(state, "--node: `%s' is wrong: " NODE_LIST_FORMAT, options->nodes_text, device->addresses);
     }
     options->device.config.node = options->nodes.node[0];
-    if ((options->coverage || options->min_coverage >= 0) && !device->has_coverage)
+    if ((options->coverage || options->min_coverage >= 0) && !device->coverage)
         argp_error(state, "--coverage: not known for the device %s", device->name);
 }
 

@@ -8,6 +8,7 @@
 #include <yaml.h>
 
 #include "invisible.h"
+#include "nearest.h"
 #include "number.h"
 #include "time_value.h"
 
@@ -439,6 +440,16 @@ static void list_names(FILE *out, const char *const *names)
         fprintf(out, "%s%s", i == 0 ? "" : names[i + 1] ? ", " : " or ", names[i]);
 }
 
+/* The name that may be meant, for a message; "" if none is near. */
+static const char *hint_for(const char *key, const char *const *names)
+{
+    char list[MESSAGE_SIZE] = "";
+    size_t length = 0;
+    for (; *names && length < sizeof list; names++)
+        length += (size_t)snprintf(list + length, sizeof list - length, "%s ", *names);
+    return nearest_hint(key, list);
+}
+
 bool config_keys(const struct config_node *node, const char *const *names)
 {
     FILE *errors = node->tree->errors;
@@ -454,8 +465,9 @@ bool config_keys(const struct config_node *node, const char *const *names)
         list_names(errors, names);
         char found[MESSAGE_SIZE];
         snprintf(found, sizeof found, "found \"%s\"", node->key[i]);
+        size_t length = strlen(found);
         invisible_note(found, sizeof found);
-        fprintf(errors, ", %s\n", found);
+        fprintf(errors, ", %s%s\n", found, found[length] == '\0' ? hint_for(node->key[i], names) : "");
     }
     return ok;
 }

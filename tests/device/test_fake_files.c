@@ -252,10 +252,27 @@ START_TEST(scenario_runs_the_device_that_it_names)
 }
 END_TEST
 
+START_TEST(scenario_sets_the_options_of_the_device)
+{
+    char *said;
+    ck_assert_msg(run("device: fake\nrate: 20\nbaud: 0\nsteps:\n  - message: '\"MOVE 4\"'\n    answer: '\"OK\"'\n"
+                      "  - {stays: {motor: 1, position: {\"<\": 4}}, for: 199ms}\n"
+                      "  - {wait: {motor: 1, position: 4}, within: 2ms}\n",
+                      &said) == SCENARIO_PASSED,
+                  "%s", said);
+    free(said);
+}
+END_TEST
+
 START_TEST(scenario_is_held_to_the_numbers_of_the_device)
 {
     static const char *const wrong[][2] = {
         {"device: fuke\nsteps: [{advance: 1s}]\n", "test.yaml:1:9: error: "},
+        {"device: fuke\nsteps: [{advance: 1s}]\n", "did you mean `fake'?"},
+        {"device: fake\nrate: 0\nsteps: [{advance: 1s}]\n", "test.yaml:2:7: error: rate: `0' is wrong: expected steps/s from 1"},
+        {"device: fake\nrote: 20\nsteps: [{advance: 1s}]\n", "found \"rote\"; did you mean `rate'?"},
+        {"device: fake\nstart_file: none.txt\nsteps: [{advance: 1s}]\n", "test.yaml:2:13: error: cannot read"},
+        {"rate: 20\nsteps: [{advance: 1s}]\n", "test.yaml:1:1: error: expected name, "},
         {"device: fake\nunits: 101\nsteps: [{advance: 1s}]\n", "test.yaml:2:8: error: "},
         {"device: fake\nsteps: [{expect: {motor: 2, position: 1}}]\n", "test.yaml:2:"},
         {"device: fake\nsteps: [{expect: {motor: 1, state: dwell}}]\n", "idle, moving"},
@@ -285,6 +302,7 @@ static Suite *fake_files_suite(void)
     tcase_add_test(files, changed_recording_differs);
     tcase_add_test(files, recording_of_an_unknown_device_is_refused);
     tcase_add_test(files, scenario_runs_the_device_that_it_names);
+    tcase_add_test(files, scenario_sets_the_options_of_the_device);
     tcase_add_test(files, scenario_is_held_to_the_numbers_of_the_device);
     suite_add_tcase(suite, files);
     return suite;

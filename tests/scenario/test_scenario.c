@@ -342,12 +342,14 @@ START_TEST(readings_can_be_set_and_are_kept)
     static const char text[] = "baud: 0\nreadings: {speed-change: 1.5s}\nsteps:\n"
                                "  - set: 'V100 F2000 R'\n  - {set: 'V1000', at: 1s}\n"
                                "  - {stays: {motor: 1, position: {\"<=\": 250}}, for: 1.5s}\n";
-    struct rkm04_readings readings = {.hold_exit = RKM04_HOLD_EXIT_LATCH};
+    const struct rkm04_config settings = {.readings = {.hold_exit = RKM04_HOLD_EXIT_LATCH}};
+    const struct device_config readings = rkm04_device_config(&settings);
     expect_pass(text);
     struct scenario *scenario = read_bytes(text, strlen(text));
     scenario_set_readings(scenario, &readings);
     ck_assert_int_eq(scenario_run(scenario, NULL, NULL, NULL, &result), SCENARIO_PASSED);
-    ck_assert_uint_eq(scenario_readings(scenario), 1u << 9);
+    for (unsigned at = 0; at < READINGS; at++)
+        ck_assert_int_eq(rkm04_device.readings->is_chosen(scenario_config(scenario), at), at == 9);
     scenario_free(scenario);
 }
 END_TEST
@@ -356,7 +358,8 @@ START_TEST(a_run_is_under_the_readings_that_were_set)
 {
     static const char text[] = "baud: 0\nsteps:\n  - set: 'V100 F2000 R'\n  - {set: 'V1000', at: 1s}\n"
                                "  - {stays: {motor: 1, position: {\"<=\": 250}}, for: 1.5s}\n";
-    struct rkm04_readings readings = {.speed_change = 1500};
+    const struct rkm04_config settings = {.readings = {.speed_change = 1500}};
+    const struct device_config readings = rkm04_device_config(&settings);
     struct scenario *scenario = read_bytes(text, strlen(text));
     ck_assert_int_eq(scenario_run(scenario, NULL, NULL, NULL, &result), SCENARIO_FAILED);
     scenario_result_free(&result);

@@ -177,8 +177,8 @@ START_TEST(every_unknown_key_is_reported_where_it_stands)
     static const char *const names[] = {"from", "to", "at", NULL};
     struct config_tree *tree = read_well("form: 1\nto:\n  2\nta: 3\n");
     ck_assert(!config_keys(config_root(tree), names));
-    assert_said("file:1:1: error: expected from, to or at, found \"form\"\n"
-                "file:4:1: error: expected from, to or at, found \"ta\"\n");
+    assert_said("file:1:1: error: expected from, to or at, found \"form\"; did you mean `from'?\n"
+                "file:4:1: error: expected from, to or at, found \"ta\"; did you mean `to'?\n");
     config_free(tree);
 }
 END_TEST
