@@ -269,7 +269,7 @@ class Bus:
         self._host: Optional[Host] = None
         self._names: Optional[List[str]] = None
         self._snapshots = 0
-        self._messages = Events(self, ["message"], None, None)
+        self._messages = Events(transport, ["message"], None, None)
         self._dialogue = Dialogue(self._messages.take)
 
     # ---- Anything ----
@@ -459,7 +459,7 @@ class Bus:
                unit: Union[None, UnitName, List[UnitName]] = None) -> Events:
         """What happens from now on: kinds of docs/CONTROL.md ("step", "outputs", …), of some motors and units; all if left
         out. At most 15 at a time."""
-        return Events(self, list(kinds), motor, unit)
+        return Events(self._transport, list(kinds), motor, unit)
 
     def trace(self, path: "Path", force: bool = False) -> File:
         """Write a file about what happens from now on: .vcd, .csv, .jsonl for what the units do, .log, .pcapng for what passes

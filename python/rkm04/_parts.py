@@ -13,7 +13,7 @@ from ._time import Time
 if TYPE_CHECKING:
     import os
 
-    from ._bus import Bus
+    from ._bus import Bus, Transport
 
 UnitName = Union[int, str]
 """A unit by its address at the start, 3 or "3"; the second one with the same address is "3-2"."""
@@ -367,7 +367,7 @@ class Events:
     Iterating takes the events that have come so far, dicts as in docs/CONTROL.md, each once.
     """
 
-    def __init__(self, bus: "Bus", kinds: List[str], motor: Any, unit: Any) -> None:
+    def __init__(self, transport: "Transport", kinds: List[str], motor: Any, unit: Any) -> None:
         params: Dict[str, Any] = {}
         if kinds:
             params["kinds"] = kinds
@@ -375,8 +375,8 @@ class Events:
             params["motor"] = motor
         if unit is not None:
             params["unit"] = unit
-        self._bus = bus
-        self._number: int = bus.call("subscribe", **params)["subscription"]
+        self._transport = transport
+        self._number: int = transport.call("subscribe", params)["subscription"]
         self._closed = False
         self.lost = 0
         """How many events were lost because nobody took them (more than 64 MiB)."""
@@ -385,7 +385,7 @@ class Events:
         """The events since the last call."""
         if self._closed:
             return []
-        events, lost = self._bus._transport.events(self._number)
+        events, lost = self._transport.events(self._number)
         self.lost += lost
         return events
 
@@ -396,7 +396,7 @@ class Events:
         """End it; what has come and was not taken is forgotten."""
         if not self._closed:
             self._closed = True
-            self._bus.call("unsubscribe", subscription=self._number)
+            self._transport.call("unsubscribe", {"subscription": self._number})
 
     def __enter__(self) -> "Events":
         return self

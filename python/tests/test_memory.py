@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""Nothing is left of a bus that is closed."""
+
+import gc
+import os
+import tracemalloc
+
+import rkm04
+
+BUSES = 10_000
+WARM = 500
+SANITIZED = bool(os.environ.get("RKM04_SANITIZER"))
+"""A sanitizer keeps what is freed in a quarantine: the memory of the process says nothing."""
+
+
+def use_bus():
+    with rkm04.Bus(units="1,2") as bus:
+        bus.unit(1).motor(1).set("F10 R")
+        bus.faults.inject("no_answer", count=1)
+        bus.snapshot()
+        with bus.events("step") as steps:
+            bus.advance("20ms")
+        assert list(steps) and len(bus.dialogue) == 1
+
+
+def resident():
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def test_ten_thousand_buses_leave_nothing_behind():
+    buses = BUSES // 20 if SANITIZED else BUSES
+    for _ in range(WARM):
+        use_bus()
+    gc.collect()
+    tracemalloc.start()
+    for _ in range(10):
+        use_bus()
+    gc.collect()
+    before, rss = tracemalloc.get_traced_memory()[0], resident()
+    tracemalloc.stop()
+    for _ in range(buses):
+        use_bus()
+    gc.collect()
+    if not SANITIZED:
+        assert resident() - rss < 2 << 20, "memory of the process grows"
+    tracemalloc.start()
+    for _ in range(10):
+        use_bus()
+    gc.collect()
+    assert tracemalloc.get_traced_memory()[0] - before < 10_000
+    tracemalloc.stop()
+
+
+def test_a_bus_that_nobody_closes_is_freed_too():
+    for _ in range(WARM):
+        rkm04.Bus().unit(1)
+    gc.collect()
+    before = resident()
+    for _ in range(2 * WARM):
+        rkm04.Bus(units="1-16").unit(1)
+    gc.collect()
+    if not SANITIZED:
+        assert resident() - before < 8 << 20
