@@ -11,6 +11,7 @@ python=$(sed -n 's/^_\?Python_EXECUTABLE:.*=//p' "$BUILD/CMakeCache.txt" | head 
 [[ -n $python ]] || skip_all "the extension was not built: there were no headers of Python (Debian: python3-dev)"
 said=$("$root/tools/python-env" "$env" "$python") || { echo "$said"; exit 77; }
 wheel=$("$root/tools/python-wheel" "$BUILD/python-wheel" "$env/bin/python" | tail -n 1)
+version=$(sed -n 's/.*RKM04_VERSION "\(.*\)".*/\1/p' "$root/include/rkm04/limits.h")
 export PYTHONDONTWRITEBYTECODE=1
 unset PYTHONPATH
 
@@ -39,12 +40,12 @@ test_wheel_runs_what_readme_shows() {
 
 test_wheel_has_the_programs() {
     install_wheel "$python"
-    same "$("$folder/env/bin/rkm04" --version)" "$("$RKM04" --version)" "version of rkm04"
-    same "$("$folder/env/bin/rkmctl" --version)" "$("$RKMCTL" --version)" "version of rkmctl"
+    same "$("$folder/env/bin/rkm04" --version)" "rkm04 $version" "version of rkm04"
+    same "$("$folder/env/bin/rkmctl" --version)" "rkmctl $version" "version of rkmctl"
     cd "$folder" && "$folder/env/bin/python" -c 'import rkm04
 with rkm04.serve() as bus:
     assert bus.exchange(1, rkm04.request("Version")).text == "01.02,06.03.2009"' || fail "serve does not work"
-    same "$(env/bin/python -c 'import rkm04, sys; print("pytest" in sys.modules, rkm04.__version__)')" "False 0.1.0" "import"
+    same "$(env/bin/python -c 'import rkm04, sys; print("pytest" in sys.modules, rkm04.__version__)')" "False $version" "import"
 }
 
 test_wheel_lets_a_program_that_does_not_know_it_open_the_url() {
@@ -57,11 +58,11 @@ assert len(port.read(24)) == 24' || fail "pyserial does not find rkm04://"
 
 # tests_with "VERSION PATH": the tests of the package with the wheel.
 tests_with() {
-    local version=${1%% *}
-    "$root/tools/python-env" "$env-$version" "${1#* }" >"$folder/env.err" || skip_case "$(tail -n 1 "$folder/env.err")"
-    "$env-$version/bin/pip" install -q --no-deps --force-reinstall "$wheel" >"$folder/pip.err" 2>&1 || fail "not installed"
-    cd "$root/python/tests" && "$env-$version/bin/python" -m pytest -q -p no:cacheprovider . >"$folder/pytest.err" 2>&1 ||
-        fail "the tests fail with Python $version"
+    local number=${1%% *}
+    "$root/tools/python-env" "$env-$number" "${1#* }" >"$folder/env.err" || skip_case "$(tail -n 1 "$folder/env.err")"
+    "$env-$number/bin/pip" install -q --no-deps --force-reinstall "$wheel" >"$folder/pip.err" 2>&1 || fail "not installed"
+    cd "$root/python/tests" && "$env-$number/bin/python" -m pytest -q -p no:cacheprovider . >"$folder/pytest.err" 2>&1 ||
+        fail "the tests fail with Python $number"
 }
 
 test_tests_pass_with_the_oldest_python() {
