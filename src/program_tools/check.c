@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "check_inside.h"
-#include "text/text.h"
+#include "source_texts.h"
 
 /* ---- Names ---------------------------------------------------------------------------------------------------------- */
 
@@ -77,21 +77,6 @@ void check_warn(struct check *check, const struct check_motor *motor, enum check
 
 /* ---- The check ------------------------------------------------------------------------------------------------------ */
 
-static bool map_texts(struct check *check)
-{
-    check->texts = calloc(check->count + 1, sizeof *check->texts);
-    for (size_t i = 0; check->texts != NULL && i < check->count; i++) {
-        const struct program_source *source = &check->sources[i];
-        check->texts[i] = malloc(source->length + 1);
-        if (check->texts[i] == NULL)
-            return false;
-        if (source->length > 0)
-            memcpy(check->texts[i], source->text, source->length);
-        program_text_map_in_place(check->texts[i], source->length);
-    }
-    return check->texts != NULL;
-}
-
 /* Read the program of a motor: the sources for it and those for all. 0: the motors that have no source of their own. */
 static bool read_motor(struct check *check, unsigned number)
 {
@@ -134,7 +119,8 @@ static bool check_motor_program(struct check *check, struct check_motor *motor)
 
 static bool run_check(struct check *check)
 {
-    if (!map_texts(check) || !read_sources(check))
+    check->texts = source_texts_map(check->sources, check->count);
+    if (check->texts == NULL || !read_sources(check))
         return false;
     for (size_t i = 0; i < check->motor_count; i++)
         if (!check_motor_program(check, &check->motors[i]))
@@ -157,9 +143,7 @@ bool check_programs(const struct program_source *sources, size_t count, const st
         flow_end(&check.motors[i].flow);
         code_free(&check.motors[i].code);
     }
-    for (size_t i = 0; check.texts != NULL && i < count; i++)
-        free(check.texts[i]);
-    free(check.texts);
+    source_texts_free(check.texts, count);
     free(check.motors);
     planner_end(&check.planner);
     return ok;

@@ -32,7 +32,8 @@ static const char *severity_name(const struct diagnostic *one)
 /* The line of the place, and a caret below it. Characters that would move the cursor are blanks. */
 static void print_line(const struct diagnostic *one, const struct program_source *source, FILE *out)
 {
-    size_t begin = one->offset, end = one->offset, at;
+    size_t begin = one->offset, at;
+    size_t end = begin;
     while (begin > 0 && source->text[begin - 1] != '\n' && one->offset - begin < LINE_SHOWN / 2)
         begin--;
     while (end < source->length && source->text[end] != '\n' && end - begin < LINE_SHOWN)

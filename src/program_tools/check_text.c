@@ -149,7 +149,6 @@ static bool find_hint(const struct rkm04_reader *reader, enum rkm04_read found, 
 
 struct reading {
     struct check *check;
-    struct check_motor *motor;
     size_t requests, request_offset; /* K and C75 of this source; where the first one stands */
 };
 
@@ -249,7 +248,7 @@ static void check_apostrophes(struct check *check, const struct check_motor *mot
 
 bool check_read(struct check *check, struct check_motor *motor, size_t source)
 {
-    struct reading reading = {.check = check, .motor = motor};
+    struct reading reading = {.check = check};
     const size_t from = motor->code.count;
     if (!code_read(&motor->code, source, check->texts[source], notice, &reading))
         return false;

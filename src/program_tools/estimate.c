@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "estimate_run.h"
-#include "text/text.h"
+#include "source_texts.h"
 
 #define DRIFT_TIME_MIN (2 * (uint64_t)RKM04_TICKS_PER_SECOND) /* in which the slowest motion does a step */
 #define DRIFT_TIME_MAX (600 * (uint64_t)RKM04_TICKS_PER_SECOND) /* followed, of a program whose rounds end elsewhere on a plant */
@@ -27,20 +27,6 @@ static void note_error(void *context, size_t source, const struct rkm04_reader *
     (void)source, (void)reader, (void)command;
     if (found != RKM04_READ_COMMAND)
         *(bool *)context = true;
-}
-
-static bool map_texts(struct estimate_run *run)
-{
-    run->texts = calloc(run->count + 1, sizeof *run->texts);
-    for (size_t i = 0; run->texts != NULL && i < run->count; i++) {
-        run->texts[i] = malloc(run->sources[i].length + 1);
-        if (run->texts[i] == NULL)
-            return false;
-        if (run->sources[i].length > 0)
-            memcpy(run->texts[i], run->sources[i].text, run->sources[i].length);
-        program_text_map_in_place(run->texts[i], run->sources[i].length);
-    }
-    return run->texts != NULL;
 }
 
 /* Read the texts of all motors. *refused: one has an error. Returns false if out of memory. */
@@ -69,7 +55,8 @@ static enum estimate_result begin(struct estimate_run *run)
     const struct rkm04_config settings = {.node = 1, .readings = options->readings};
     struct sim_config config = {.nodes = {.count = 1, .node = {1}}, .device = &rkm04_device};
     bool refused = false;
-    if (!map_texts(run) || !read_motors(run, &refused))
+    run->texts = source_texts_map(run->sources, run->count);
+    if (run->texts == NULL || !read_motors(run, &refused))
         return ESTIMATE_NO_MEMORY;
     if (refused)
         return ESTIMATE_REFUSED;
@@ -150,8 +137,9 @@ static bool pass_inputs(struct estimate_run *run)
 static void run_for(struct estimate_run *run, uint64_t period)
 {
     const uint64_t end = sim_now(&run->sim) + period;
-    while (sim_now(&run->sim) < end && leap(run, end))
-        continue;
+    bool more = true;
+    while (more && sim_now(&run->sim) < end)
+        more = leap(run, end);
 }
 
 static void note_positions(struct estimate_run *run, int64_t positions[RKM04_MOTORS])
@@ -218,7 +206,7 @@ static bool run_round(struct estimate_run *run, uint64_t period)
     run_for(run, period);
     for (size_t i = 0; i < estimate->motion_count; i++) {
         estimate->motions[i].in_round = estimate->motions[i].times > 0;
-        if (estimate->motions[i].times == 0 && i < count)
+        if (i < count && estimate->motions[i].times == 0)
             estimate->motions[i] = before[i];
     }
     free(before);
@@ -323,9 +311,7 @@ enum estimate_result estimate_programs(const struct program_source *sources, siz
         code_free(&run->motor[i].code);
         free(run->motor[i].row);
     }
-    for (size_t i = 0; run->texts != NULL && i < count; i++)
-        free(run->texts[i]);
-    free(run->texts);
+    source_texts_free(run->texts, count);
     free(run->repeat);
     free(run);
     return result;

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
-#include "check_print.h"
 #include "estimate.h"
 #include "estimate_print.h"
 #include "options/options.h"
@@ -71,18 +69,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     }
 }
 
-static void report_errors(const struct options *options, const struct program_source *sources, size_t count)
-{
-    const struct check_options check = {.off = UINT64_MAX, .readings = options->estimate.readings};
-    struct diagnostics found;
-    struct check_printer printer;
-    check_programs(sources, count, &check, &found);
-    check_print_begin(&printer, CHECK_TEXT, stderr);
-    check_print(&printer, sources, &found);
-    check_print_end(&printer);
-    diagnostics_free(&found);
-}
-
 static int print_estimate(const struct options *options, const struct program_source *sources, const struct estimate *estimate)
 {
     if (options->json) {
@@ -106,7 +92,7 @@ static int run_estimate(const struct options *options, const struct program_sour
         status = print_estimate(options, sources, &estimate);
         break;
     case ESTIMATE_REFUSED:
-        report_errors(options, sources, count);
+        tool_check_errors(sources, count, &options->estimate.readings);
         break;
     case ESTIMATE_NO_PLANT:
         break; /* reported */

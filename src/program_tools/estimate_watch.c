@@ -178,11 +178,10 @@ static void ask_points(struct estimate_run *run, unsigned number)
 {
     struct estimate_motor *motor = &run->motor[number - 1];
     const uint8_t message[] = {6, (uint8_t)('0' + number)};
-    char answer[1024];
-    size_t length = sim_device(&run->sim)->exchange(sim_core(&run->sim, 1), message, sizeof message, (uint8_t *)answer,
-                                                    sizeof answer);
-    length = length > sizeof answer ? sizeof answer : length;
-    motor->point_count = length < 2 ? 0 : planner_read(answer + 2, length - 2, motor->points);
+    uint8_t answer[1024];
+    const size_t length =
+        sim_device(&run->sim)->exchange(sim_core(&run->sim, 1), message, sizeof message, answer, sizeof answer);
+    motor->point_count = planner_read(answer, length < sizeof answer ? length : sizeof answer, motor->points);
     const uint32_t peak = peak_of(motor);
     if (peak > run->estimate->peak)
         run->estimate->peak = peak;

@@ -10,6 +10,7 @@
 #include "code.h"
 #include "explain_words.h"
 #include "flow.h"
+#include "source_texts.h"
 #include "text/text.h"
 #include "token.h"
 
@@ -156,7 +157,7 @@ static bool state_at(const struct flow *flow, size_t index, struct flow_state *s
         if (any)
             flow_state_join(state, &flow->nodes[node].in);
         else
-            memcpy(state, &flow->nodes[node].in, sizeof *state);
+            *state = flow->nodes[node].in;
         any = true;
     }
     return any;
@@ -164,7 +165,7 @@ static bool state_at(const struct flow *flow, size_t index, struct flow_state *s
 
 static void explain_one(struct writer *writer, const struct flow *flow, size_t index, struct rkm04_command command)
 {
-    struct flow_state state;
+    struct flow_state state = flow_state_begin();
     explain_command(command, writer->language, writer->text, sizeof writer->text);
     writer->length = strlen(writer->text);
     if (command.op == '@' && flow->called[command.argument])
@@ -245,22 +246,12 @@ static int compare(const void *left, const void *right)
 bool explain_programs(const struct program_source *sources, size_t count, enum explain_language language,
                       struct explanations *all)
 {
-    char **texts = calloc(count + 1, sizeof *texts);
+    char **texts = source_texts_map(sources, count);
     bool ok = texts != NULL;
     *all = (struct explanations){0};
-    for (size_t i = 0; ok && i < count; i++) {
-        texts[i] = malloc(sources[i].length + 1);
-        ok = texts[i] != NULL;
-        if (ok && sources[i].length > 0)
-            memcpy(texts[i], sources[i].text, sources[i].length);
-        if (ok)
-            program_text_map_in_place(texts[i], sources[i].length);
-    }
     for (unsigned motor = 0; ok && motor <= RKM04_MOTORS; motor++)
         ok = explain_motor(all, sources, count, motor, texts, language);
-    for (size_t i = 0; texts != NULL && i < count; i++)
-        free(texts[i]);
-    free(texts);
+    source_texts_free(texts, count);
     if (all->count > 0)
         qsort(all->list, all->count, sizeof all->list[0], compare);
     return ok;

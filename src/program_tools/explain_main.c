@@ -6,8 +6,6 @@
 
 #include <jansson.h>
 
-#include "check.h"
-#include "check_print.h"
 #include "explain.h"
 #include "options/options.h"
 #include "program_tools.h"
@@ -62,20 +60,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     }
 }
 
-/* Report on stderr what the unit would refuse. Returns whether there is nothing. */
-static bool report_errors(const struct program_source *sources, size_t count)
-{
-    const struct check_options options = {.off = UINT64_MAX};
-    struct diagnostics found;
-    struct check_printer printer;
-    bool ok = check_programs(sources, count, &options, &found);
-    check_print_begin(&printer, CHECK_TEXT, stderr);
-    check_print(&printer, sources, &found);
-    ok = check_print_end(&printer) && ok && found.errors == 0;
-    diagnostics_free(&found);
-    return ok;
-}
-
 /* Columns of a text in UTF-8. */
 static int columns_of(const char *text, size_t length)
 {
@@ -124,7 +108,7 @@ static int explain_files(struct options *options)
         ok = tool_file_read(&files->list[i], "rkm04 explain") && ok;
         sources[i] = files->list[i].source;
     }
-    ok = ok && report_errors(sources, files->count);
+    ok = ok && tool_check_errors(sources, files->count, &(struct rkm04_readings){0});
     if (ok && !explain_programs(sources, files->count, options->language, &all)) {
         fputs("rkm04 explain: out of memory\n", stderr);
         ok = false;

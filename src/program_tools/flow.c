@@ -2,7 +2,6 @@
 #include "flow.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #define LEVELS_FOLLOWED 32u /* loops; beyond the levels of the unit, so that what closes them is found */
 
@@ -50,7 +49,7 @@ static uint32_t add_node(struct flow *flow, uint32_t context, uint32_t index, ui
                                       .next = {FLOW_NO_NODE, FLOW_NO_NODE},
                                       .same = flow->first_node[index],
                                       .caller = FLOW_NO_NODE};
-    memcpy(&nodes[added].in, in, sizeof *in); /* with its padding */
+    nodes[added].in = *in;
     flow->first_node[index] = added;
     enqueue(flow, added);
     return added;
@@ -205,25 +204,23 @@ static void follow_call(struct flow *flow, const struct step *step)
     }
     if (!flow->contexts[called].returns)
         return;
-    struct flow_state out;
-    memcpy(&out, &flow->contexts[called].out, sizeof out);
+    const struct flow_state out = flow->contexts[called].out;
     come_back(flow, step->node, &out);
 }
 
 static void follow_return(struct flow *flow, const struct step *step)
 {
     struct flow_context *here = &flow->contexts[step->context];
-    struct flow_state out;
     if (here->calls == 0) {
         flow->marks[step->index] |= FLOW_NO_CALL;
         return;
     }
     if (!here->returns)
-        memcpy(&here->out, &step->out, sizeof here->out);
+        here->out = step->out;
     else if (!flow_state_join(&here->out, &step->out))
         return;
     here->returns = true;
-    memcpy(&out, &here->out, sizeof out);
+    const struct flow_state out = here->out;
     for (uint32_t at = here->callers; at != FLOW_NO_NODE; at = flow->nodes[at].caller)
         come_back(flow, at, &out);
 }
@@ -288,7 +285,7 @@ static void process(struct flow *flow, uint32_t at)
         return;
     struct step step = {.node = at, .context = node->context, .index = node->index, .stack = node->stack};
     step.command = flow->code->commands[node->index].command;
-    memcpy(&step.out, &node->in, sizeof step.out);
+    step.out = node->in;
     const bool for_ever = code_is_endless(step.command) && !flow_state_guarded(&step.out);
     flow_state_execute(&step.out, step.command, step.index);
     if (!for_ever)

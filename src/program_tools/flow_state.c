@@ -5,62 +5,78 @@
 
 struct flow_state flow_state_begin(void)
 {
-    struct flow_state state;
-    memset(&state, 0, sizeof state); /* padding too: states are compared as bytes */
-    state.position = FLOW_UNKNOWN;
-    state.start_speed = 100; /* U8 */
-    state.speed = 1000;
-    state.acceleration = 2000;
-    state.m_from = state.n_from = FLOW_NONE;
-    state.table = 1;
-    state.guard_m = state.guard_n = 1;
-    state.count_from = FLOW_COUNT_NONE;
-    state.direction = FLOW_FORWARD;
-    state.after = FLOW_AFTER_OTHER;
-    state.table_known = true;
-    return state;
+    return (struct flow_state){
+        .position = FLOW_UNKNOWN,
+        .start_speed = 100, /* U8 */
+        .speed = 1000,
+        .acceleration = 2000,
+        .m_from = FLOW_NONE,
+        .n_from = FLOW_NONE,
+        .table = 1,
+        .guard_m = 1,
+        .guard_n = 1,
+        .count_from = FLOW_COUNT_NONE,
+        .direction = FLOW_FORWARD,
+        .after = FLOW_AFTER_OTHER,
+        .table_known = true,
+    };
 }
 
 /* ---- Joins ---------------------------------------------------------------------------------------------------------- */
 
-static void join_value(int64_t *value, int64_t other)
+/* Each takes what else is possible into *value. Returns whether that is news. */
+static bool join_value(int64_t *value, int64_t other)
 {
-    if (*value != other)
-        *value = FLOW_UNKNOWN;
+    if (*value == other || *value == FLOW_UNKNOWN)
+        return false;
+    *value = FLOW_UNKNOWN;
+    return true;
 }
 
-static void join_from(int32_t *from, int32_t other)
+static bool join_from(int32_t *from, int32_t other)
 {
-    if (*from == other || other == FLOW_NONE)
-        return;
+    if (*from == other || other == FLOW_NONE || *from == FLOW_SEVERAL)
+        return false;
     *from = *from == FLOW_NONE ? other : FLOW_SEVERAL;
+    return true;
+}
+
+static bool join_set(uint16_t *set, uint16_t other)
+{
+    const uint16_t before = *set;
+    *set |= other;
+    return *set != before;
+}
+
+static bool join_table(struct flow_state *state, const struct flow_state *other)
+{
+    bool news = state->table_empty_segment && !other->table_empty_segment;
+    state->table_empty_segment = state->table_empty_segment && other->table_empty_segment;
+    if (state->table_known && (!other->table_known || state->table != other->table ||
+                               memcmp(state->segment, other->segment, sizeof state->segment) != 0)) {
+        state->table_known = false;
+        memset(state->segment, 0, sizeof state->segment);
+        news = true;
+    }
+    news |= join_set(&state->table, other->table);
+    return join_set(&state->table_direction, other->table_direction) || news;
 }
 
 bool flow_state_join(struct flow_state *state, const struct flow_state *other)
 {
-    struct flow_state before;
-    memcpy(&before, state, sizeof before);
-    join_value(&state->position, other->position);
-    join_value(&state->count, other->count);
-    join_value(&state->start_speed, other->start_speed);
-    join_value(&state->speed, other->speed);
-    join_value(&state->acceleration, other->acceleration);
-    join_from(&state->m_from, other->m_from);
-    join_from(&state->n_from, other->n_from);
-    state->table |= other->table;
-    state->guard_m |= other->guard_m;
-    state->guard_n |= other->guard_n;
-    state->count_from |= other->count_from;
-    state->direction |= other->direction;
-    state->after |= other->after;
-    state->table_direction |= other->table_direction;
-    state->table_empty_segment = state->table_empty_segment && other->table_empty_segment;
-    if (!other->table_known || before.table != other->table ||
-        memcmp(state->segment, other->segment, sizeof state->segment) != 0) {
-        state->table_known = false;
-        memset(state->segment, 0, sizeof state->segment);
-    }
-    return memcmp(state, &before, sizeof before) != 0;
+    bool news = join_value(&state->position, other->position);
+    news |= join_value(&state->count, other->count);
+    news |= join_value(&state->start_speed, other->start_speed);
+    news |= join_value(&state->speed, other->speed);
+    news |= join_value(&state->acceleration, other->acceleration);
+    news |= join_from(&state->m_from, other->m_from);
+    news |= join_from(&state->n_from, other->n_from);
+    news |= join_set(&state->guard_m, other->guard_m);
+    news |= join_set(&state->guard_n, other->guard_n);
+    news |= join_set(&state->count_from, other->count_from);
+    news |= join_set(&state->direction, other->direction);
+    news |= join_set(&state->after, other->after);
+    return join_table(state, other) || news;
 }
 
 /* ---- Commands ------------------------------------------------------------------------------------------------------- */
@@ -154,7 +170,7 @@ static void run_motion(struct flow_state *state, struct rkm04_command command)
     }
 }
 
-static void set_count(struct flow_state *state, uint32_t count, uint8_t direction)
+static void set_count(struct flow_state *state, uint32_t count, uint16_t direction)
 {
     state->count = count;
     state->count_from = FLOW_COUNT_SET;

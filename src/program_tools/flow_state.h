@@ -25,8 +25,8 @@ struct flow_state {
     int32_t m_from, n_from;             /* the M, N that is armed: FLOW_NONE, FLOW_SEVERAL */
     uint16_t table;                     /* bit n: n segments are in the Y table; bit 11: more than ten */
     uint16_t guard_m, guard_n;          /* bit 0: not armed; bit n: armed with input n */
-    uint8_t count_from, direction, after;
-    uint8_t table_direction;            /* of its segments */
+    uint16_t count_from, direction, after;
+    uint16_t table_direction;            /* of its segments */
     bool table_known;                   /* the number of segments is certain, and `segment` has them */
     bool table_empty_segment;           /* a segment without steps is certain */
     struct flow_segment segment[RKM04_SEGMENTS_MAX];

@@ -8,8 +8,6 @@
 
 #include <jansson.h>
 
-#include "check.h"
-#include "check_print.h"
 #include "format.h"
 #include "options/options.h"
 #include "program_tools.h"
@@ -71,19 +69,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     }
 }
 
-/* Report on stderr what the unit would refuse. */
-static void report_errors(const struct program_source *source)
-{
-    const struct check_options options = {.off = UINT64_MAX};
-    struct diagnostics found;
-    struct check_printer printer;
-    check_programs(source, 1, &options, &found);
-    check_print_begin(&printer, CHECK_TEXT, stderr);
-    check_print(&printer, source, &found);
-    check_print_end(&printer);
-    diagnostics_free(&found);
-}
-
 static bool add_json(const char *name, const char *text, size_t length, bool changed, json_t *all)
 {
     json_t *one = json_pack("{s:s, s:b, s:s%}", "file", name, "changed", changed, "text", text, length);
@@ -125,7 +110,7 @@ static int format_file(const struct options *options, struct tool_file *file, js
         return STATUS_FAILURE;
     switch (format_program(&file->source, &text, &length)) {
     case FORMAT_ERRORS:
-        report_errors(&file->source);
+        tool_check_errors(&file->source, 1, &(struct rkm04_readings){0});
         return STATUS_FAILURE;
     case FORMAT_NO_MEMORY:
         fputs("rkm04 fmt: out of memory\n", stderr);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/text.h"
+#include "source_texts.h"
 #include "token.h"
 
 #define INDENT 4u
@@ -178,17 +178,14 @@ static enum format_result lay_out(struct layout *layout, char **out, size_t *len
 
 enum format_result format_program(const struct program_source *source, char **out, size_t *length)
 {
-    char *mapped = malloc(source->length + 1);
+    char **texts = source_texts_map(source, 1);
     *out = NULL;
     *length = 0;
-    if (mapped == NULL)
+    if (texts == NULL)
         return FORMAT_NO_MEMORY;
-    if (source->length > 0)
-        memcpy(mapped, source->text, source->length);
-    program_text_map_in_place(mapped, source->length);
-    struct layout layout = {.source = source, .text = mapped};
+    struct layout layout = {.source = source, .text = texts[0]};
     enum format_result result = lay_out(&layout, out, length);
-    free(mapped);
+    source_texts_free(texts, 1);
     if (result != FORMAT_DONE) {
         free(*out);
         *out = NULL;

@@ -28,10 +28,10 @@ void planner_end(struct planner *planner)
     planner->unit = NULL;
 }
 
-size_t planner_read(const char *answer, size_t length, struct planner_point points[PLANNER_POINTS_MAX])
+size_t planner_read(const uint8_t *answer, size_t length, struct planner_point points[PLANNER_POINTS_MAX])
 {
     size_t count = 0;
-    for (size_t at = 0; at < length && count < PLANNER_POINTS_MAX; at++) {
+    for (size_t at = 2; at < length && count < PLANNER_POINTS_MAX; at++) {
         uint32_t number[2] = {0, 0};
         if (answer[at] != '(')
             continue;
@@ -63,7 +63,8 @@ size_t planner_ask(struct planner *planner, uint16_t start_speed, const struct p
                    struct planner_point points[PLANNER_POINTS_MAX])
 {
     static const uint8_t get_table[] = {6, '1'};
-    char text[64 * (RKM04_SEGMENTS_MAX + 1)], answer[1024];
+    char text[64 * (RKM04_SEGMENTS_MAX + 1)];
+    uint8_t answer[1024];
     if (!begin(planner))
         return 0;
     const size_t commands = write_motion(text, sizeof text, start_speed, segments, count);
@@ -72,8 +73,6 @@ size_t planner_ask(struct planner *planner, uint16_t start_speed, const struct p
     const uint64_t now = rkm04_now(planner->unit), slot = RKM04_SLOT_TICKS;
     const uint64_t first = now == 0 ? slot : (now + slot - 1) / slot * slot;
     rkm04_advance(planner->unit, first + (commands - 1) * slot + 1 - now);
-    size_t length = rkm04_exchange(planner->unit, get_table, sizeof get_table, (uint8_t *)answer, sizeof answer);
-    if (length > sizeof answer)
-        length = sizeof answer;
-    return length < 2 ? 0 : planner_read(answer + 2, length - 2, points);
+    size_t length = rkm04_exchange(planner->unit, get_table, sizeof get_table, answer, sizeof answer);
+    return planner_read(answer, length < sizeof answer ? length : sizeof answer, points);
 }

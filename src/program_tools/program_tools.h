@@ -12,6 +12,7 @@
  *
  * Inside:
  *     token         a text as commands, comments and errors, read by the core's reader
+ *     source_texts  texts as the unit takes them
  *     code          the program of a motor as commands with their places
  *     flow          which command may follow which, and what holds there
  *     planner       break points of motions, asked of the core

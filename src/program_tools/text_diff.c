@@ -9,8 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
 /* A file in memory with this text. Returns its descriptor, -1: errno. */
 static int make_file(const char *text, size_t length)
 {

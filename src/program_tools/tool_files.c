@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "check.h"
+#include "check_print.h"
 #include "options/options.h"
 
 void tool_files_begin(struct tool_files *files, int argc)
@@ -46,6 +48,19 @@ bool tool_file_read(struct tool_file *file, const char *program)
     if (wrong != NULL)
         fprintf(stderr, "%s: cannot read %s: %s\n", program, file->source.name, wrong);
     return wrong == NULL;
+}
+
+bool tool_check_errors(const struct program_source *sources, size_t count, const struct rkm04_readings *readings)
+{
+    const struct check_options options = {.off = UINT64_MAX, .readings = *readings};
+    struct diagnostics found;
+    struct check_printer printer;
+    bool well = check_programs(sources, count, &options, &found);
+    check_print_begin(&printer, CHECK_TEXT, stderr);
+    check_print(&printer, sources, &found);
+    well = check_print_end(&printer) && well && found.errors == 0;
+    diagnostics_free(&found);
+    return well;
 }
 
 void tool_file_free(struct tool_file *file)

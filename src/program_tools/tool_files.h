@@ -4,6 +4,9 @@
 #define RKM04_PROGRAM_TOOLS_TOOL_FILES_H
 
 #include <argp.h>
+#include <stdbool.h>
+
+#include <rkm04/readings.h>
 
 #include "diagnostic.h"
 #include "text/text.h"
@@ -30,6 +33,10 @@ void tool_files_add(struct tool_files *files, const char *argument, struct argp_
 
 /* Read a file. Returns false if that is not possible, which is reported as by `program` ("rkm04 check"). */
 bool tool_file_read(struct tool_file *file, const char *program);
+
+/* Report on stderr what a unit with these readings would refuse in sources that belong together. Returns whether there is
+ * nothing. */
+bool tool_check_errors(const struct program_source *sources, size_t count, const struct rkm04_readings *readings);
 
 /* Give back the text. */
 void tool_file_free(struct tool_file *file);
