@@ -26,7 +26,7 @@ bool check_plant(struct check *check)
         return true;
     const enum estimate_result result = estimate_programs(check->sources, check->count, &run, &estimate);
     check->found->bad_plant = result == ESTIMATE_NO_PLANT;
-    for (size_t i = 0; result == ESTIMATE_WELL && i < estimate.wait_count; i++)
+    for (size_t i = 0; result == ESTIMATE_OK && i < estimate.wait_count; i++)
         if (estimate.waits[i].driven)
             report(check, &estimate.waits[i]);
     estimate_free(&estimate);

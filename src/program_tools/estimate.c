@@ -75,7 +75,7 @@ static enum estimate_result begin(struct estimate_run *run)
         if (flag == 1 || flag == 2)
             return ESTIMATE_REFUSED;
     }
-    return ESTIMATE_WELL;
+    return ESTIMATE_OK;
 }
 
 /* ---- The run ---------------------------------------------------------------------------------------------------------- */
@@ -283,7 +283,7 @@ static void conclude(struct estimate_run *run, uint64_t began_before)
 static enum estimate_result run_all(struct estimate_run *run)
 {
     const enum estimate_result begun = begin(run);
-    if (begun != ESTIMATE_WELL)
+    if (begun != ESTIMATE_OK)
         return begun;
     const uint64_t period = run_to_the_end(run);
     run->estimate->duration = run->last;
@@ -291,7 +291,7 @@ static enum estimate_result run_all(struct estimate_run *run)
     if (period > 0 && !run_round(run, period))
         return ESTIMATE_NO_MEMORY;
     conclude(run, period > 0 ? repeated : UINT64_MAX);
-    return run->no_memory ? ESTIMATE_NO_MEMORY : ESTIMATE_WELL;
+    return run->no_memory ? ESTIMATE_NO_MEMORY : ESTIMATE_OK;
 }
 
 enum estimate_result estimate_programs(const struct program_source *sources, size_t count, const struct estimate_options *options,

@@ -89,7 +89,7 @@ struct estimate {
 };
 
 enum estimate_result {
-    ESTIMATE_WELL,
+    ESTIMATE_OK,
     ESTIMATE_REFUSED,  /* a text has an error: check_programs() says which */
     ESTIMATE_NO_PLANT, /* the plant has an error, which was reported */
     ESTIMATE_NO_MEMORY

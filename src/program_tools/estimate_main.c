@@ -88,7 +88,7 @@ static int run_estimate(const struct options *options, const struct program_sour
     struct estimate estimate;
     int status = STATUS_FAILURE;
     switch (estimate_programs(sources, count, &options->estimate, &estimate)) {
-    case ESTIMATE_WELL:
+    case ESTIMATE_OK:
         status = print_estimate(options, sources, &estimate);
         break;
     case ESTIMATE_REFUSED:

@@ -55,12 +55,12 @@ bool tool_check_errors(const struct program_source *sources, size_t count, const
     const struct check_options options = {.off = UINT64_MAX, .readings = *readings};
     struct diagnostics found;
     struct check_printer printer;
-    bool well = check_programs(sources, count, &options, &found);
+    bool ok = check_programs(sources, count, &options, &found);
     check_print_begin(&printer, CHECK_TEXT, stderr);
     check_print(&printer, sources, &found);
-    well = check_print_end(&printer) && well && found.errors == 0;
+    ok = check_print_end(&printer) && ok && found.errors == 0;
     diagnostics_free(&found);
-    return well;
+    return ok;
 }
 
 void tool_file_free(struct tool_file *file)

@@ -30,7 +30,7 @@ static enum estimate_result run_two(const char *first, const char *second)
 
 static void run(const char *text)
 {
-    ck_assert_int_eq(run_two(text, ""), ESTIMATE_WELL);
+    ck_assert_int_eq(run_two(text, ""), ESTIMATE_OK);
 }
 
 static void run_on_plant(const char *text, const char *plant)
@@ -129,11 +129,11 @@ END_TEST
 
 START_TEST(the_moment_is_told_from_which_two_motors_wait_for_each_other)
 {
-    ck_assert_int_eq(run_two("W50 O80 T81", "W300 O81 T80"), ESTIMATE_WELL);
+    ck_assert_int_eq(run_two("W50 O80 T81", "W300 O81 T80"), ESTIMATE_OK);
     ck_assert_int_eq(estimate.end, ESTIMATE_WAITS);
     ck_assert(estimate.deadlock);
     ck_assert_uint_eq(estimate.deadlock_at, 301000);
-    ck_assert_int_eq(run_two("W50 T81 O80", "W300 O81 T80"), ESTIMATE_WELL);
+    ck_assert_int_eq(run_two("W50 T81 O80", "W300 O81 T80"), ESTIMATE_OK);
     ck_assert_int_eq(estimate.end, ESTIMATE_DONE);
     ck_assert(!estimate.deadlock);
 }
