@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from typing import Any, Callable, Dict, List, Optional, Tuple
-from urllib.parse import parse_qsl, urlsplit
 
 from . import _virtual_time
 from ._clock import Clock
@@ -66,6 +65,8 @@ def made() -> List[Any]:
 def bus_for_url(url: str) -> Any:
     """The bus that `url` stands for: a published one, or one that is made from the parameters and kept, so that the same URL
     opens the same bus again. Raises ValueError."""
+    from urllib.parse import urlsplit
+
     parts = urlsplit(url)
     if parts.scheme.lower() != "rkm04" or parts.path not in ("", "/") or parts.fragment:
         raise ValueError(f"URL {url!r}: expected {FORM}")
@@ -93,6 +94,8 @@ _PARAMETERS: Dict[str, Tuple[str, Callable[[str], Any]]] = {
 
 
 def _make(url: str, query: str) -> Any:
+    from urllib.parse import parse_qsl
+
     from . import Bus
 
     values: Dict[str, Any] = {}
