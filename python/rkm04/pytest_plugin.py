@@ -69,6 +69,14 @@ def _transport(request: pytest.FixtureRequest) -> str:
     return str(request.config.getoption("--rkm04-transport"))
 
 
+def _trace(request: pytest.FixtureRequest, bus: Any) -> None:
+    """Write a trace if --rkm04-trace says so."""
+    if request.config.getoption("--rkm04-trace"):
+        directory = _record_directory(request.config)
+        directory.mkdir(parents=True, exist_ok=True)
+        bus.trace(str(directory / (_report.file_name(request.node.nodeid) + ".vcd")), force=True)
+
+
 @pytest.fixture
 def rkm04_serve(request: pytest.FixtureRequest) -> Iterator[Any]:
     """A running `rkm04 serve` with a pty, for software that is not Python. Settings: marker rkm04."""
@@ -78,6 +86,7 @@ def rkm04_serve(request: pytest.FixtureRequest) -> Iterator[Any]:
     directory.mkdir(parents=True, exist_ok=True)
     with serve(**_settings(request.node), arguments=["--allow-folder", str(directory)]) as server:
         request.node.stash.setdefault(_BUSES, []).append(server)
+        _trace(request, server)
         yield server
 
 
@@ -95,10 +104,7 @@ def rkm04_bus(request: pytest.FixtureRequest) -> Iterator[Any]:
     bus = Bus(**settings)
     node.stash.setdefault(_BUSES, []).append(bus)
     _explore.bus_made(bus)
-    directory = request.config.getoption("--rkm04-trace")
-    if directory:
-        Path(directory).mkdir(parents=True, exist_ok=True)
-        bus.trace(str(Path(directory) / (_report.file_name(node.nodeid) + ".vcd")))
+    _trace(request, bus)
     try:
         yield bus
     finally:
@@ -161,7 +167,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
     """Add what is known of the buses to the report of a failure."""
     report = yield
     session = _explore.session()
-    if report.failed and report.when == "call" and (session is None or session.keeps):
+    if report.failed and report.when in ("setup", "call") and (session is None or session.keeps):
         for number, bus in enumerate(_buses(item)):
             title = "rkm04" if number == 0 else f"rkm04, bus {number + 1}"
             for name, text in _report.sections(bus, item.nodeid, _record_directory(item.config)):

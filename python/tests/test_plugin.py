@@ -212,7 +212,7 @@ def test_it(rkm04_bus, rkm04_port, rkm04_time, n):
 
 
 @pytest.mark.parametrize("transport", ["pty", "rfc2217"])
-def test_the_same_test_runs_over_a_running_emulator(run, transport):
+def test_the_same_test_runs_over_a_running_emulator(run, pytester, transport):
     result = run("""
 @pytest.mark.rkm04(units="2", clock="max")
 def test_it(rkm04_bus, rkm04_port, rkm04_time):
@@ -229,6 +229,21 @@ def test_it(rkm04_bus, rkm04_port, rkm04_time):
         r"unit 2 at \d+ us: on; .*",
         r"traces/test_it.py-test_it.record",
     ])
+    assert "$timescale" in pytester.path.joinpath("traces/test_it.py-test_it.vcd").read_text()
+
+
+def test_a_failure_in_a_fixture_shows_the_dialogue_too(run):
+    result = run("""
+@pytest.fixture
+def position(rkm04_bus):
+    rkm04_bus.unit(1).motor(1).set("F10 R")
+    assert False
+
+def test_it(position):
+    pass
+""")
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines('*host > 1 * 2 Set Command m1 "F10 R" | 7E*')
 
 
 def test_a_program_that_is_not_python(run):
