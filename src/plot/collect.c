@@ -118,8 +118,11 @@ static void add_true_position(struct collector *collector, unsigned axis, double
         return;
     if (motor->truths >= TRUTHS)
         thin_truths(collector, motor);
-    if (plot_has_room(collector->curves, &motor->truth, motor->truths, &motor->truths_room, sizeof *motor->truth))
-        motor->truth[motor->truths++] = (struct plot_point){now, 0, (double)position};
+    struct plot_point *truth = plot_grow_list(collector->curves, motor->truth, motor->truths, &motor->truths_room, sizeof *truth);
+    if (truth == NULL)
+        return;
+    motor->truth = truth;
+    motor->truth[motor->truths++] = (struct plot_point){now, 0, (double)position};
 }
 
 void collector_update(struct collector *collector)

@@ -13,25 +13,21 @@
 
 /* ---- Lists ---------------------------------------------------------------------------------------------------------- */
 
-bool plot_has_room(struct plot_curves *curves, void *list, size_t count, size_t *room, size_t size)
+void *plot_grow_list(struct plot_curves *curves, void *list, size_t count, size_t *room, size_t size)
 {
-    void *old, *grown;
     if (count < *room)
-        return true;
+        return list;
     if (count >= PLOT_POINTS_MAX) {
         curves->is_cut = true;
-        return false;
+        return NULL;
     }
     size_t wanted = count < 32 ? 64 : 2 * count;
-    memcpy(&old, list, sizeof old);
-    grown = realloc(old, wanted * size);
-    if (grown == NULL) {
+    void *grown = realloc(list, wanted * size);
+    if (grown == NULL)
         curves->short_of_memory = true;
-        return false;
-    }
-    memcpy(list, &grown, sizeof grown);
-    *room = wanted;
-    return true;
+    else
+        *room = wanted;
+    return grown;
 }
 
 void plot_free(struct plot_curves *curves)
@@ -75,8 +71,11 @@ void plot_add_point(struct plot_curves *curves, struct plot_motor *motor, struct
         motor->point[n - 1] = point;
         return;
     }
-    if (plot_has_room(curves, &motor->point, n, &motor->points_room, sizeof *motor->point))
-        motor->point[motor->points++] = point;
+    struct plot_point *list = plot_grow_list(curves, motor->point, n, &motor->points_room, sizeof *motor->point);
+    if (list == NULL)
+        return;
+    motor->point = list;
+    motor->point[motor->points++] = point;
 }
 
 size_t plot_find(const struct plot_motor *motor, double us)
@@ -137,10 +136,25 @@ struct plot_point plot_peak(const struct plot_motor *motor, const struct plot_mo
 void plot_add_level(struct plot_curves *curves, enum plot_mask mask, double us, uint32_t value)
 {
     struct plot_levels *list = &curves->mask[mask];
-    if (list->levels > 0 && list->level[list->levels - 1].us == us)
+    if (list->levels > 0 && list->level[list->levels - 1].us == us) {
         list->level[list->levels - 1].mask = value;
-    else if (plot_has_room(curves, &list->level, list->levels, &list->levels_room, sizeof *list->level))
-        list->level[list->levels++] = (struct plot_level){us, value};
+        return;
+    }
+    struct plot_level *level = plot_grow_list(curves, list->level, list->levels, &list->levels_room, sizeof *level);
+    if (level == NULL)
+        return;
+    list->level = level;
+    list->level[list->levels++] = (struct plot_level){us, value};
+}
+
+static void begin_motion(struct plot_curves *curves, struct plot_motor *motor, double us)
+{
+    struct plot_motion *motion = plot_grow_list(curves, motor->motion, motor->motions, &motor->motions_room, sizeof *motion);
+    if (motion == NULL)
+        return;
+    motor->motion = motion;
+    motor->motion[motor->motions++] = (struct plot_motion){us, us};
+    motor->is_moving = true;
 }
 
 void plot_mark_motion(struct plot_curves *curves, struct plot_motor *motor, double us, bool begins)
@@ -148,9 +162,8 @@ void plot_mark_motion(struct plot_curves *curves, struct plot_motor *motor, doub
     if (!begins && motor->is_moving) {
         motor->motion[motor->motions - 1].to = us;
         motor->is_moving = false;
-    } else if (begins && plot_has_room(curves, &motor->motion, motor->motions, &motor->motions_room, sizeof *motor->motion)) {
-        motor->motion[motor->motions++] = (struct plot_motion){us, us};
-        motor->is_moving = true;
+    } else if (begins) {
+        begin_motion(curves, motor, us);
     }
     motor->is_used = true;
 }
@@ -163,9 +176,13 @@ void plot_mark_state(struct plot_curves *curves, struct plot_motor *motor, doubl
         return;
     if (is_open)
         last->to = us;
-    if (state == NULL || !plot_has_room(curves, &motor->band, motor->bands, &motor->bands_room, sizeof *motor->band))
+    struct plot_band *band = NULL;
+    if (state != NULL)
+        band = plot_grow_list(curves, motor->band, motor->bands, &motor->bands_room, sizeof *band);
+    if (band == NULL)
         return;
-    struct plot_band *band = &motor->band[motor->bands++];
+    motor->band = band;
+    band += motor->bands++;
     *band = (struct plot_band){.from = us, .to = -1};
     snprintf(band->state, sizeof band->state, "%s", state);
     snprintf(band->command, sizeof band->command, "%s", command);

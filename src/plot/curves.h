@@ -61,9 +61,9 @@ struct plot_curves {
     bool short_of_memory;
 };
 
-/* Make room for one more in a list of `count` members of `size` bytes. Returns false if there is none: the
- * curves say why. */
-bool plot_has_room(struct plot_curves *curves, void *list, size_t count, size_t *room, size_t size);
+/* Make room for one more in a list of `count` members of `size` bytes; *room: those it has room for. Returns the list, which may
+ * have moved; NULL: there is no room, the curves say why, and the list stays as it was. */
+void *plot_grow_list(struct plot_curves *curves, void *list, size_t count, size_t *room, size_t size);
 
 /* Append a corner. One that lies on the straight line between its neighbours is left out. */
 void plot_add_point(struct plot_curves *curves, struct plot_motor *motor, struct plot_point point);

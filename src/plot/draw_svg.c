@@ -45,8 +45,7 @@ struct drawing {
     const struct plot_curves *curves;
     const struct plot_view *view;
     struct plot_scale time;
-    double y;      /* px from the top, of what comes next */
-    bool has_data; /* for a page that zooms: labels carry their time */
+    double y; /* px from the top, of what comes next */
 };
 
 void plot_text(FILE *out, const char *text)
@@ -274,8 +273,8 @@ static struct plot_scale scale_of(const struct drawing *drawing, const struct pl
         low = fmin(low, motor->truth[i].position);
         high = fmax(high, motor->truth[i].position);
     }
-    /* room for the label of the peak */
-    return speed ? plot_scale_around(low * 1.12, high * 1.12, size, 7) : plot_scale_around(low, high, size, 3);
+    /* room for the labels of the peaks, which lie outside */
+    return speed ? plot_scale_around(low * 1.3, high * 1.12, size, 7) : plot_scale_around(low, high, size, 3);
 }
 
 static void draw_speed(struct drawing *drawing, const struct plot_motor *motor)
