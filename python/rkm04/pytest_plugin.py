@@ -13,6 +13,7 @@ from . import _explore, _ports, _report
 from ._virtual_time import virtual_time
 
 MARK = "rkm04"
+EXPLORED = "rkm04_explored"
 _OPTIONS = ("units", "plant", "framing", "clock", "device", "seed", "readings")
 _BUSES = pytest.StashKey[List[Any]]()
 
@@ -31,7 +32,12 @@ def pytest_configure(config: pytest.Config) -> None:
     """Register the marker; check the options."""
     config.addinivalue_line("markers", f"{MARK}({', '.join(_OPTIONS)}): how the bus of the test is made, as in "
                                        "@pytest.mark.rkm04(units='1,2', plant='axis.yaml')")
+    config.addinivalue_line("markers", f"{EXPLORED}: the tests that @rkm04.explore runs again and again; set by itself")
     _shard(config)
+    try:
+        _explore.parse_faults(os.environ.get(_explore.REPLAY, ""))
+    except ValueError as error:
+        raise pytest.UsageError(str(error)) from None
 
 
 def _shard(config: pytest.Config) -> Tuple[int, int]:
@@ -205,6 +211,12 @@ def pytest_assertrepr_compare(op: str, left: object, right: object) -> Optional[
 
 def _options(item: pytest.Item) -> Optional[_explore.Options]:
     return getattr(getattr(item, "function", None), _explore.ATTRIBUTE, None)
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark explored tests, so that -m can choose them."""
+    if _options(item) is not None:
+        item.add_marker(EXPLORED)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

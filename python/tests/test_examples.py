@@ -49,6 +49,14 @@ def blocks():
     return re.findall(r"<!-- test: (\S+) -->\n+```python\n(.*?)```", text, re.S)
 
 
+def test_every_block_of_the_document_is_run_or_part_of_an_example():
+    document = (ROOT / "docs" / "PYTHON.md").read_text()
+    run = {text for _, text in blocks()}
+    examples = [file.read_text() for file in EXAMPLES.glob("*.py")]
+    for text in re.findall(r"```python\n(.*?)```", document, re.S):
+        assert text in run or any(text in example for example in examples), text
+
+
 @pytest.mark.parametrize("name, text", blocks())
 def test_what_the_document_shows(tmp_path, name, text):
     (tmp_path / name).write_text(text)

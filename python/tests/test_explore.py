@@ -80,6 +80,20 @@ def test_a_wrong_shard_is_refused(pytester, shard):
     result.stderr.fnmatch_lines(f"*--rkm04-shard {shard}: expected I/N with 1 <= I <= N, as in 3/16")
 
 
+def test_explored_tests_can_be_chosen(twice):
+    twice.makepyfile(test_other="def test_other():\n    pass\n")
+    result = twice.runpytest_inprocess("-p", "no:cacheprovider", "--strict-markers", "-m", "rkm04_explored", "--collect-only",
+                                       "-q")
+    assert [line for line in result.outlines if "::" in line] == ["test_it.py::test_it"]
+
+
+def test_a_wrong_replay_line_is_refused(twice, monkeypatch):
+    monkeypatch.setenv("RKM04_REPLAY", "no_answer skip")
+    result = twice.runpytest_inprocess("-p", "no:cacheprovider")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines("*RKM04_REPLAY: 'skip': expected NAME=VALUE*")
+
+
 def test_workers_of_xdist_share_the_runs(twice):
     pytest.importorskip("xdist")
     result = twice.runpytest_subprocess("-n", "2", "-p", "no:cacheprovider")
