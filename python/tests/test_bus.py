@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A bus in this process."""
 
+import signal
 import threading
 from datetime import timedelta
 
@@ -211,6 +212,28 @@ def test_a_bus_of_two_threads_is_an_error_and_no_crash(bus):
     thread.join()
     assert "in use by another thread" in errors[0]
     assert bus.now > 0
+
+
+@pytest.mark.parametrize("call", [
+    lambda bus: bus.advance(10**14),
+    lambda bus: bus.wait(motor=2, position=1, limit=10**14),
+    lambda bus: bus.host.wait_byte(10**14),
+])
+def test_a_signal_ends_a_call_that_lasts(bus, call):
+    def stop(number, frame):
+        raise KeyboardInterrupt
+
+    bus.unit(1).motor(1).set("S100 V16000 A20000 G+")
+    before, handler = bus.now, signal.signal(signal.SIGALRM, stop)
+    try:
+        with bus.events("step"), pytest.raises(KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, 0.2)
+            call(bus)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, handler)
+    assert before < bus.now < 10**14  # and the bus goes on
+    assert bus.advance("1ms") > before
 
 
 def test_a_closed_bus_says_so():

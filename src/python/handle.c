@@ -88,6 +88,13 @@ static bool set_plant(struct handle *handle, const json_t *options, struct refus
     return result != NULL;
 }
 
+/* A command that takes long, as a restore from a file. */
+static bool is_interrupted(void *context)
+{
+    const struct handle *handle = context;
+    return handle->paused && handle->paused(handle->paused_context);
+}
+
 static bool begin(struct handle *handle, struct refusal *refusal)
 {
     struct sim_config config = {.out = handle_host_receive, .context = handle};
@@ -95,6 +102,8 @@ static bool begin(struct handle *handle, struct refusal *refusal)
         return false;
     *refusal = (struct refusal){REFUSED_MEMORY, "out of memory"};
     handle_host_configure(handle, line_settings_unit);
+    handle->sim.interrupted = is_interrupted;
+    handle->sim.interrupted_context = handle;
     return sim_begin(&handle->sim, &config) && snapshots_attach(&handle->sim) && set_plant(handle, handle->options, refusal) &&
            (json_is_false(json_object_get(handle->options, "journal")) || snapshots_keep_journal(&handle->sim));
 }
