@@ -284,7 +284,7 @@ enum exit_status client_control_trace(struct client_job *job)
     json_t *result, *params = NULL;
     if (strcmp(job->words[0], "start") == 0) {
         if (job->count < 2)
-            return client_usage("trace start: expected a FILE that ends with .vcd, .csv, .jsonl, .log or .pcapng");
+            return client_usage("trace start: expected " TRACE_OR_WIRE_EXPECTED);
         return start_trace(job, client_job_output(job, job->words[1]));
     }
     if (strcmp(job->words[0], "stop") != 0)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "client_help.h"
+#include "text/text.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -53,7 +54,7 @@ static const struct help {
      "  rkmctl fault inject drop direction=to_master count=1\n  rkmctl fault clear\n"},
     {"plant", "plant [set FILE|none|motor=N NAME=VALUE...]", "Show, attach or change the simulated mechanics.",
      "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl plant set axis.yaml\n  rkmctl plant motor=1 jammed=true\n"},
-    {"trace", "trace start FILE|stop [NUMBER]", "Begin a trace (.vcd, .csv, .jsonl, .log, .pcapng), or end it.",
+    {"trace", "trace start FILE|stop [NUMBER]", "Begin a trace (" TRACE_ENDINGS ", " WIRE_ENDINGS "), or end it.",
      "  --force\n" EMULATOR_OPTIONS, "  rkmctl trace start run.vcd\n"},
     {"call", "call METHOD [JSON|NAME=VALUE...]", "Any other method of the control socket.", EMULATOR_OPTIONS,
      "  rkmctl call units\n"},

@@ -282,7 +282,7 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
         return NULL;
     if (fault.kind == FAULT_WRONG_FCS && !sim_device(sim)->has_check_value(&sim->config.unit))
         return refuse(refusal, REFUSED_STATE, "wrong_fcs: framing `%s' has no check value",
-                      sim_device(sim)->framing(&sim->config.unit)->name);
+                      sim_device(sim)->framing(&sim->config.unit)->link->name);
     uint32_t id = faults_add(&sim->faults, &fault);
     if (id == 0)
         return refuse(refusal, REFUSED_STATE, "too many faults: %u can still act; clear some of them first", FAULTS_MAX);

@@ -174,6 +174,22 @@ struct device_readings {
     json_t *(*json)(const struct device_config *config); /* those that are not at their default; NULL: out of memory */
 };
 
+/* How messages stand in bytes on the bus. */
+struct device_framing {
+    const struct rkm04_framing *link; /* finds messages and makes them */
+    int flag, escape;                 /* bytes: every frame begins and ends with `flag`, `escape` before it aborts; -1: none */
+    uint32_t silence;                 /* us after which bytes belong to no frame that was begun; 0: any time */
+    const char *no_address;           /* what bytes are that cannot be an address: "no frame, no address above 16" */
+};
+
+/* What messages mean, for people; each may be NULL. They write to `out`; nothing written: there is nothing to say. */
+struct device_words {
+    void (*message)(struct wire_text *out, const uint8_t *message, size_t length, bool is_answer);
+    void (*refusal)(struct wire_text *out, const uint8_t *message, size_t length); /* what an answer objects to */
+    /* Why no unit executes a whole request, whatever units there are. */
+    void (*ignored)(struct wire_text *out, uint8_t dnode, uint8_t snode, const uint8_t *message, size_t length);
+};
+
 /* Why a method was refused. */
 struct device_refusal {
     bool is_state; /* it cannot be done now; false: the parameters are wrong */
@@ -283,7 +299,8 @@ struct device_kind {
     const char *(*unlike)(const struct device_config *a, const struct device_config *b);
 
     /* Messages on the wires, for their monitor and a scenario's host: how they stand in bytes. */
-    const struct rkm04_framing *(*framing)(const struct device_config *config);
+    const struct device_framing *(*framing)(const struct device_config *config);
+    const struct device_words *words; /* NULL: messages are shown as bytes */
 
     /* Does the state repeat, so that it does for ever? Called again and again with `memory`, `repeat_size` bytes, zero at first.
      * Returns after how many us it has repeated; 0: it has not. repeat_size 0: that is not known. */

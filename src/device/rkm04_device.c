@@ -174,7 +174,7 @@ static struct device_counters counters_of(const struct device_unit *unit)
 
 static bool has_check_value(const struct device_config *config)
 {
-    return rkm04_settings_framing(config) == &rkm04_hdlc;
+    return rkm04_settings_framing(config)->link == &rkm04_hdlc;
 }
 
 /* In the low byte of the check value, or what stands for it. The answer is the one that a copy of the unit sends. */
@@ -422,6 +422,7 @@ const struct device_kind rkm04_device = {
     .read_setting = rkm04_read_setting,
     .unlike = rkm04_settings_difference,
     .framing = rkm04_settings_framing,
+    .words = &rkm04_device_words,
     .repeat_size = sizeof(struct rkm04_repeat),
     .find_repeat = find_repeat,
     .is_endless = is_endless,

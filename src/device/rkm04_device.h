@@ -55,6 +55,10 @@ extern const char *const rkm04_setting_names[];
 void rkm04_put_settings(const struct device_config *config, json_t *object);
 bool rkm04_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
 const char *rkm04_settings_difference(const struct device_config *a, const struct device_config *b);
-const struct rkm04_framing *rkm04_settings_framing(const struct device_config *config);
+const struct device_framing *rkm04_settings_framing(const struct device_config *config);
+
+/* ---- rkm04_words.c ------------------------------------------------------------------------------------------------------ */
+
+extern const struct device_words rkm04_device_words;
 
 #endif

@@ -100,10 +100,17 @@ bool rkm04_read_setting(struct device_config *config, const char *name, const js
     return is_right;
 }
 
-const struct rkm04_framing *rkm04_settings_framing(const struct device_config *config)
+#define FLAG 0x7e
+#define ESCAPE 0x7d
+#define SILENCE 100000u /* us: both framings (L2) */
+
+const struct device_framing *rkm04_settings_framing(const struct device_config *config)
 {
+    static const struct device_framing hdlc = {.link = &rkm04_hdlc, .flag = FLAG, .escape = ESCAPE, .silence = SILENCE};
+    static const struct device_framing plain = {
+        .link = &rkm04_plain, .flag = -1, .escape = -1, .silence = SILENCE, .no_address = "no frame, no address above 16"};
     const struct rkm04_config settings = rkm04_settings(config);
-    return framing_of(&settings);
+    return framing_of(&settings) == &rkm04_plain ? &plain : &hdlc;
 }
 
 const char *rkm04_settings_difference(const struct device_config *a, const struct device_config *b)

@@ -104,7 +104,7 @@ static const char doc[] =
     "  fault        list injected faults; inject KIND NAME=VALUE...; clear [ID]\n"
     "  plant        show the simulated mechanics; set FILE; none; motor=N jammed=true ...\n"
     "  clock        show or set it: real, xN, max, stepped\n"
-    "  trace        start FILE (.vcd, .csv, .jsonl, .log, .pcapng), stop [NUMBER]\n"
+    "  trace        start FILE (" TRACE_ENDINGS ", " WIRE_ENDINGS "), stop [NUMBER]\n"
     "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"
     "  shutdown     end the emulator\n"
     "\n"

@@ -60,7 +60,7 @@ static PyObject *module_words(PyObject *module, PyObject *args)
         return PyErr_NoMemory();
     struct wire_text out = {.text = text, .room = WIRE_WORDS_MAX};
     if (length > 0)
-        wire_words_message(&out, (const uint8_t *)message, (size_t)length, answer != 0);
+        wire_words_message(&out, rkm04_device.words, (const uint8_t *)message, (size_t)length, answer != 0);
     PyObject *result = PyUnicode_FromString(wire_text_end(&out));
     free(text);
     return result;

@@ -411,7 +411,7 @@ static PyObject *sim_frame(struct sim_object *self, PyObject *args)
     struct handle *handle = read_message(args, "iy#:frame", &node, &message, &length) ? enter(self) : NULL;
     if (!handle)
         return NULL;
-    const struct rkm04_framing *framing = sim_device(&handle->sim)->framing(&handle->sim.config.unit);
+    const struct rkm04_framing *framing = sim_device(&handle->sim)->framing(&handle->sim.config.unit)->link;
     leave(self);
     return frame_message(framing, node, (const uint8_t *)message, (size_t)length);
 }
@@ -431,7 +431,7 @@ static PyObject *sim_receive_message(struct sim_object *self, PyObject *value)
         free(message);
         return NULL;
     }
-    const struct rkm04_framing *framing = sim_device(&handle->sim)->framing(&handle->sim.config.unit);
+    const struct rkm04_framing *framing = sim_device(&handle->sim)->framing(&handle->sim.config.unit)->link;
     release(self);
     while (!whole && handle_advance_to_bytes(handle, tick, 1, -1) && handle_host_read(handle, &byte, 1) > 0)
         whole = framing->receive(&receiver, byte.byte, byte.tick, message, ANSWER_ROOM);

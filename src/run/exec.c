@@ -32,7 +32,7 @@ enum option_key { KEY_FORCE = 256 };
 static const struct argp_option option_table[] = {
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"stimulus", 's', "FILE", 0, "Inputs and messages that come while the programs run", 0},
-    {"trace", 't', "FILE", 0, "Record every event: .vcd, .jsonl, any other name CSV; - is standard output, CSV", 0},
+    {"trace", 't', "FILE", 0, "Record every event (" TRACE_ENDINGS "; any other name CSV); - is standard output, CSV", 0},
     {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
     {"force", KEY_FORCE, NULL, 0,
      "Also overwrite a file of another kind with the trace; never one that is also read or written otherwise", 0},
@@ -56,7 +56,7 @@ static const char doc[] =
     "  m1,led,off|on|blink                   m1,command,INDEX (0: idle)\n"
     "  m1,position,POSITION   where no pulse led there: C100, =, after a motion under T41\n"
     "  unit,di|do|var,MASK\n"
-    "FILE.vcd is for GTKWave and PulseView, FILE.jsonl has every event as JSON; see docs/TRACES.md.\n"
+    "docs/TRACES.md describes the other formats.\n"
     "\n"
     "Examples:\n"
     "  rkm04 exec drill.rks\n"

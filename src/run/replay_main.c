@@ -35,7 +35,7 @@ struct options {
 enum option_key { KEY_FORCE = 256 };
 
 static const struct argp_option option_table[] = {
-    {"trace", 't', "FILE", 0, "Record every event: FILE.vcd for GTKWave and PulseView, FILE.csv or FILE.jsonl; may be repeated",
+    {"trace", 't', "FILE", 0, "Record every event: " TRACE_HELP "; may be repeated",
      0},
     {"wire", 'w', "FILE", 0, "Record the frames on the bus: FILE.log, or FILE.pcapng for Wireshark; may be repeated", 0},
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},

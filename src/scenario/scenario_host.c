@@ -8,9 +8,9 @@
 
 /* ---- Listening ------------------------------------------------------------------------------------------------------ */
 
-static const struct rkm04_framing *framing_of(const struct running *running)
+static const struct rkm04_framing *link_of(const struct running *running)
 {
-    return sim_device(running->sim)->framing(&running->scenario->config.unit);
+    return sim_device(running->sim)->framing(&running->scenario->config.unit)->link;
 }
 
 void running_receive(void *context, const uint8_t *bytes, size_t length)
@@ -18,7 +18,7 @@ void running_receive(void *context, const uint8_t *bytes, size_t length)
     struct running *running = context;
     struct host *host = &running->host;
     for (size_t i = 0; i < length && !host->answered; i++) {
-        if (!framing_of(running)->receive(&host->receiver, bytes[i], sim_now(running->sim), host->buffer,
+        if (!link_of(running)->receive(&host->receiver, bytes[i], sim_now(running->sim), host->buffer,
                                           sizeof host->buffer))
             continue;
         if (!host->listening)
@@ -47,7 +47,7 @@ static unsigned address_of(const struct running *running, unsigned unit)
 /* The bytes on the line. Returns them, to be freed, or NULL if out of memory. */
 static uint8_t *make_frame(const struct running *running, const struct scenario_step *step, size_t *length)
 {
-    const struct rkm04_framing *framing = framing_of(running);
+    const struct rkm04_framing *framing = link_of(running);
     const struct scenario_bytes *bytes = &step->bytes;
     struct rkm04_sender sender;
     uint8_t *out = malloc(bytes->length * RKM04_FRAME_EDGE_MAX + 2 * RKM04_FRAME_EDGE_MAX);
@@ -172,7 +172,7 @@ static bool check_answer(struct running *running, const struct scenario_step *st
 {
     const struct host *host = &running->host;
     struct scenario_bytes answer = {.length = host->length, .byte = running->host.buffer};
-    unsigned from = framing_of(running)->answer_names_sender ? host->snode : host->dnode;
+    unsigned from = link_of(running)->answer_names_sender ? host->snode : host->dnode;
     uint64_t now = sim_now(running->sim);
     if (step->answer == ANSWER_NONE)
         return running_failed(running, step, now, wanted_text(step), text_with(&answer, "the answer %s"));

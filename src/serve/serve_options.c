@@ -92,7 +92,7 @@ static const struct argp_option table[] = {
     {"no-control", KEY_NO_CONTROL, NULL, 0, "No control socket", 0},
     {"plant", KEY_PLANT, "FILE", 0, "Attach simulated mechanics: true positions, end stops, switches that drive inputs", 0},
     {"trace", KEY_TRACE, "FILE", 0,
-     "Record every pulse, input, output and other event: FILE.vcd for GTKWave and PulseView, FILE.csv, FILE.jsonl; may be "
+     "Record every pulse, input, output and other event: " TRACE_HELP "; may be "
      "given up to eight times. %l in it stands for the number of the bus", 0},
     {"wire", KEY_WIRE, "FILE", 0, "Record the frames on the bus: FILE.log as text, FILE.pcapng for Wireshark; as --trace", 0},
     {"record", KEY_RECORD, "FILE", 0, "Record all inputs, so that `rkm04 replay FILE' can repeat the run", 0},

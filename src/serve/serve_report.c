@@ -60,7 +60,7 @@ static void log_flash(struct bus *bus)
 
 static const char *framing_name(const struct bus_options *options)
 {
-    return options->device.kind->framing(&options->device.config)->name;
+    return options->device.kind->framing(&options->device.config)->link->name;
 }
 
 void serve_report_start(const struct bus_options *options, struct bus *const *buses)

@@ -371,7 +371,7 @@ void sim_finish_tick(struct sim *sim)
 
 struct wire_names sim_wire_names(const struct sim *sim)
 {
-    struct wire_names names = {.framing = sim->monitor.framing};
+    struct wire_names names = {.framing = sim->monitor.framing, .words = sim_device(sim)->words};
     for (unsigned at = 0; at < sim->segment.units; at++)
         names.unit[at] = sim->unit[at].name;
     return names;

@@ -6,6 +6,7 @@
  *     program_text, diagnose        program texts of a unit, and what a unit would refuse in them
  *     readings       names and values of the readings of the manual
  *     nearest        the known name next to a wrong one, for messages
+ *     trace_names    endings of names of traces, for help texts
  *     wire_text      text of limited length, put together piece by piece
  *     exit_status    exit statuses of all programs
  *
@@ -23,6 +24,7 @@
 #include "program_text.h"
 #include "readings.h"
 #include "time_value.h"
+#include "trace_names.h"
 #include "wire_text.h"
 
 #endif

@@ -8,9 +8,7 @@
 #include "file/file.h"
 
 static const struct trace_writer *const writers[TRACE_FORMATS] = {
-    [TRACE_CSV] = &trace_csv,
-    [TRACE_VCD] = &trace_vcd,
-    [TRACE_JSONL] = &trace_jsonl,
+    TRACE_FORMATS_LIST(TRACE_FORMAT_ROW)
 };
 
 /* ---- Writing -------------------------------------------------------------------------------------------------------- */

@@ -1,13 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* trace_format.h: the formats of traces, each with a file of its own, trace_NAME.c. A new one has a place in each list here
- * and a row in the table of trace_file.c. */
+/* trace_format.h: the formats of traces, each with a file of its own, trace_NAME.c. A new one has a row here and its ending in
+ * text/trace_names.h. */
 #ifndef RKM04_TRACE_FORMAT_H
 #define RKM04_TRACE_FORMAT_H
 
-#define TRACE_FILE_EXPECTED "a name that ends with .vcd, .csv or .jsonl"
+/* FORMAT(name of the enum, name of the writer) */
+#define TRACE_FORMATS_LIST(FORMAT) FORMAT(CSV, csv) FORMAT(VCD, vcd) FORMAT(JSONL, jsonl)
 
-enum trace_format { TRACE_CSV, TRACE_VCD, TRACE_JSONL, TRACE_FORMATS };
+#define TRACE_FORMAT_NUMBER(name, writer) TRACE_##name,
+#define TRACE_FORMAT_WRITER(name, writer) extern const struct trace_writer trace_##writer;
+#define TRACE_FORMAT_ROW(name, writer) [TRACE_##name] = &trace_##writer,
 
-extern const struct trace_writer trace_csv, trace_vcd, trace_jsonl;
+enum trace_format { TRACE_FORMATS_LIST(TRACE_FORMAT_NUMBER) TRACE_FORMATS };
+
+TRACE_FORMATS_LIST(TRACE_FORMAT_WRITER)
 
 #endif

@@ -7,9 +7,6 @@
 #include "wire_words.h"
 
 #define MASTER_BIT 1u
-#define HDLC_FLAG 0x7E
-#define HDLC_ESCAPE 0x7D
-#define SILENCE (US_PER_SECOND / 10u) /* L2 */
 #define ASTRAY_MAX 256u               /* bytes without a frame that are reported at a time */
 #define REASON_MAX 120u               /* characters of a reason put together */
 
@@ -20,7 +17,6 @@ static const char *const fates[] = {
     [WIRE_TOO_SHORT] = "too short",
     [WIRE_TOO_LONG] = "too long",
     [WIRE_OUTSIDE] = "no frame",
-    [WIRE_NO_ADDRESS] = "no frame, no address above 16",
     [WIRE_NO_LENGTH] = "impossible length",
     [WIRE_SILENT] = "silence inside",
     [WIRE_MALFORMED] = "malformed",
@@ -54,11 +50,10 @@ static void ignored_for_address(struct wire_text *out, const struct segment *seg
 static void words_ignored(struct wire_text *out, const struct segment *segment, const struct wire_frame *frame)
 {
     const struct rkm04_receiver *head = &frame->receiver;
-    if (head->snode >= 1 && head->snode <= RKM04_NODE_MAX)
-        wire_text_string(out, "by its sender's address it is the answer of a unit (L1)");
-    else if (head->dnode == 0 && frame->message[0] != 2 && frame->message[0] != 3)
-        wire_text_string(out, "a request to all units is not answered (P10)");
-    else
+    const struct device_words *words = segment_kind(segment)->words;
+    if (words && words->ignored)
+        words->ignored(out, head->dnode, head->snode, frame->message, head->length);
+    if (out->length == 0)
         ignored_for_address(out, segment, head->dnode);
     if (out->length == 0 && frame->overruns > 0)
         wire_text_string(out, "bytes lost, a unit had a request waiting (P10)");
@@ -75,10 +70,17 @@ static const uint8_t *append_bytes(struct wire_message *message, size_t *used, c
     return place;
 }
 
+static void put_refusal(struct wire_text *out, const struct device_words *words, const struct wire_message *message)
+{
+    if (words && words->refusal)
+        words->refusal(out, message->message, message->length);
+}
+
 /* A message from the frame. Returns NULL if out of memory. */
-static struct wire_message *make_message(const struct segment *segment, const struct wire_frame *frame,
+static struct wire_message *make_message(const struct wire_monitor *monitor, const struct wire_frame *frame,
                                          enum wire_fate fate)
 {
+    const struct segment *segment = monitor->segment;
     size_t length = fate == WIRE_WHOLE ? frame->receiver.length : 0, used = 0;
     char reason[REASON_MAX];
     struct wire_text text = {.text = reason, .room = sizeof reason};
@@ -93,7 +95,7 @@ static struct wire_message *make_message(const struct segment *segment, const st
         .lost = frame->lost,
         .fate = fate,
         .answer = frame->answer,
-        .dropped = fates[fate],
+        .dropped = fate == WIRE_NO_ADDRESS ? monitor->framing->no_address : fates[fate],
         .raw_total = frame->raw_total,
         .raw_length = frame->raw_length,
         .length = length,
@@ -105,7 +107,7 @@ static struct wire_message *make_message(const struct segment *segment, const st
     message->dnode = frame->receiver.dnode;
     message->snode = frame->receiver.snode;
     if (frame->answer)
-        wire_words_refusal(&text, message->message, length);
+        put_refusal(&text, segment_kind(segment)->words, message);
     else
         words_ignored(&text, segment, frame);
     wire_text_end(&text);
@@ -132,7 +134,7 @@ static void report(const struct wire_monitor *monitor, struct wire_frame *frame,
 {
     const struct wire_monitor_calls *calls = &monitor->calls;
     if (frame->raw_total > 0 && calls->is_wanted && calls->is_wanted(calls->context))
-        calls->message(calls->context, tick, make_message(monitor->segment, frame, fate));
+        calls->message(calls->context, tick, make_message(monitor, frame, fate));
     empty_frame(frame);
 }
 
@@ -170,9 +172,10 @@ static void keep_byte(struct wire_frame *frame, const struct segment_byte *byte)
 /* What the framing has to say about a byte; UNDECIDED: nothing yet. */
 enum verdict { UNDECIDED, GOOD, BAD_CHECK, MALFORMED, TOO_LONG };
 
-static enum verdict receive_frame_byte(const struct rkm04_framing *framing, struct wire_frame *frame,
+static enum verdict receive_frame_byte(const struct wire_monitor *monitor, struct wire_frame *frame,
                                        const struct segment_byte *byte)
 {
+    const struct rkm04_framing *framing = monitor->framing->link;
     uint32_t bad_check = frame->receiver.bad_check, malformed = frame->receiver.malformed, too_long = frame->receiver.too_long;
     if (framing->receive(&frame->receiver, byte->byte, byte->tick, frame->message, frame->room))
         return GOOD;
@@ -185,18 +188,19 @@ static enum verdict receive_frame_byte(const struct rkm04_framing *framing, stru
 
 /* A flag ends what goes before it, frames or what is none. Bytes without a frame are reported after a silence, too, so that a
  * client that never sends a flag is not passed over. */
-static void receive_hdlc(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
+static void receive_flagged(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
 {
-    bool flag = byte->byte == HDLC_FLAG;
+    bool flag = byte->byte == monitor->framing->flag;
     if (frame->astray != WIRE_WHOLE &&
-        (flag || byte->tick - frame->last >= SILENCE || (frame->astray == WIRE_OUTSIDE && frame->raw_total == ASTRAY_MAX))) {
+        (flag || byte->tick - frame->last >= monitor->framing->silence ||
+         (frame->astray == WIRE_OUTSIDE && frame->raw_total == ASTRAY_MAX))) {
         report(monitor, frame, byte->tick, frame->astray);
         frame->astray = flag ? WIRE_WHOLE : WIRE_OUTSIDE;
     }
-    if (flag && frame->raw_length == 1 && frame->raw[0] == HDLC_FLAG)
+    if (flag && frame->raw_length == 1 && frame->raw[0] == monitor->framing->flag)
         empty_frame(frame); /* an empty frame is nothing; this flag may begin one */
     keep_byte(frame, byte);
-    switch (receive_frame_byte(&rkm04_hdlc, frame, byte)) {
+    switch (receive_frame_byte(monitor, frame, byte)) {
     case UNDECIDED:
         break;
     case GOOD:
@@ -206,7 +210,7 @@ static void receive_hdlc(const struct wire_monitor *monitor, struct wire_frame *
         report(monitor, frame, byte->tick, WIRE_WRONG_CHECK);
         break;
     case MALFORMED: {
-        bool aborted = frame->raw_length >= 2 && frame->raw[frame->raw_length - 2u] == HDLC_ESCAPE;
+        bool aborted = frame->raw_length >= 2 && frame->raw[frame->raw_length - 2u] == monitor->framing->escape;
         report(monitor, frame, byte->tick, aborted ? WIRE_ABORTED : WIRE_TOO_SHORT);
         break;
     }
@@ -217,15 +221,15 @@ static void receive_hdlc(const struct wire_monitor *monitor, struct wire_frame *
 }
 
 /* Bytes that cannot be an address are gathered until one comes that can. */
-static void receive_plain(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
+static void receive_timed(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
 {
-    if (frame->raw_total > 0 && byte->tick - frame->last >= SILENCE) {
+    if (frame->raw_total > 0 && byte->tick - frame->last >= monitor->framing->silence) {
         report(monitor, frame, byte->tick, frame->astray != WIRE_WHOLE ? frame->astray : WIRE_SILENT);
         frame->receiver = (struct rkm04_receiver){.phase = 0};
         frame->astray = WIRE_WHOLE;
     }
     bool first = frame->raw_total == 0 || frame->astray == WIRE_NO_ADDRESS;
-    enum verdict verdict = receive_frame_byte(&rkm04_plain, frame, byte);
+    enum verdict verdict = receive_frame_byte(monitor, frame, byte);
     if (frame->astray == WIRE_NO_ADDRESS && (verdict != MALFORMED || frame->raw_total == ASTRAY_MAX)) {
         report(monitor, frame, byte->tick, WIRE_NO_ADDRESS);
         frame->astray = WIRE_WHOLE;
@@ -255,25 +259,25 @@ static void receive_other(const struct wire_monitor *monitor, struct wire_frame 
         [TOO_LONG] = WIRE_TOO_LONG,
     };
     keep_byte(frame, byte);
-    enum verdict verdict = receive_frame_byte(monitor->framing, frame, byte);
+    enum verdict verdict = receive_frame_byte(monitor, frame, byte);
     if (verdict != UNDECIDED)
         report(monitor, frame, byte->tick, fate_of[verdict]);
 }
 
 /* Is there anything in the frame that makes a message? */
-static bool holds_something(const struct wire_frame *frame)
+static bool holds_something(const struct wire_monitor *monitor, const struct wire_frame *frame)
 {
-    return frame->raw_total > 1 || (frame->raw_total == 1 && frame->raw[0] != HDLC_FLAG);
+    return frame->raw_total > 1 || (frame->raw_total == 1 && frame->raw[0] != monitor->framing->flag);
 }
 
 static void receive_byte(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
 {
     if (byte->lost)
         frame->lost += frame->raw_total > 0;
-    else if (monitor->framing == &rkm04_hdlc)
-        receive_hdlc(monitor, frame, byte);
-    else if (monitor->framing == &rkm04_plain)
-        receive_plain(monitor, frame, byte);
+    else if (monitor->framing->flag >= 0)
+        receive_flagged(monitor, frame, byte);
+    else if (monitor->framing->silence > 0)
+        receive_timed(monitor, frame, byte);
     else
         receive_other(monitor, frame, byte);
 }
@@ -290,11 +294,11 @@ static bool begin_frame(struct wire_frame *frame, bool answer, size_t room, enum
     return frame->message && frame->raw;
 }
 
-bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing *framing, const struct segment *segment,
+bool wire_monitor_begin(struct wire_monitor *monitor, const struct device_framing *framing, const struct segment *segment,
                         struct wire_monitor_calls calls)
 {
-    *monitor = (struct wire_monitor){.framing = framing ? framing : &rkm04_hdlc, .segment = segment, .calls = calls};
-    enum wire_fate astray = monitor->framing == &rkm04_hdlc ? WIRE_OUTSIDE : WIRE_WHOLE;
+    *monitor = (struct wire_monitor){.framing = framing, .segment = segment, .calls = calls};
+    enum wire_fate astray = framing->flag >= 0 ? WIRE_OUTSIDE : WIRE_WHOLE;
     bool requests = begin_frame(&monitor->requests, false, RKM04_MESSAGE_MAX, astray);
     return begin_frame(&monitor->answers, true, WIRE_ANSWER_MAX, astray) && requests;
 }
@@ -350,7 +354,7 @@ void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_by
 struct wire_message *wire_monitor_rest(const struct wire_monitor *monitor, bool answer)
 {
     const struct wire_frame *frame = answer ? &monitor->answers : &monitor->requests;
-    if (!holds_something(frame))
+    if (!holds_something(monitor, frame))
         return NULL;
-    return make_message(monitor->segment, frame, frame->astray != WIRE_WHOLE ? frame->astray : WIRE_UNFINISHED);
+    return make_message(monitor, frame, frame->astray != WIRE_WHOLE ? frame->astray : WIRE_UNFINISHED);
 }

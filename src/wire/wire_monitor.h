@@ -40,7 +40,7 @@ struct wire_monitor_calls {
 };
 
 struct wire_monitor {
-    const struct rkm04_framing *framing;
+    const struct device_framing *framing;
     const struct segment *segment; /* whose bytes these are */
     struct wire_monitor_calls calls;
     uint64_t overruns; /* of the segment, up to now */
@@ -49,7 +49,7 @@ struct wire_monitor {
 
 /* Find messages in the bytes of `segment`, which may be NULL for a copy that gets none. Returns false if out of memory;
  * wire_monitor_end() is due in either case. */
-bool wire_monitor_begin(struct wire_monitor *monitor, const struct rkm04_framing *framing, const struct segment *segment,
+bool wire_monitor_begin(struct wire_monitor *monitor, const struct device_framing *framing, const struct segment *segment,
                         struct wire_monitor_calls calls);
 void wire_monitor_end(struct wire_monitor *monitor);
 

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* wire_words.h: messages (specification section 3) in words, for people. */
+/* wire_words.h: messages in words, for people. */
 #ifndef RKM04_WIRE_WORDS_H
 #define RKM04_WIRE_WORDS_H
-
-#include <rkm04/link.h>
 
 #include "segment.h"
 #include "text/text.h"
@@ -14,14 +12,13 @@
 /* What the stations are called. */
 struct wire_names {
     const char *unit[SEGMENT_UNITS];
-    const struct rkm04_framing *framing; /* do answers name their sender? */
+    const struct device_framing *framing; /* do answers name their sender? */
+    const struct device_words *words;     /* of messages; NULL: bytes */
 };
 
-/* A whole message: `2 Set Command m1 "\C100 F5000 R"`, `4 Get Position m0 -> 12 0 0 5`. */
-void wire_words_message(struct wire_text *out, const uint8_t *message, size_t length, bool answer);
-
-/* What the unit objects to in an answer: "unknown command 'a'". Nothing if it does not. */
-void wire_words_refusal(struct wire_text *out, const uint8_t *message, size_t length);
+/* A whole message in the words of its device, as in `2 Set Command m1 "\C100 F5000 R"`; without words its bytes. */
+void wire_words_message(struct wire_text *out, const struct device_words *words, const uint8_t *message, size_t length,
+                        bool answer);
 
 /* Who sends, and to whom: "master > 3", "3 > master", "master > all". Units by their names. */
 void wire_words_direction(struct wire_text *out, const struct wire_names *names, const struct wire_message *message);

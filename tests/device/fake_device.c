@@ -270,11 +270,27 @@ static size_t end_frame(struct rkm04_sender *sender, uint8_t *out)
 static const struct rkm04_framing fake_lines = {
     .name = "lines", .receive = receive_byte, .begin = begin_frame, .put = put_byte, .end = end_frame};
 
-static const struct rkm04_framing *framing(const struct device_config *config)
+static const struct device_framing *framing(const struct device_config *config)
 {
+    static const struct device_framing lines = {.link = &fake_lines, .flag = -1, .escape = -1};
     (void)config;
-    return &fake_lines;
+    return &lines;
 }
+
+static void put_words(struct wire_text *out, const uint8_t *message, size_t length, bool is_answer)
+{
+    if (!is_answer)
+        wire_text_string(out, "request ");
+    wire_text_bytes(out, message, length);
+}
+
+static void put_refusal(struct wire_text *out, const uint8_t *message, size_t length)
+{
+    if (length == 2 && message[0] == 'E')
+        wire_text_string(out, message[1] == '3' ? "the limit switch is on" : "the request is wrong");
+}
+
+static const struct device_words words = {.message = put_words, .refusal = put_refusal};
 
 static bool has_check_value(const struct device_config *config)
 {
@@ -539,6 +555,7 @@ const struct device_kind fake_device = {
     .counters = counters_of,
     .exchange = exchange,
     .framing = framing,
+    .words = &words,
     .has_check_value = has_check_value,
     .set_inputs = set_inputs,
     .inputs_of = inputs_of,

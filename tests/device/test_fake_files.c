@@ -127,6 +127,35 @@ START_TEST(traces_are_as_fine_as_the_ticks_of_the_device)
 }
 END_TEST
 
+static void expect_words(const char *bytes, size_t length, bool is_answer, const char *expected)
+{
+    char text[80];
+    struct wire_text out = {.text = text, .room = sizeof text};
+    wire_words_message(&out, fake_device.words, (const uint8_t *)bytes, length, is_answer);
+    ck_assert_str_eq(wire_text_end(&out), expected);
+}
+
+START_TEST(wire_log_has_the_words_of_the_device)
+{
+    expect_words("MOVE 2", 6, false, "request MOVE 2");
+    expect_words("OK", 2, true, "OK");
+    char *text = trace(TRACE_JSONL);
+    expect_part(text, "\"dropped\":null,\"refused\":null");
+    free(text);
+    fake_rig_begin(&rig, "1", false);
+    fake_rig_do(&rig, "di.set", "{\"mask\": 1}");
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    struct trace_file *file = trace_file_begin_on(&rig.sim, out, TRACE_JSONL);
+    fake_rig_expect_answer(&rig, 1, "MOVE 2", "E3");
+    ck_assert_int_eq(trace_file_end(file), 0);
+    fclose(out);
+    fake_rig_end(&rig);
+    expect_part(text, "\"refused\":\"the limit switch is on\"");
+    free(text);
+}
+END_TEST
+
 /* ---- Recordings ------------------------------------------------------------------------------------------------------- */
 
 /* The recording of a session with everything in it. To be freed. */
@@ -297,6 +326,7 @@ static Suite *fake_files_suite(void)
     tcase_add_test(files, csv_has_the_names_of_the_device);
     tcase_add_test(files, vcd_has_the_signals_of_the_device);
     tcase_add_test(files, jsonl_has_the_names_of_the_device);
+    tcase_add_test(files, wire_log_has_the_words_of_the_device);
     tcase_add_test(files, traces_are_as_fine_as_the_ticks_of_the_device);
     tcase_add_test(files, recording_names_the_device_and_replays);
     tcase_add_test(files, changed_recording_differs);

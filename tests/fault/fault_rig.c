@@ -127,7 +127,7 @@ uint32_t inject(const char *format, ...)
 
 static const struct rkm04_framing *framing(void)
 {
-    return sim_device(&rig.sim)->framing(&rig.sim.config.unit);
+    return sim_device(&rig.sim)->framing(&rig.sim.config.unit)->link;
 }
 
 size_t ask(uint8_t dnode, const void *message, size_t length)

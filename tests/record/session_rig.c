@@ -150,7 +150,7 @@ static void take(struct session *session, const uint8_t *bytes, size_t length)
 
 void session_ask(struct session *session, uint8_t node, const void *message, size_t length)
 {
-    const struct rkm04_framing *framing = sim_device(&session->sim)->framing(&session->sim.config.unit);
+    const struct rkm04_framing *framing = sim_device(&session->sim)->framing(&session->sim.config.unit)->link;
     uint8_t frame[1024];
     struct rkm04_sender sender = {0};
     ck_assert_uint_lt(length, 400);

@@ -101,8 +101,8 @@ START_TEST(damaged_messages_are_told_in_characters_that_can_be_seen)
         if (length > 1 && (round & 16) != 0)
             message[1] = (uint8_t)('0' + (round >> 5) % 5);
         struct wire_text text = {.text = words, .room = round % 7 == 0 ? 10 : sizeof words};
-        wire_words_message(&text, message, length, round % 2 == 0);
-        wire_words_refusal(&text, message, length);
+        wire_words_message(&text, rkm04_device.words, message, length, round % 2 == 0);
+        rkm04_device.words->refusal(&text, message, length);
         size_t seen = 0;
         while (seen < text.length && words[seen] >= ' ' && words[seen] <= '~')
             seen++;
@@ -380,7 +380,7 @@ START_TEST(a_copy_goes_on_with_what_was_half_heard)
 {
     struct wire_monitor copy;
     wire_rig_begin("3", HDLC);
-    ck_assert(wire_monitor_begin(&copy, HDLC, NULL, (struct wire_monitor_calls){0}));
+    ck_assert(wire_monitor_begin(&copy, sim->monitor.framing, NULL, (struct wire_monitor_calls){0}));
     wire_rig_bytes("7E 00 00 03 32");
     wire_rig_settle();
     wire_monitor_copy(&copy, &sim->monitor, 0);

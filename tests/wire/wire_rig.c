@@ -71,7 +71,7 @@ void wire_rig_bytes(const char *hex)
 
 size_t wire_rig_frame(uint8_t dnode, uint8_t snode, const void *message, size_t length, uint8_t *out)
 {
-    const struct rkm04_framing *framing = wire_rig.sim.monitor.framing;
+    const struct rkm04_framing *framing = wire_rig.sim.monitor.framing->link;
     struct rkm04_sender sender = {0};
     size_t at = framing->begin(&sender, dnode, snode, length, false, out);
     for (size_t i = 0; i < length; i++)
