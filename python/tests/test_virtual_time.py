@@ -155,6 +155,24 @@ def test_a_thread_reads_while_the_main_thread_sleeps(port):
     assert heard == [VERSION_ANSWER]
 
 
+def test_the_test_lets_time_pass_itself_while_a_thread_reads(bus, port):
+    for motor in range(1, 5):
+        bus.unit(1).motor(motor).set("S2000 V16000 A20000 F16000000 R")
+    heard = []
+
+    def read():
+        port.timeout = 3600
+        heard.append(port.read(24))
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    for _ in range(10):
+        bus.advance("60s")
+    port.write(VERSION)
+    reader.join(60)
+    assert heard == [VERSION_ANSWER]
+
+
 def test_a_pool_of_threads_that_is_idle_does_not_hold_time(now):
     with ThreadPoolExecutor(2) as pool:
         assert pool.submit(lambda: (time.sleep(1), 7)[1]).result() == 7
