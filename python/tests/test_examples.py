@@ -38,6 +38,8 @@ def test_exploration_shows_that_a_retry_executes_a_program_twice():
     status, output = run_pytest(EXAMPLES, "explore_move_by.py")
     assert status == 1, output
     assert "  - answer 1 (2 Set Command m1 -> flag 0) is not sent" in output
+    shown = re.search(r"It fails\..*?\n\n((?:    [^\n]*\n)+)", (ROOT / "docs" / "PYTHON.md").read_text(), re.S)[1]
+    assert [text for text in shown.splitlines() if text[4:] not in output.splitlines()] == []
     line = re.search(r"RKM04_REPLAY='(.*)' pytest 'explore_move_by.py::test_move_by'", output)
     status, output = run_pytest(EXAMPLES, "explore_move_by.py::test_move_by", RKM04_REPLAY=line[1])
     assert status == 1 and "assert 600 == 300" in output
