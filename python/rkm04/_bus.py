@@ -7,9 +7,9 @@ import json
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Tuple, Type, Union
 
-from . import _sim
+from . import _ports, _sim
 from ._dialogue import Dialogue
-from ._errors import NoAnswerError, WaitError
+from ._errors import NoAnswerError, WaitError, always_shown
 from ._message import Message
 from ._parts import Bits, Events, Faults, File, Inputs, Plant, PlantSource, Power, Unit, UnitName, read_plant
 from ._time import Time, to_us
@@ -279,7 +279,8 @@ class Bus:
         return self._transport.call(method, params)
 
     def close(self) -> None:
-        """End its files and free it. A closed bus raises ClosedError; closing it twice does nothing."""
+        """End its files and free it, and its name in URLs. A closed bus raises ClosedError; closing it twice does nothing."""
+        _ports.forget(self)
         self._transport.close()
 
     def __enter__(self) -> "Bus":
@@ -318,7 +319,10 @@ class Bus:
         for unit in units:
             if unit.name == str(name):
                 return unit
-        raise ValueError(f"expected one of the units {', '.join(unit.name for unit in units)}, found {name!r}")
+        names = ", ".join(unit.name for unit in units)
+        if name is None:
+            raise ValueError(f"expected a unit, as in bus.unit({units[0].name}): there are {names}")
+        raise ValueError(f"expected one of the units {names}, found {name!r}")
 
     @property
     def di(self) -> Inputs:
@@ -472,6 +476,7 @@ class Bus:
         self.call("record.start", file=str(path), force=force)
         return File(self, str(path), "record.stop", {})
 
+    @always_shown
     def __repr__(self) -> str:
         return f"<{type(self).__name__} with units {', '.join(unit.name for unit in self.units)} at {_seconds(self.now)}>"
 

@@ -35,9 +35,13 @@ PATIENCE = 2.0  # real seconds in which a thread that is blocked elsewhere must 
 class NothingToCome(Error):
     """Somebody waits without a time limit for something that cannot come: no byte is under way, and no thread can send one."""
 
+    __module__ = "rkm04"
+
 
 class TimeLimitError(Error):
     """The program under test has waited for longer than the limit of virtual time."""
+
+    __module__ = "rkm04"
 
 
 class _Waiter:
@@ -317,7 +321,8 @@ class Clock:
 
 
 def _explain(what: str) -> str:
-    return (f"{what} without a time limit would never end: no byte is under way to the host, no thread of the program is left "
+    limit = "" if "timeout=None" in what else " without a time limit"
+    return (f"{what}{limit} would never end: no byte is under way to the host, no thread of the program is left "
             "that could send a request, and units do not send unasked")
 
 

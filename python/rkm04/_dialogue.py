@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Optional, Union, overload
 
+from ._errors import always_shown
 from ._message import Kind, Message, number_of
 from ._time import Time, to_us
 
@@ -202,6 +203,7 @@ class Dialogue(Base):
 
     __hash__ = None  # type: ignore[assignment]
 
+    @always_shown
     def __repr__(self) -> str:
         if not self and self._among is not None:
             last = "; ".join(exchange.words for exchange in self._among[-3:]) or "nothing"

@@ -6,7 +6,7 @@ from __future__ import annotations
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, Optional, Type, Union
 
-from ._errors import ProgramError
+from ._errors import ProgramError, always_shown
 from ._message import Message, request
 from ._time import Time
 
@@ -55,6 +55,7 @@ class Bits:
         mask = self.mask
         return iter([mask >> place & 1 for place in range(self._count)])
 
+    @always_shown
     def __repr__(self) -> str:
         on = [str(self._first + place) for place, level in enumerate(self) if level]
         return f"<{self._member} on: {' '.join(on) or 'none'}>"
@@ -146,6 +147,7 @@ class Motor:
         """Bus.wait() for this motor: `motor.wait(state="idle", limit="5s")`."""
         return self._unit.bus.wait(limit=limit, unit=self._unit.name, motor=self.number, **condition)
 
+    @always_shown
     def __repr__(self) -> str:
         motor = self.all
         return f"<motor {self.number} of unit {self._unit.name}: {motor['state']} at {motor['position']}>"
@@ -177,6 +179,7 @@ class Power:
     def __bool__(self) -> bool:
         return bool(self._unit.state["powered"])
 
+    @always_shown
     def __repr__(self) -> str:
         return f"<power {'on' if self else 'off'}>"
 
@@ -224,8 +227,8 @@ class Unit:
 
     @property
     def var(self) -> Bits:
-        """VAR 80 to VAR 89."""
-        return Bits(self, "var", 80, 10)
+        """VAR 80 to VAR 95."""
+        return Bits(self, "var", 80, 16)
 
     @property
     def power(self) -> Power:
@@ -311,6 +314,7 @@ class Faults:
     def __len__(self) -> int:
         return len(self.list())
 
+    @always_shown
     def __repr__(self) -> str:
         return f"<faults: {', '.join(str(fault['kind']) for fault in self) or 'none'}>"
 

@@ -34,7 +34,7 @@ def clock_of(bus: Any) -> Clock:
 
 def publish(bus: Any, name: Optional[str] = None) -> str:
     """Let `serial_for_url("rkm04://NAME")` open a port onto `bus`. Without `name`: a name that no other bus has. Returns the
-    URL. The name is free again after `unpublish()`."""
+    URL. The name is free again after `unpublish()`, or when the bus is closed."""
     if name is None:
         name = f"bus{next(_numbers)}"
         while name in _named:
@@ -50,6 +50,13 @@ def publish(bus: Any, name: Optional[str] = None) -> str:
 def unpublish(name: str) -> None:
     """Forget the name of a bus, given as name or as URL."""
     _named.pop(name[len("rkm04://"):] if name.startswith("rkm04://") else name, None)
+
+
+def forget(bus: Any) -> None:
+    """Forget a bus that is closed: its names are free again, and its URL makes a new one."""
+    for known in (_named, _made):
+        for name in [name for name, other in known.items() if other is bus]:
+            del known[name]
 
 
 def forget_made() -> None:
@@ -108,6 +115,8 @@ def _make(url: str, query: str) -> Any:
                 echo = _flag(text)
             else:
                 keyword, convert = _PARAMETERS[name]
+                if keyword in values:
+                    raise ValueError("expected once")
                 values[keyword] = convert(text)
         except ValueError as error:
             raise ValueError(f"URL {url!r}: {name}={text}: {error}") from None

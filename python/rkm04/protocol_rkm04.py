@@ -17,6 +17,7 @@ from serial.serialutil import PARITY_NONE, PortNotOpenError, SerialBase, SerialE
 
 from . import _ports
 from ._clock import Clock
+from ._errors import ClosedError
 from ._virtual_time import ticks
 
 
@@ -73,7 +74,7 @@ class Serial(SerialBase):
             self._line = _ports.bus_for_url(self._port)
             self._clock = _ports.clock_of(self._line)
         except (ValueError, OSError, RuntimeError) as error:
-            raise SerialException(f"could not open port {self._port}: {error.args[0] if error.args else error}") from error
+            raise SerialException(f"could not open port {self._port}: {error}") from error
         other = self._clock.port() if self._clock.port is not None else None
         if other is not None:
             raise SerialException(f"could not open port {self._port}: it is open already, by {other!r}")
@@ -90,13 +91,16 @@ class Serial(SerialBase):
     def close(self) -> None:
         """Close the port, when all bytes are out. The bus stays as it is, and the port can be opened again."""
         if self.is_open:
-            if self._break_state:
-                self.break_condition = False
-            self.flush()
+            clock = self._clock
+            try:
+                if self._break_state:
+                    self.break_condition = False
+                self.flush()
+                clock.receive()
+            except ClosedError:
+                pass  # the bus has gone, and all bytes with it
             self.is_open = False
             self._cancelled_read = self._cancelled_write = True
-            clock = self._clock
-            clock.receive()
             clock.input.clear()
             clock.port = clock.on_input = None
             if self._pair is not None:

@@ -66,6 +66,21 @@ def test_inputs_and_outputs(bus):
         bus.di[9] = 1
 
 
+def test_variables(bus):
+    motor = bus.unit(1).motor(1)
+    motor.set("T80 T95")
+    motor.wait(state="idle")
+    var = bus.unit(1).var
+    assert var[80] == 1 and var[94] == 0 and var[95] == 1 and len(var) == 16
+    with pytest.raises(IndexError, match="expected var 80 to 95, found 96"):
+        var[96]
+
+
+def test_several_units_have_no_inputs_in_common():
+    with rkm04.Bus(units="1,2") as bus, pytest.raises(ValueError, match=r"expected a unit, as in bus\.unit\(1\): there are 1, 2"):
+        bus.di[1] = 1
+
+
 def test_wait_says_what_there_was_instead(bus):
     with pytest.raises(rkm04.WaitError, match=r'"position": 5.* within 1\.000000 s.*motor 1 position == 5 \(is 0\)'):
         bus.wait(motor=1, position=5, limit="1s")
@@ -242,6 +257,19 @@ def test_a_closed_bus_says_so():
     bus.close()
     with pytest.raises(rkm04.ClosedError, match="closed"):
         bus.advance(1)
+
+
+def test_what_belongs_to_a_closed_bus_can_be_shown():
+    with rkm04.Bus() as bus:
+        unit = bus.unit(1)
+        parts = [bus, unit, unit.motor(1), unit.di, unit.do, unit.var, unit.power, bus.faults, bus.dialogue]
+    assert [repr(part) for part in parts if "closed" not in repr(part)] == ["<unit 1>"]
+
+
+def test_errors_are_shown_with_the_name_that_programs_use():
+    errors = [value for value in vars(rkm04).values() if isinstance(value, type) and issubclass(value, rkm04.Error)]
+    assert len(errors) >= 8
+    assert {error.__module__ for error in errors} == {"rkm04"}
 
 
 def test_host_port(bus):

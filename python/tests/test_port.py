@@ -266,7 +266,9 @@ def test_echo_of_a_two_wire_adapter():
     ("rkm04://?echo=2", "echo=2: expected 0 or 1"),
     ("rkm04://name?node=1", "a name and parameters"),
     ("rkm04://name/more", "expected rkm04://NAME"),
-    ("rkm04://?plant=/no/such/file", "/no/such/file"),
+    ("rkm04://?plant=/no/such/file", "No such file or directory: '/no/such/file'"),
+    ("rkm04://?node=1&node=2", "node=2: expected once"),
+    ("rkm04://?node=1&units=2", "units=2: expected once"),
     ("rkm04://?node=17", "17"),
 ])
 def test_a_wrong_url_is_an_error_of_pyserial(url, message):
@@ -284,6 +286,34 @@ def test_a_name_belongs_to_one_bus(bus, url):
     rkm04.unpublish("axis")
     with pytest.raises(serial.SerialException):
         serial.serial_for_url("rkm04://axis")
+
+
+def test_the_name_of_a_closed_bus_is_free():
+    for _ in range(2):
+        with rkm04.Bus() as bus:
+            url = rkm04.publish(bus, "cabinet")
+            assert serial.serial_for_url(url).bus is bus
+    with pytest.raises(serial.SerialException, match="there is no bus 'cabinet'"):
+        serial.serial_for_url(url)
+
+
+@pytest.mark.parametrize("on", [False, True])
+def test_a_port_can_be_closed_after_its_bus(on):
+    with rkm04.Bus() as bus:
+        port = serial.serial_for_url(rkm04.publish(bus), write_timeout=0)
+        port.write(b"under way")
+        port.break_condition = on
+    with pytest.raises(rkm04.ClosedError):
+        port.read(1)
+    port.close()
+    assert not port.is_open
+
+
+def test_a_url_whose_bus_was_closed_makes_a_new_one():
+    first = serial.serial_for_url("rkm04://?node=7").bus
+    first.close()
+    second = serial.serial_for_url("rkm04://?node=7").bus
+    assert second is not first and second.now == 0
 
 
 def test_two_threads_read_and_write(bus, port):
