@@ -53,6 +53,9 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION electronics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3:any") # of rkm04-conformance
+if(RKM04_WINDOW)
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", libwebsockets-evlib-uv") # loaded by libwebsockets when rkm04-window starts
+endif()
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-serial, librsvg2-bin")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gtkwave, wireshark")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)

@@ -5,12 +5,13 @@
 
 # Needed to build and run the emulator and its client.
 run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libseccomp-dev libyaml-dev libncurses-dev
-    libedit-dev)
+    libedit-dev libwebsockets-dev libwebsockets-evlib-uv)
 # Needed on top of that to make the Debian package.
 package_packages=(dpkg-dev file)
 # Needed on top of that by the tests.
 test_packages=("${package_packages[@]}" check libgmp-dev valgrind socat procps clang cppcheck g++ python3-serial python3-pyte
-    python3-dev python3-venv librsvg2-bin fonts-dejavu-core zsh fish gensio-bin tshark sigrok-cli gtkwave lintian systemd)
+    python3-dev python3-venv librsvg2-bin fonts-dejavu-core zsh fish gensio-bin tshark sigrok-cli gtkwave lintian systemd
+    chromium)
 # Needed by the test of node-serialport, if the machine has no node and npm of its own.
 node_packages=(nodejs npm)
 # Needed by the tests that are about another processor than this machine's, which `quick` leaves out.
@@ -41,7 +42,7 @@ missing_tools() {
     for tool in cc make cmake pkg-config; do
         command -v "$tool" >/dev/null || echo "$tool"
     done
-    for tool in libuv jansson libseccomp yaml-0.1 ncursesw $([[ $1 != run ]] && echo check gmp); do
+    for tool in libuv jansson libseccomp yaml-0.1 ncursesw libwebsockets $([[ $1 != run ]] && echo check gmp); do
         pkg-config --exists "$tool" 2>/dev/null || echo "library $tool (pkg-config)"
     done
     if [[ $1 != run ]]; then
@@ -106,6 +107,16 @@ setup_serialport() {
     mkdir -p "$1" && cp "$source/package.json" "$source/package-lock.json" "$1" &&
         timeout 120 npm ci --prefix "$1" --no-audit --no-fund --ignore-scripts </dev/null >"$1/npm.log" 2>&1 &&
         NODE_PATH=$1/node_modules node -e 'require("serialport")' 2>>"$1/npm.log"
+}
+
+# setup_window FOLDER: playwright-core and axe-core, as tests/system/window/package-lock.json has them, in the folder.
+setup_window() {
+    local source
+    source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/system/window" && pwd) || return
+    command -v node >/dev/null && command -v npm >/dev/null || return
+    cmp -s "$source/package-lock.json" "$1/package-lock.json" && [[ -d $1/node_modules/axe-core ]] && return
+    mkdir -p "$1" && cp "$source/package.json" "$source/package-lock.json" "$1" &&
+        timeout 120 npm ci --prefix "$1" --no-audit --no-fund --ignore-scripts </dev/null >"$1/npm.log" 2>&1
 }
 
 # list_skips LOG: what the tests in ctest's log have left out, and why, a line each.

@@ -6,7 +6,9 @@
  *     client_control*, client_rpc                   methods of a control socket
  *     client_watch, client_panel                    the front panel in a terminal
  *     client_find                                   the emulators that are running
+ *     client_report                                 where messages about ports go
  *     client_shell, client_words                    commands line by line, typed or from a file
+ *     client_window                                 the window in a browser, a program of its own
  *     client_job, client_usage, client_help         one command line, what is wrong with it, help for a command
  *
  * Knows text formats and the public headers of the core, and nothing of the emulator. */
@@ -14,10 +16,16 @@
 #define RKM04_CLIENT_H
 
 #include "client_control.h"
+#include "client_cut.h"
+#include "client_find.h"
 #include "client_help.h"
 #include "client_link.h"
+#include "client_port.h"
+#include "client_report.h"
 #include "client_request.h"
+#include "client_rpc.h"
 #include "client_shell.h"
 #include "client_usage.h"
+#include "client_window.h"
 
 #endif

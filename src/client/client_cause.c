@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "client_report.h"
 #include "client_rpc.h"
 
 #define CALL_MS 1000 /* of an emulator that hangs; then no more is asked */
@@ -66,16 +67,16 @@ static bool print_framing(const json_t *units, const struct rkm04_framing *asked
     const struct rkm04_framing *framing = name ? rkm04_framing_named(name) : NULL;
     if (!framing || framing == asked)
         return false;
-    fprintf(stderr, "  - the units of this emulator use the framing %s: try --framing %s.\n", framing->name, framing->name);
+    client_advise("  - the units of this emulator use the framing %s: try --framing %s.\n", framing->name, framing->name);
     return true;
 }
 
 static void print_addresses(const struct cause *cause)
 {
-    fprintf(stderr, "  - no unit of this emulator has the address %u; there %s", cause->node, cause->count ? "are" : "is none");
+    client_advise("  - no unit of this emulator has the address %u; there %s", cause->node, cause->count ? "are" : "is none");
     for (unsigned i = 0; i < cause->count; i++)
-        fprintf(stderr, "%s %u", i > 0 ? "," : "", cause->addresses[i]);
-    fputs(cause->count ? ": select one with -n.\n" : " that has power.\n", stderr);
+        client_advise("%s %u", i > 0 ? "," : "", cause->addresses[i]);
+    client_advise("%s", cause->count ? ": select one with -n.\n" : " that has power.\n");
 }
 
 static bool print_units(const struct cause *cause)
@@ -84,12 +85,12 @@ static bool print_units(const struct cause *cause)
     if (cause->here == 0)
         print_addresses(cause);
     else if (powered == 0)
-        fprintf(stderr, "  - unit %u of this emulator is without power (power on).\n", cause->node);
+        client_advise("  - unit %u of this emulator is without power (power on).\n", cause->node);
     if (powered > 1)
-        fprintf(stderr, "  - %u units of this emulator have the address %u: their answers collide (%" JSON_INTEGER_FORMAT
+        client_advise("  - %u units of this emulator have the address %u: their answers collide (%" JSON_INTEGER_FORMAT
                 " bytes in collisions so far).\n", powered, cause->node, cause->collisions);
     if (cause->stepped)
-        fputs("  - the time of this emulator is stopped until a control client advances it (--clock stepped).\n", stderr);
+        client_advise("  - the time of this emulator is stopped until a control client advances it (--clock stepped).\n");
     return powered != 1 || cause->stepped;
 }
 

@@ -58,6 +58,8 @@ static const struct help {
      "  --force\n" EMULATOR_OPTIONS, "  rkmctl trace start run.vcd\n"},
     {"call", "call METHOD [JSON|NAME=VALUE...]", "Any other method of the control socket.", EMULATOR_OPTIONS,
      "  rkmctl call units\n"},
+    {"window", "window", "The service program in a browser, for real and virtual units.",
+     "  -p PORT, -c PATH, --http=ADDRESS:PORT, --open", "  rkmctl window --open\n"},
     {"shutdown", "shutdown", "End the emulator.", EMULATOR_OPTIONS, "  rkmctl shutdown\n"},
     {"shell", "shell",
      "Type commands and program text; Tab completes, the history is kept. A line that begins with a small letter is a\n"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "client_link.h"
 
-#include <err.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <poll.h>
@@ -12,6 +11,7 @@
 
 #include "client_cause.h"
 #include "client_port.h"
+#include "client_report.h"
 
 #define NUMBER_UNKNOWN 255  /* message number of "unknown message" */
 #define PROGRESS_MS 100
@@ -54,17 +54,33 @@ static void show_progress(const struct dialogue *d)
 /* Wait for an event on the line. Returns true if there is one, false at the deadline. */
 static bool wait_for(const struct dialogue *d, short events)
 {
-    struct pollfd line = {.fd = d->client->fd, .events = events};
+    const int *cancel = d->client->cancel;
+    struct pollfd files[] = {{.fd = d->client->fd, .events = events}, {.fd = cancel != NULL ? *cancel : -1, .events = POLLIN}};
     for (;;) {
         uint64_t now = client_now();
         if (now >= d->deadline)
             return false;
         uint64_t left = (d->deadline - now + 999u) / 1000u;
-        int ready = poll(&line, 1, left < PROGRESS_MS ? (int)left : PROGRESS_MS);
+        poll(files, 2, left < PROGRESS_MS ? (int)left : PROGRESS_MS);
         show_progress(d);
-        if (ready > 0)
+        if (files[1].revents != 0)
+            return false;
+        if (files[0].revents != 0)
             return true;
     }
+}
+
+static bool is_cancelled(const struct client *client)
+{
+    struct pollfd file = {.fd = client->cancel != NULL ? *client->cancel : -1, .events = POLLIN};
+    return poll(&file, 1, 0) > 0;
+}
+
+/* Give up; what has not left yet stays unsent. */
+static enum client_outcome drop_request(const struct client *client)
+{
+    tcflush(client->fd, TCOFLUSH);
+    return CLIENT_CANCELLED;
 }
 
 /* Read what has come. Returns as read(2). What came first is kept. */
@@ -99,10 +115,11 @@ static enum client_outcome report_lost(struct client *client)
     const char *reason = find_refusal(client);
     errno = why;
     if (reason) {
-        warnx("%s: refused: %s", client->port, reason);
+        client_report("%s: refused: %s", client->port, reason);
         return CLIENT_LOST;
     }
-    warnx("%s: the connection was closed at its other end (%s)", client->port, errno != 0 ? strerror(errno) : "end of file");
+    client_report("%s: the connection was closed at its other end (%s)", client->port,
+                  errno != 0 ? strerror(errno) : "end of file");
     return CLIENT_LOST;
 }
 
@@ -132,7 +149,9 @@ static enum client_outcome send_frame(const struct dialogue *d)
             return report_lost(client);
         } else {
             if (!wait_for(d, POLLOUT | POLLIN)) {
-                warnx("%s accepts no bytes: is the program or the device at its other end stuck?", client->port);
+                if (is_cancelled(client))
+                    return drop_request(client);
+                client_report("%s accepts no bytes: is the program or the device at its other end stuck?", client->port);
                 return CLIENT_SILENT;
             }
             if (!drop_input(client)) /* no answer yet; but who sends us something must not wait for us to read it */
@@ -147,7 +166,7 @@ static void wait_until_sent(const struct dialogue *d)
 {
     uint64_t end = d->begun + line_time(d->frame) + CLOSE_GRACE_US;
     tcdrain(d->client->fd);
-    for (uint64_t now = client_now(); now < end; now = client_now()) {
+    for (uint64_t now = client_now(); now < end && !is_cancelled(d->client); now = client_now()) {
         uint64_t left = (end - now + 999u) / 1000u;
         poll(NULL, 0, left < PROGRESS_MS ? (int)left : PROGRESS_MS);
         show_progress(d);
@@ -219,23 +238,23 @@ static bool print_causes(const struct dialogue *d)
     const struct rkm04_receiver *r = &client->receiver;
     uint32_t others = client->unexpected - client->echoed;
     if (client->foreign > 0)
-        fprintf(stderr, "  - %" PRIu32 " messages came in the framing %s: try --framing %s.\n", client->foreign,
+        client_advise("  - %" PRIu32 " messages came in the framing %s: try --framing %s.\n", client->foreign,
                 other_framing(client)->name, other_framing(client)->name);
     if (client->echoed > 0)
-        fputs("  - the request itself came back: the adapter echoes, or its two wires are connected.\n", stderr);
+        client_advise("  - the request itself came back: the adapter echoes, or its two wires are connected.\n");
     if (others > 0)
-        fprintf(stderr, "  - %" PRIu32 " messages came that are not the answer: is another program or unit on this address?\n",
+        client_advise("  - %" PRIu32 " messages came that are not the answer: is another program or unit on this address?\n",
                 others);
     if (r->bad_check > 0)
-        fprintf(stderr, "  - %" PRIu32 " frames came with a wrong check value: do two units have the address %u, or does another "
+        client_advise("  - %" PRIu32 " frames came with a wrong check value: do two units have the address %u, or does another "
                 "program send at the same time (a collision)? Or is the bus disturbed?\n", r->bad_check, client->node);
     if (r->malformed > 0 && client->foreign == 0)
-        fprintf(stderr, "  - %" PRIu32 " frames came that are cut or malformed: do two units have the address %u and answer at "
+        client_advise("  - %" PRIu32 " frames came that are cut or malformed: do two units have the address %u and answer at "
                 "different times (a collision)? Does another program read from %s, too?\n", r->malformed, client->node,
                 client->port);
     bool told = client->foreign > 0 || client->unexpected > 0 || r->bad_check > 0 || r->malformed > 0;
     if (!told && client->received > 0)
-        fprintf(stderr, "  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right?\n",
+        client_advise("  - %" PRIu32 " bytes came, but no whole message: is the baud rate 19200, the framing right?\n",
                 client->received);
     return told || client->received > 0;
 }
@@ -243,13 +262,12 @@ static bool print_causes(const struct dialogue *d)
 static void print_advice(const struct dialogue *d)
 {
     const struct client *client = d->client;
-    warnx("no answer from unit %u within %u ms", client->node, client->timeout_ms);
-    fputs("Please check:\n", stderr);
+    client_report("no answer from unit %u within %u ms", client->node, client->timeout_ms);
+    client_advise("Please check:\n");
     bool known = client_print_emulator_causes(client->port, client->framing, client->node);
     if (print_causes(d) || known)
         return;
-    fprintf(stderr,
-            "  - nothing was received.\n"
+    client_advise("  - nothing was received.\n"
             "  - does the unit have power, and is its bus (A, B) connected to %s?\n"
             "  - is its address %u (switch S1; rkm04 serve --node %u)? Select another one with -n.\n"
             "  - does it use the framing %s? The other one is --framing %s.\n"
@@ -271,6 +289,8 @@ static enum client_outcome await_answer(struct dialogue *d)
         if (n > 0 && process_bytes(d, bytes, (size_t)n))
             return CLIENT_ANSWERED;
     }
+    if (is_cancelled(d->client))
+        return drop_request(d->client);
     print_advice(d);
     return CLIENT_SILENT;
 }
@@ -291,6 +311,8 @@ enum client_outcome client_exchange(struct client *client, const uint8_t *reques
         return outcome;
     if (client->node == 0) {
         wait_until_sent(&d);
+        if (is_cancelled(client))
+            return drop_request(client);
         return drop_input(client) ? CLIENT_SENT : report_lost(client);
     }
     return await_answer(&d);

@@ -16,7 +16,8 @@ enum client_outcome {
     CLIENT_ANSWERED,
     CLIENT_SENT,   /* to all units: none answers */
     CLIENT_SILENT, /* no answer in time (reported, with advice) */
-    CLIENT_LOST    /* the line failed (reported) */
+    CLIENT_LOST,   /* the line failed (reported) */
+    CLIENT_CANCELLED
 };
 
 struct client {
@@ -26,6 +27,7 @@ struct client {
     const struct rkm04_framing *framing;
     uint8_t node;        /* 1..16; 0 = all units */
     unsigned timeout_ms; /* how long a unit may be silent when it is its turn */
+    const int *cancel;   /* a descriptor: while it is readable no request is under way; NULL: none */
     /* Called about ten times a second while a request is under way; NULL: not wanted. sent: bytes of the request that have
      * left at the line's speed. */
     void (*progress)(void *context, size_t sent);

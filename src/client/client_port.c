@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "client_port.h"
 
-#include <err.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -17,6 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "client_report.h"
 #include "options/options.h"
 #include "text/text.h"
 
@@ -77,15 +77,15 @@ static bool make_raw(int fd)
 static bool set_up_terminal(int fd, const char *path, unsigned timeout_ms)
 {
     if (!isatty(fd)) {
-        warnx("%s is not a serial device: expected one like /dev/ttyUSB0, a pseudo terminal, or tcp:HOST:PORT", path);
+        client_report("%s is not a serial device: expected one like /dev/ttyUSB0, a pseudo terminal, or tcp:HOST:PORT", path);
         return false;
     }
     if (!lock_terminal(fd, timeout_ms)) {
-        warnx("%s is in use by another program: end that program, or wait for it with a longer --timeout", path);
+        client_report("%s is in use by another program: end that program, or wait for it with a longer --timeout", path);
         return false;
     }
     if (!make_raw(fd)) {
-        warn("cannot set %s to 19200 baud, 8N1", path);
+        client_report("cannot set %s to 19200 baud, 8N1: %s", path, strerror(errno));
         return false;
     }
     tcflush(fd, TCIFLUSH);
@@ -96,7 +96,7 @@ static int open_terminal(const char *path, unsigned timeout_ms)
 {
     int fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) {
-        warnx("cannot open %s: %s%s", path, strerror(errno), open_advice(errno));
+        client_report("cannot open %s: %s%s", path, strerror(errno), open_advice(errno));
         return -1;
     }
     if (set_up_terminal(fd, path, timeout_ms))
@@ -150,14 +150,14 @@ static int open_tcp(const char *port, unsigned timeout_ms)
     const char *wrong = host != NULL ? host_address_find(host, colon + 1, AF_UNSPEC, timeout_ms, &list) : strerror(ENOMEM);
     free(host);
     if (wrong != NULL) {
-        warnx("cannot find %s: %s", port, wrong);
+        client_report("cannot find %s: %s", port, wrong);
         return -1;
     }
     int fd = -1;
     for (const struct addrinfo *address = list; address != NULL && fd < 0; address = address->ai_next)
         fd = connect_to(address, timeout_ms);
     if (fd < 0)
-        warn("cannot connect to %s", port);
+        client_report("cannot connect to %s: %s", port, strerror(errno));
     freeaddrinfo(list);
     return fd;
 }

@@ -72,7 +72,7 @@ static const char arguments[] =
     "version|store|position|command|table|progress\nset TEXT\nsend FILE\nraw HEX\n"
     "state|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
     "snapshot|restore NAME|file=PATH\npower on|off\nswitch NODE [reset]\nclock [CLOCK]\nfault [inject KIND|clear] [...]\n"
-    "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\nshell";
+    "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\nshell\nwindow [OPTION...]";
 
 static const char doc[] =
     "Send one request to an RKM04, real or virtual, and show the answer; or inspect and control an emulator, `rkm04 serve': its "
@@ -110,6 +110,7 @@ static const char doc[] =
     "\n"
     "Both:\n"
     "  shell        type commands and program text, or take them from -f FILE\n"
+    "  window       the service program in a browser: `rkmctl window --help'\n"
     "\n"
     "Conditions: m1.position>=5000, m1.true<0, m1.steps>9, m1.state=idle, m1.idle, m1.led=blink, m1.fault!=none, idle, "
     "powered=1, do3=1, di08=0, var80=1, message=4, master.message, unit.message, dropped, t>=2.5s; u3. in front: of unit 3. "
@@ -263,11 +264,13 @@ static enum exit_status run(struct options *options)
 {
     if (options->command == NULL)
         return client_usage("no command: expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; "
-                            "or shell");
+                            "or shell, window");
     if (strcmp(options->command, "shell") == 0)
         return do_shell(options);
     if (options->file != NULL)
         return client_usage("-f is for shell");
+    if (strcmp(options->command, "window") == 0)
+        return client_usage("window is the first word: rkmctl window [OPTION...]");
     if (client_request_has(options->command))
         return do_request(options);
     if (client_control_has(options->command))
@@ -306,6 +309,8 @@ static int run_line(int argc, char **argv)
 int main(int argc, char **argv)
 {
     process_begin();
+    if (argc > 1 && strcmp(argv[1], "window") == 0)
+        return (int)client_window(argv);
     argp_err_exit_status = STATUS_USAGE;
     signal(SIGPIPE, SIG_IGN); /* writing says so, too */
     return run_line(argc, argv);

@@ -3,9 +3,16 @@
 #ifndef RKM04_OPTIONS_PROCESS_H
 #define RKM04_OPTIONS_PROCESS_H
 
+#include <limits.h>
+#include <stdbool.h>
+
 /* The first thing in main(): standard streams that are closed become /dev/null, so that no file or device of ours takes their
  * numbers, and messages for people do not go there; SIGINT, SIGTERM and SIGHUP are let through, whatever the parent had blocked.
  * Ends the program with status 1 if there is no /dev/null. */
 void process_begin(void);
+
+/* The program rkm04-window, which `rkmctl window' and `rkm04 serve --window' start: beside this one, or in libexec/rkm04 of the
+ * place where it was installed. Returns false if it is in neither. */
+bool process_find_window(char path[PATH_MAX]);
 
 #endif

@@ -26,7 +26,7 @@ test_the_package_has_the_text_of_the_licence() {
 
 test_every_library_that_the_programs_are_linked_with_is_named() {
     local program library found
-    for program in "$RKM04" "$RKMCTL"; do
+    for program in "$RKM04" "$RKMCTL" ${RKM04_WINDOW:+"$RKM04_WINDOW"}; do
         found=0
         while IFS= read -r library; do
             found=$((found + 1))

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: MIT
+# The files of the window's page as C arrays, and a table of them, WINDOW_PAGES(ROW): embedded/window_pages.h.
+file(GLOB pages CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/window/pages/*)
+set(type_html "text/html; charset=utf-8")
+set(type_css "text/css; charset=utf-8")
+set(type_js "text/javascript; charset=utf-8")
+set(type_svg "image/svg+xml")
+set(includes "")
+set(rows "")
+set(headers "")
+foreach(page ${pages})
+  get_filename_component(file ${page} NAME)
+  string(REGEX REPLACE ".*[.]" "" kind ${file})
+  string(REGEX REPLACE "[^a-z0-9]" "_" name window_${file})
+  set(header ${CMAKE_CURRENT_BINARY_DIR}/embedded/${name}.h)
+  add_custom_command(OUTPUT ${header} COMMAND ${CMAKE_COMMAND} -DIN=${page} -DOUT=${header} -DNAME=${name}
+    -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake DEPENDS ${page} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake)
+  list(APPEND headers ${header})
+  string(APPEND includes "#include \"${name}.h\"\n")
+  string(APPEND rows " ROW(\"/${file}\", \"${type_${kind}}\", ${name})")
+endforeach()
+file(CONFIGURE OUTPUT embedded/window_pages.h CONTENT "${includes}#define WINDOW_PAGES(ROW)${rows}\n" @ONLY)
+target_sources(rkm04-window-server PRIVATE ${headers})

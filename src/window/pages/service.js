@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// The service program: port, request, answers, positions, profile. Works with any unit.
+import { ask, on, tell } from "./link.js";
+import { word } from "./words.js";
+import { check, saveText } from "./editor.js";
+import { Graph, drawProfile } from "./graph.js";
+import { describeAnswer, describeRequest, fromHex, messages, readPositions, readTable, spaced, text, toHex } from "./decode.js";
+
+const $ = (id) => document.getElementById(id);
+const ENTRIES_MAX = 2000;
+const RAW = 0;
+const entries = [];
+const graph = new Graph($("positions-graph"));
+let open = null;
+let polling = 0;
+let profile = [];
+
+function fill(select, from, to, chosen) {
+  for (let number = from; number <= to; number++)
+    select.append(new Option(String(number), String(number), false, number === chosen));
+}
+
+fill($("node"), 0, 16, 1);
+fill($("motor"), 0, 4, 1);
+messages.forEach((name, at) => $("message").append(new Option(`${at + 1} ${name}`, String(at + 1), false, at === 1)));
+$("message").append(new Option("Raw", String(RAW)));
+$("positions-head").append(...[1, 2, 3, 4].map((motor) => Object.assign(document.createElement("th"), { scope: "col", textContent: motor })));
+$("positions").append(...[1, 2, 3, 4].map(() => Object.assign(document.createElement("td"), { textContent: "–" })));
+
+export function say(message, wrong = false) {
+  $("status").textContent = message;
+  $("status").classList.toggle("wrong", wrong);
+}
+
+// ---- Answers ----
+
+function show(entry) {
+  const wanted = $("search").value.toLowerCase();
+  entry.element.hidden = wanted !== "" && !entry.element.textContent.toLowerCase().includes(wanted);
+}
+
+function addEntry(head, raw, wrong) {
+  const element = document.createElement("p");
+  element.className = wrong ? "wrong" : "";
+  element.append(head);
+  if (raw) {
+    const line = document.createElement("span");
+    line.className = "raw";
+    line.textContent = "\n" + raw;
+    element.append(line);
+  }
+  const entry = { element };
+  entries.push(entry);
+  show(entry);
+  const log = $("answers"), atEnd = log.scrollTop + log.clientHeight > log.scrollHeight - 20;
+  log.append(element);
+  if (entries.length > ENTRIES_MAX)
+    entries.shift().element.remove();
+  if (atEnd)
+    log.scrollTop = log.scrollHeight;
+}
+
+function addExchange(one, trouble) {
+  const request = fromHex(one.request), answer = fromHex(one.answer);
+  const time = new Date(one.t_ms).toISOString().slice(11, 23);
+  const said = one.outcome === "answered" ? describeAnswer(answer) : word(one.outcome);
+  const raw = `> ${spaced(one.request)}${one.answer ? `\n< ${spaced(one.answer)}` : ""}\n${word("rtt")} ${(one.round_trip_us / 1000).toFixed(1)} ms`;
+  const bad = one.outcome === "silent" || one.outcome === "lost" || (request[0] === 2 && answer[2] > 0) || (request[0] === 3 && answer[2] > 0);
+  addEntry(`${time} [${one.node}] ${describeRequest(request)}: ${said}${trouble ? "\n" + trouble.trim() : ""}`, raw, bad);
+  if (answer[0] === 4)
+    takePositions(answer, one.t_ms);
+  if (answer[0] === 6)
+    takeProfile(answer);
+  if (answer[0] === 7)
+    takeProgress(answer);
+}
+
+function takeAnswer(object) {
+  if (object.request)
+    addExchange(object, object.trouble);
+  else if (object.messages || object.bus)
+    [...(object.messages ?? []), object.unit, object.bus].filter(Boolean).forEach((one) => addExchange(one));
+  if (object.pieces !== undefined && object.messages.length > 1)
+    addEntry(`${word("pieces", object.commands, object.pieces)}`, "", false);
+  if (!object.request && object.trouble)
+    addEntry(object.trouble.trim(), "", true);
+}
+
+$("search").oninput = () => entries.forEach(show);
+$("clear").onclick = () => entries.splice(0).forEach((entry) => entry.element.remove());
+$("save-answers").onclick = () => saveText(entries.map((entry) => entry.element.textContent + "\n").join(""), "answers.txt");
+
+// ---- Positions and profile ----
+
+function takePositions(bytes, time) {
+  const positions = readPositions(bytes), first = bytes[1] === 0x30 ? 0 : bytes[1] - 0x31;
+  positions.forEach((position, at) => {
+    $("positions").children[first + at].textContent = String(position);
+    graph.add(0, first + at, time, position);
+  });
+}
+
+function takeProfile(bytes) {
+  profile = readTable(bytes);
+  $("profile-text").textContent = profile.length > 0 ? text(bytes.slice(2)).trim() : word("profile-empty");
+  drawProfile($("profile"), profile, null);
+  if (profile.length > 0)
+    poll("7" + String.fromCharCode(bytes[1]), takeProgress);
+}
+
+function takeProgress(bytes) {
+  const found = /^ (\d+);/.exec(text(bytes.slice(2)));
+  if (found && profile.length > 0)
+    drawProfile($("profile"), profile, Number(found[1]));
+}
+
+// A question that is asked repeatedly: "40" is message 4, motor '0'.
+async function poll(question, take) {
+  const message = toHex([Number(question[0]), question.charCodeAt(1)]);
+  const answer = await ask("request", { node: Number($("node").value), motor: 0, message, poll: true });
+  if (answer.outcome === "answered")
+    take(fromHex(answer.answer), answer.t_ms);
+}
+
+async function pollPositions() {
+  if (!$("poll").checked)
+    return;
+  const begun = performance.now();
+  if (open && $("node").value !== "0" && !document.hidden)
+    await poll("40", takePositions);
+  polling = setTimeout(pollPositions, Math.max(10, Number($("rate").value) - (performance.now() - begun)));
+}
+
+$("poll").onchange = () => {
+  clearTimeout(polling);
+  pollPositions();
+};
+
+// ---- Port ----
+
+export function showPort(port) {
+  open = port.port;
+  $("connect-word").textContent = word(open ? "disconnect" : "connect");
+  if (open) {
+    $("port").value = open;
+    $("framing").value = port.framing ?? "hdlc";
+  }
+  say(open ? word("connected", open) : word("closed"));
+}
+
+export async function findPorts() {
+  const found = await ask("ports");
+  if (!found.ports)
+    return;
+  const names = [...found.emulators.map((one) => one.port), ...found.ports.map((one) => one.port)].filter(Boolean);
+  $("ports").replaceChildren(...names.map((name) => new Option(name)));
+  if ($("port").value === "" && names.length > 0)
+    $("port").value = names[0];
+  tell("found", found.emulators);
+}
+
+async function toggleConnection() {
+  const answer = open ? await ask("close") : await ask("open", { port: $("port").value.trim() || "-", framing: $("framing").value });
+  if (answer.trouble || answer.error)
+    say((answer.trouble ?? answer.error).trim(), true);
+}
+
+$("connection").onsubmit = (event) => {
+  event.preventDefault();
+  toggleConnection();
+};
+$("find").onclick = findPorts;
+
+// ---- Requests ----
+
+function chosenMessage() {
+  const number = Number($("message").value), motor = 0x30 + Number($("motor").value);
+  if (number === RAW)
+    return $("raw").value.replace(/\s/g, "");
+  return toHex(number === 1 ? [1] : [number, motor]);
+}
+
+async function sendRequest() {
+  const number = Number($("message").value), target = { node: Number($("node").value), motor: Number($("motor").value) };
+  const answer = number === 2 ? await ask("send", { ...target, text: $("text").value }) : await ask("request", { ...target, message: chosenMessage() });
+  $("progress").hidden = true;
+  if (answer.error)
+    addEntry(`${word("refused")}: ${answer.error}`, "", true);
+}
+
+$("request").onsubmit = (event) => {
+  event.preventDefault();
+  sendRequest();
+};
+export function showChoices() {
+  $("broadcast").hidden = $("node").value !== "0";
+  $("raw-label").hidden = $("message").value !== String(RAW);
+}
+$("request").onchange = showChoices;
+
+async function stopAll() {
+  const begun = performance.now();
+  const answer = await ask("stop", { node: Number($("node").value) });
+  if (answer.outcome === "sent")
+    say(word("stop-done", Math.round(performance.now() - begun)));
+  else
+    say(word("stop-failed"), true);
+}
+$("stop").onclick = stopAll;
+
+on("answer", takeAnswer);
+on("port", showPort);
+on("progress", ({ sent, total }) => {
+  $("progress").hidden = total === 0 || sent >= total;
+  $("progress").max = Math.max(1, total);
+  $("progress").value = sent;
+});
+
+export function begin(hello) {
+  showPort(hello.port);
+  showChoices();
+  check();
+  findPorts();
+}
+
+export const keys = {
+  F2: () => $("connection").requestSubmit(),
+  F8: stopAll,
+  F9: () => $("poll").click(),
+  "Control+Enter": () => $("request").requestSubmit(),
+  "Control+o": () => $("open").click(),
+  "Control+s": () => $("save").click(),
+  "Alt+f": () => $("format").click(),
+};

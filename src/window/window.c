@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+#include "window.h"
+
+#include <dirent.h>
+#include <err.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include "window_inside.h"
+#include "window_requests.h"
+#include "window_server.h"
+
+extern char **environ;
+
+/* ---- Files for downloads ---------------------------------------------------------------------------------------------- */
+
+static void remove_folder(const struct window *window)
+{
+    DIR *folder = window->folder[0] != '\0' ? opendir(window->folder) : NULL;
+    const struct dirent *entry;
+    if (folder == NULL)
+        return;
+    while ((entry = readdir(folder)) != NULL)
+        unlinkat(dirfd(folder), entry->d_name, 0);
+    closedir(folder);
+    rmdir(window->folder);
+}
+
+/* ---- Begin, end ------------------------------------------------------------------------------------------------------- */
+
+static void on_signal(uv_signal_t *handle, int number)
+{
+    (void)number;
+    uv_stop(handle->loop);
+}
+
+static void begin_signals(struct window *window)
+{
+    static const int numbers[] = {SIGTERM, SIGINT, SIGHUP};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        uv_signal_init(&window->loop, &window->signals[i]);
+        uv_signal_start(&window->signals[i], on_signal, numbers[i]);
+    }
+}
+
+static void show_in_browser(const char *address)
+{
+    char *const words[] = {"xdg-open", (char *)(uintptr_t)address, NULL};
+    pid_t child;
+    signal(SIGCHLD, SIG_IGN); /* nobody waits for it */
+    if (posix_spawnp(&child, words[0], NULL, NULL, words, environ) != 0)
+        warnx("cannot start xdg-open: open the address yourself");
+}
+
+static void open_port(struct window *window, const char *port)
+{
+    struct port_job *job = port_job_new(PORT_OPEN, 0, json_null());
+    if (job == NULL)
+        return;
+    job->text = strdup(port);
+    job->framing = &rkm04_hdlc;
+    window_port_do(&window->port, job);
+}
+
+static void close_handle(uv_handle_t *handle, void *unused)
+{
+    (void)unused;
+    if (!uv_is_closing(handle))
+        uv_close(handle, NULL);
+}
+
+static void end_window(struct window *window)
+{
+    window_watch_end(&window->watch);
+    window_port_end(&window->port);
+    window_server_end(window);
+    while (window->port.present != NULL && uv_run(&window->loop, UV_RUN_ONCE) != 0)
+        ; /* the thread gives up at once */
+    for (int i = 0; i < 100 && uv_run(&window->loop, UV_RUN_NOWAIT) != 0; i++)
+        ; /* what the server closes */
+    window_server_end(window);
+    uv_walk(&window->loop, close_handle, NULL);
+    uv_run(&window->loop, UV_RUN_DEFAULT);
+    uv_loop_close(&window->loop);
+    if (window->port.client.fd >= 0)
+        close(window->port.client.fd);
+    if (window->port.cancel >= 0)
+        close(window->port.cancel);
+    remove_folder(window);
+}
+
+enum exit_status window_run(const struct window_options *options)
+{
+    static struct window window; /* its buffers are large */
+    char address[160];
+    signal(SIGPIPE, SIG_IGN);
+    window.pages = (struct pages){.loop = &window.loop, .request = window_request, .closed = window_page_closed,
+                                  .context = &window};
+    if (options->bound)
+        prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (uv_loop_init(&window.loop) != 0 || !window_port_begin(&window.port, &window.pages)) {
+        warnx("cannot make an event loop");
+        return STATUS_FAILURE;
+    }
+    begin_signals(&window);
+    window_watch_begin(&window.watch, &window.pages);
+    bool listens = window_server_begin(&window, options->http);
+    if (listens) {
+        snprintf(address, sizeof address, "http://%s/?token=%s", window.host, window.token);
+        printf("WINDOW %s\n", address);
+        listens = fflush(stdout) == 0;
+    }
+    if (listens) {
+        if (options->control != NULL)
+            window_watch_choose(&window.watch, options->control, 0);
+        if (options->port != NULL)
+            open_port(&window, options->port);
+        if (options->open)
+            show_in_browser(address);
+        uv_run(&window.loop, UV_RUN_DEFAULT);
+    }
+    end_window(&window);
+    return listens ? STATUS_SUCCESS : STATUS_FAILURE;
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/* window.h: the service program's window in a browser (docs/WINDOW.md): an HTTP server of one user; the face of the room.
+ *
+ *     window_server     HTTP: pages, who may come in, WebSocket connections
+ *     window_page       one open page: its messages in and out, their limits
+ *     window_requests   what a page can ask for
+ *     window_port       the port of the units: one job after the other, in a thread
+ *     window_ports      the ports there are
+ *     window_tools      check, format, explain, estimate for the editor, in a thread
+ *     window_control    connections to the control socket of an emulator
+ *     window_watch      the state of its units, as often as something changes
+ *
+ * One event loop; whatever may block is done in a thread. */
+#ifndef RKM04_WINDOW_H
+#define RKM04_WINDOW_H
+
+#include <stdbool.h>
+
+#include "text/text.h"
+
+struct window_options {
+    const char *http;    /* ADDRESS:PORT; port 0: any that is free */
+    const char *port;    /* of units, opened at the start; NULL: none */
+    const char *control; /* of an emulator; NULL: none */
+    bool open;           /* show the page in the user's browser */
+    bool bound;          /* end with the process that started this one */
+};
+
+/* Serve the window until SIGTERM, SIGINT or SIGHUP. A line "WINDOW http://…" on stdout says where. Returns the exit status. */
+enum exit_status window_run(const struct window_options *options);
+
+#endif

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* window_port_work.h: what a job does on the port, in its thread. */
+#ifndef RKM04_WINDOW_PORT_WORK_H
+#define RKM04_WINDOW_PORT_WORK_H
+
+#include "window_job.h"
+
+/* Fills in job->result and job->trouble. May last as long as the units take. */
+void port_work(struct window_port *port, struct port_job *job);
+
+#endif

@@ -1,0 +1,64 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# The window: who may come in, limits, the port, the program tools, start and end. Its pages are tested by window_browser.sh.
+
+. "$(dirname "$0")/lib.sh"
+[[ -n ${RKM04_WINDOW-} ]] || skip_all "built without the window"
+client=$(cd "$(dirname "$0")" && pwd)/window_client.py
+
+# open_window OPTION...: starts it; $address is what it prints, $window its process.
+open_window() {
+    "$RKMCTL" window "$@" >"$folder/window.out" 2>"$folder/window.err" &
+    window=$!
+    soon "the address of the window" grep -q '^WINDOW http://' "$folder/window.out"
+    address=$(sed -n 's/^WINDOW //p' "$folder/window.out")
+}
+
+case_of() { exits 0 python3 "$client" "$@"; }
+
+test_only_who_has_the_token_and_the_own_page_come_in() {
+    open_window
+    [[ $address =~ ^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32}$ ]] || fail "the address is $address"
+    case_of doors "$address"
+}
+
+test_too_much_ends_one_page_only() {
+    open_window
+    case_of limits "$address"
+}
+
+test_nonsense_is_refused_with_a_reason() {
+    open_window
+    case_of nonsense "$address"
+}
+
+test_a_port_is_opened_asked_and_stopped() {
+    serve bus
+    open_window
+    case_of port "$address" "$folder/bus"
+}
+
+test_the_program_tools_answer() {
+    open_window
+    case_of tools "$address"
+}
+
+test_sigterm_ends_it_within_a_second() {
+    serve bus
+    open_window -p "$folder/bus" -c "$folder/bus.control"
+    local begun=${EPOCHREALTIME/./}
+    kill -TERM $window
+    wait $window || fail "exit status $?"
+    ((${EPOCHREALTIME/./} - begun < 1000000)) || fail "it took $((${EPOCHREALTIME/./} - begun)) us"
+    same "" "$(<"$folder/window.err")" "stderr"
+}
+
+test_wrong_usage_is_told() {
+    exits 1 "$RKMCTL" window --http nonsense
+    holds "$complained" "expected ADDRESS:PORT" "the message"
+    exits 2 "$RKMCTL" window more
+    exits 2 "$RKMCTL" -n 1 window
+    holds "$complained" "window is the first word" "the message"
+}
+
+run_cases "$@"
