@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "window.h"
 
-#include <dirent.h>
 #include <err.h>
 #include <signal.h>
 #include <spawn.h>
@@ -11,25 +10,12 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include "window_folder.h"
 #include "window_inside.h"
 #include "window_requests.h"
 #include "window_server.h"
 
 extern char **environ;
-
-/* ---- Files for downloads ---------------------------------------------------------------------------------------------- */
-
-static void remove_folder(const struct window *window)
-{
-    DIR *folder = window->folder[0] != '\0' ? opendir(window->folder) : NULL;
-    const struct dirent *entry;
-    if (folder == NULL)
-        return;
-    while ((entry = readdir(folder)) != NULL)
-        unlinkat(dirfd(folder), entry->d_name, 0);
-    closedir(folder);
-    rmdir(window->folder);
-}
 
 /* ---- Begin, end ------------------------------------------------------------------------------------------------------- */
 
@@ -52,7 +38,7 @@ static void show_in_browser(const char *address)
 {
     char *const words[] = {"xdg-open", (char *)(uintptr_t)address, NULL};
     pid_t child;
-    signal(SIGCHLD, SIG_IGN); /* nobody waits for it */
+    signal(SIGCHLD, SIG_IGN); /* its end is not awaited */
     if (posix_spawnp(&child, words[0], NULL, NULL, words, environ) != 0)
         warnx("cannot start xdg-open: open the address yourself");
 }
@@ -91,7 +77,7 @@ static void end_window(struct window *window)
         close(window->port.client.fd);
     if (window->port.cancel >= 0)
         close(window->port.cancel);
-    remove_folder(window);
+    window_folder_remove(window->folder);
 }
 
 enum exit_status window_run(const struct window_options *options)

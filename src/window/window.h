@@ -5,6 +5,7 @@
  *     window_page       one open page: its messages in and out, their limits
  *     window_requests   what a page can ask for
  *     window_port       the port of the units: one job after the other, in a thread
+ *     window_folder     files for downloads
  *     window_ports      the ports there are
  *     window_tools      check, format, explain, estimate for the editor, in a thread
  *     window_control    connections to the control socket of an emulator

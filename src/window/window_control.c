@@ -106,7 +106,7 @@ struct window_control *window_control_open(uv_loop_t *loop, const char *path, co
 
 static void on_sent(uv_write_t *write, int status)
 {
-    (void)status; /* reading tells that the emulator has gone */
+    (void)status; /* reading shows that the emulator has gone */
     free(write->data);
 }
 

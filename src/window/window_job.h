@@ -22,10 +22,10 @@ enum port_kind { PORT_OPEN, PORT_CLOSE, PORT_REQUEST, PORT_SEND, PORT_STOP };
 struct port_job {
     struct port_job *next;
     enum port_kind kind;
-    uint64_t page;      /* who has asked; 0: nobody */
+    uint64_t page;      /* who has asked; 0: none */
     json_t *request;    /* its words: a reference */
     unsigned node, motor, timeout_ms;
-    bool poll;          /* a repeated question: only who asked is told */
+    bool poll;          /* a repeated question: only who asked gets the answer */
     char *text;         /* PORT_OPEN: the port; PORT_SEND: the program */
     size_t length;
     size_t message_max; /* PORT_SEND */

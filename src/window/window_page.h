@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* window_page.h: an open page: what it sends and what it gets, within limits. Work for a page keeps its number, which no later
- * page has: it finds nobody when the page has gone. */
+ * page has: there is none when the page has gone. */
 #ifndef RKM04_WINDOW_PAGE_H
 #define RKM04_WINDOW_PAGE_H
 

@@ -24,7 +24,7 @@ void port_job_free(struct port_job *job);
 /* Do it after those before it; PORT_STOP at once: all others are given up. Takes the job. Returns false if there are too many. */
 bool window_port_do(struct window_port *port, struct port_job *job);
 
-/* What a page is told of the port: {"event": "port", "port": NAME or null, "framing": …}. New reference. */
+/* What pages get about the port: {"event": "port", "port": NAME or null, "framing": …}. New reference. */
 json_t *window_port_json(const struct window_port *port);
 
 #endif

@@ -8,6 +8,7 @@
 #include <rkm04/limits.h>
 
 #include "window_control.h"
+#include "window_folder.h"
 #include "window_inside.h"
 #include "window_ports.h"
 #include "window_tools.h"
@@ -115,7 +116,7 @@ static size_t read_hex(const char *text, uint8_t *bytes)
     return length;
 }
 
-/* {"message": HEX}: one message, as it is. A page that polls is told to leave one out while the port is busy. Only messages that
+/* {"message": HEX}: one message, as it is. A page that polls leaves one out while the port is busy. Only messages that
  * ask are polled: nothing but a person's request moves a motor. */
 static void do_request(struct page *page, json_t *request)
 {
@@ -163,6 +164,7 @@ static void do_attach(struct page *page, json_t *request)
     const char *path = json_string_value(json_object_get(request, "control"));
     if (!read_number(page, request, "bus", 0, 255, 0, &bus))
         return;
+    window_folder_remove(window_of(page)->folder);
     window_watch_choose(&window_of(page)->watch, path, (int)bus);
     page_answer(page, request, json_object());
 }
@@ -209,21 +211,6 @@ static bool is_allowed(const char *method)
     return false;
 }
 
-/* The folder of files for downloads, made when it is first needed. Returns false if there is none. */
-static bool make_folder(struct window *window)
-{
-    const char *base = getenv("XDG_RUNTIME_DIR");
-    if (window->folder[0] != '\0')
-        return true;
-    if (base == NULL || base[0] != '/')
-        base = "/tmp";
-    if (snprintf(window->folder, sizeof window->folder, "%s/rkm04-window-XXXXXX", base) < (int)sizeof window->folder &&
-        mkdtemp(window->folder) != NULL)
-        return true;
-    window->folder[0] = '\0';
-    return false;
-}
-
 /* Files of the emulator for this window lie in its folder. Returns false if that is not possible: refused. */
 static bool place_file(struct page *page, const json_t *request, json_t *params)
 {
@@ -236,7 +223,7 @@ static bool place_file(struct page *page, const json_t *request, json_t *params)
         page_refuse(page, request, "file: expected a name of small letters, digits, - and .");
         return false;
     }
-    if (!make_folder(window_of(page))) {
+    if (!window_folder_make(window_of(page)->folder, window_of(page)->watch.path)) {
         page_refuse(page, request, "cannot make a folder for files");
         return false;
     }

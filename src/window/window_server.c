@@ -46,7 +46,7 @@ static bool is_own_host(const struct window *window, const char *host)
     return strcmp(host, window->host) == 0 || strcmp(host, local) == 0;
 }
 
-/* Does not tell by its time how much of the token is right. */
+/* Takes the same time however much of the token is right. */
 static bool is_token(const struct window *window, const char *text)
 {
     return strlen(text) == WINDOW_TOKEN_SIZE - 1 && lws_timingsafe_bcmp(text, window->token, WINDOW_TOKEN_SIZE - 1) == 0;

@@ -10,7 +10,7 @@
 
 #define ROUND_MS 50u      /* between two rounds while something moves */
 #define HEARTBEAT_MS 1000u
-#define MESSAGES_MAX 20u  /* of the bus, told in one round */
+#define MESSAGES_MAX 20u  /* of the bus, sent in one round */
 
 enum { ID_UNITS = 1, ID_READY, ID_SUBSCRIBE, ID_STATE = 100 };
 
@@ -107,7 +107,7 @@ static void take_units(struct window_watch *watch, const json_t *result)
     }
 }
 
-/* An event: a message on the bus is told, anything else is a reason to look. */
+/* An event: a message on the bus is sent, anything else is a reason to look. */
 static void take_event(struct window_watch *watch, const json_t *params)
 {
     const char *kind = json_string_value(json_object_get(params, "kind"));

@@ -28,7 +28,7 @@ struct window_watch {
     json_t *about;       /* result of `ready`; NULL: not known */
     unsigned asked;      /* states that have not been answered */
     bool moving, news;
-    unsigned messages;   /* of the bus, told since the last round */
+    unsigned messages;   /* of the bus, sent since the last round */
     uint64_t round;      /* loop time of the last one */
     uv_timer_t timer;
 };
@@ -42,7 +42,7 @@ void window_watch_choose(struct window_watch *watch, const char *path, int bus);
 /* Pages have come, gone, begun or ended to watch. */
 void window_watch_pages_changed(struct window_watch *watch);
 
-/* What a page is told: {"event": "emulator", "control", "bus", "units", "connected", "trouble"}. New reference. */
+/* What pages get: {"event": "emulator", "control", "bus", "units", "connected", "trouble"}. New reference. */
 json_t *window_watch_json(const struct window_watch *watch);
 
 #endif

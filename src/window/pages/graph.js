@@ -8,6 +8,7 @@ export class Graph {
     this.bands = bands;
     this.points = Array.from({ length: bands }, () => [[], [], [], []]);
     this.wanted = false;
+    new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
   // A value of the motor 0 to 3 at a time in ms.

@@ -1,4 +1,200 @@
 // SPDX-License-Identifier: MIT
-export function setVisible() {}
-export function showWords() {}
-export function begin() {}
+// The panel: the inside of virtual units, over the control socket of their emulator (docs/CONTROL.md).
+import { ask, call, on } from "./link.js";
+import { word } from "./words.js";
+import { UnitView } from "./unit.js";
+import { describeAnswer, describeRequest, fromHex } from "./decode.js";
+import { showFaultForm, showFaults } from "./faults.js";
+
+const $ = (id) => document.getElementById(id);
+const LINES_MAX = 500;
+const STEPS = ["1ms", "10ms", "100ms", "1s"];
+const views = new Map();
+let emulator = { control: "", units: [], connected: false };
+let found = [];
+let visible = false;
+let trace = null;
+let traces = 0;
+
+export function report(answer) {
+  $("panel-text").textContent = answer.error ?? "";
+  $("panel-text").classList.toggle("wrong", Boolean(answer.error));
+  return answer;
+}
+
+export const act = async (method, params) => report(await call(method, params));
+
+// ---- Which emulator ----
+
+function showEmulators() {
+  const paths = [...new Set([...found.map((one) => one.control), emulator.control].filter(Boolean))];
+  $("emulators").replaceChildren(...paths.map((path) => new Option(path, path, false, path === emulator.control)));
+  $("emulator-text").textContent = paths.length === 0 ? word("no-emulator")
+    : emulator.control && !emulator.connected && emulator.trouble ? `${word("ended")} ${emulator.trouble}` : "";
+}
+
+function showEmulator(now) {
+  const changed = now.control !== emulator.control || now.bus !== emulator.bus || now.units.join() !== emulator.units.join();
+  emulator = now;
+  showEmulators();
+  $("inside").hidden = !now.connected;
+  if (changed) {
+    views.clear();
+    $("units").replaceChildren();
+    for (const name of now.units) {
+      const view = new UnitView(name, act);
+      views.set(name, view);
+      $("units").append(view.element);
+    }
+  }
+  if (now.connected)
+    showFaults(act);
+}
+
+$("emulator").onsubmit = (event) => {
+  event.preventDefault();
+  if ($("emulators").value)
+    ask("attach", { control: $("emulators").value, bus: Number($("bus").value) });
+};
+
+export async function setVisible(now) {
+  visible = now;
+  await ask("watch", { on: now });
+  if (now && !emulator.control)
+    found = (await ask("ports")).emulators ?? found;
+  showEmulators();
+}
+
+// ---- Time ----
+
+function showTime(state) {
+  $("time").textContent = (state.t_us / 1e6).toFixed(6) + " s";
+  if (document.activeElement !== $("clock")) {
+    if (![...$("clock").options].some((option) => option.value === state.clock))
+      $("clock").append(new Option(state.clock));
+    $("clock").value = state.clock;
+  }
+  for (const button of $("steps").children)
+    button.disabled = state.clock !== "stepped";
+}
+
+$("clock").onchange = () => act("clock", { clock: $("clock").value });
+
+function stepButton(text, params) {
+  const button = document.createElement("button");
+  button.textContent = text;
+  button.disabled = $("clock").value !== "stepped";
+  button.onclick = () => act("advance", params);
+  return button;
+}
+
+// ---- Snapshots, traces ----
+
+const name = () => $("snapshot-name").value || "s1";
+const show = (text) => { $("panel-text").textContent = text; };
+
+$("snapshot").onclick = async () => {
+  if (!(await act("snapshot", { name: name() })).error)
+    show(`${word("snapshot-name")} ${name()}: ${word("done")}`);
+};
+$("restore").onclick = async () => {
+  if (!(await act("restore", { name: name() })).error)
+    show(`${word("restore")}: ${word("done")}`);
+};
+
+function offer(file) {
+  const link = document.createElement("a");
+  link.href = "download/" + file;
+  link.download = link.textContent = file;
+  $("downloads").append(link);
+}
+
+$("record").onclick = async () => {
+  if (trace) {
+    const { number, file } = trace;
+    trace = null;
+    if (!(await act("trace.stop", { trace: number })).error)
+      offer(file);
+  } else {
+    const file = `trace-${Date.now().toString(36)}-${++traces}.${$("record-kind").value}`;
+    const answer = await act("trace.start", { file });
+    if (!answer.error)
+      trace = { number: answer.trace, file };
+  }
+  showWords();
+};
+
+$("recording").onclick = async () => {
+  const file = `bus-${Date.now().toString(36)}-${++traces}.record`;
+  if (!(await act("snapshot", { file })).error)
+    offer(file);
+};
+
+// ---- Plant ----
+
+$("plant-open").onclick = () => $("plant-file").click();
+$("plant-none").onclick = () => act("plant.set", { plant: null });
+$("plant-file").onchange = async () => {
+  const file = $("plant-file").files[0];
+  if (file)
+    await act("plant.set", { plant: await file.text() });
+  $("plant-file").value = "";
+};
+
+// ---- Dialogue ----
+
+function describe(event) {
+  const bytes = fromHex(event.message);
+  if (event.kind !== "message")
+    return `[${event.unit ?? ""}] ${event.text ?? event.value}`;
+  const from = (event.from ?? []).join("+");
+  const words = bytes.length === 0 ? "" : event.answer ? describeAnswer(bytes) : describeRequest(bytes);
+  const wrong = event.dropped ?? event.refused;
+  return `${from} ${word(event.answer ? "answer" : "ask")} ${event.snode}→${event.dnode}: ${words}${wrong ? ` (${wrong})` : ""}`;
+}
+
+function addEvent({ bus }) {
+  const line = document.createElement("p");
+  line.textContent = `${(bus.t_us / 1e6).toFixed(6)} ${describe(bus)}`;
+  line.className = bus.dropped || bus.refused || bus.kind !== "message" ? "wrong" : "";
+  const log = $("dialogue"), atEnd = log.scrollTop + log.clientHeight > log.scrollHeight - 20;
+  log.append(line);
+  if (log.children.length > LINES_MAX)
+    log.firstChild.remove();
+  if (atEnd)
+    log.scrollTop = log.scrollHeight;
+  if (bus.kind === "injected")
+    showFaults(act);
+}
+
+// ---- All ----
+
+export function showWords() {
+  $("record").textContent = word(trace ? "record-stop" : "record");
+  $("steps").replaceChildren(...STEPS.map((step) => stepButton("+" + step, { ticks: step })),
+    stepButton(word("idle"), { until: { idle: true }, limit: "60s" }));
+  showFaultForm(act, () => emulator.units);
+  for (const view of views.values())
+    view.build();
+  showEmulators();
+}
+
+export async function begin(hello) {
+  trace = null;
+  showEmulator(hello.emulator);
+  if (visible || hello.emulator.control)
+    await ask("watch", { on: visible });
+  showWords();
+}
+
+$("clear-faults").onclick = async () => {
+  await act("fault.clear", {});
+  showFaults(act);
+};
+on("emulator", showEmulator);
+on("found", (emulators) => { found = emulators; showEmulators(); });
+on("state", ({ unit, state }) => {
+  views.get(unit)?.show(state);
+  showTime(state);
+});
+on("bus", addEvent);

@@ -102,6 +102,7 @@ function takePositions(bytes, time) {
 
 function takeProfile(bytes) {
   profile = readTable(bytes);
+  delete $("profile-text").dataset.word; // the language changes what has not been asked for yet
   $("profile-text").textContent = profile.length > 0 ? text(bytes.slice(2)).trim() : word("profile-empty");
   drawProfile($("profile"), profile, null);
   if (profile.length > 0)

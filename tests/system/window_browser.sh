@@ -1,0 +1,39 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# The window's page in headless Chromium: each view and button. npm installs what drives it into the build folder, once.
+# PICTURES names a folder for screenshots.
+
+. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/../../tools/setup.sh"
+[[ -n ${RKM04_WINDOW-} ]] || skip_all "built without the window"
+CHROMIUM=$(command -v chromium) || skip_all "there is no chromium"
+export CHROMIUM
+drive=$(cd "$(dirname "$0")" && pwd)/window/drive.mjs
+modules=${BUILD-${TMPDIR-/tmp}}/node-window
+export NODE_PATH=$modules/node_modules
+setup_window "$modules" || skip_all "there is no node with npm, or npm cannot install playwright-core (see $modules/npm.log)"
+
+# open_window OPTION...: starts it; $address is what it prints.
+open_window() {
+    "$RKMCTL" window "$@" >"$folder/window.out" 2>"$folder/window.err" &
+    soon "the address of the window" grep -q '^WINDOW http://' "$folder/window.out"
+    address=$(sed -n 's/^WINDOW //p' "$folder/window.out")
+}
+
+# drive CASE: with an emulator and the window.
+drive() {
+    serve bus
+    open_window -c "$folder/bus.control"
+    HOME=$folder exits 0 timeout 200 node "$drive" "$1" "$address" "$folder" ${PICTURES-}
+    [[ -z $said ]] || printf '  %s\n' "$said"
+}
+
+test_the_service_view_sends_each_message() { drive service; }
+test_the_editor_marks_explains_formats_opens_and_saves() { drive editor; }
+test_each_control_of_the_panel_acts() { drive panel; }
+test_two_pages_show_the_same() { drive pages; }
+test_everything_works_with_the_keyboard_alone() { drive keyboard; }
+test_both_languages_and_themes_are_accessible_at_three_sizes() { drive looks; }
+test_the_page_is_small() { drive size; }
+
+run_cases "$@"
