@@ -9,7 +9,7 @@
 uint64_t motion_free_from(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
     uint64_t free_from = motor->last_pulse + RKM04_PULSE_TICKS;
-    return motor->last_pulse != 0 && free_from > unit->now ? free_from : unit->now;
+    return free_from > unit->now ? free_from : unit->now; /* without a pulse: long before the first slot */
 }
 
 /* ---- End ------------------------------------------------------------------------------------------------------------ */

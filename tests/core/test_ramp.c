@@ -227,7 +227,7 @@ START_TEST(R1_blocks_at_constant_speed_are_full)
 {
     motion_randomize(9 + (unsigned)_i);
     for (unsigned i = 0; i < motion_count(3000); i++) {
-        const uint64_t rate = rates[_i], speed = motion_pick(1, 16000);
+        const uint64_t rate = rates[_i], speed = i == 0 ? 15874 : motion_pick(1, 16000); /* 62.996 ticks */
         struct rkm04_profile profile = {.count = 1, .endless = true, .point[0].speed2 = 2 * speed * speed << RAMP_SPEED2_BITS};
         struct rkm04_ramp ramp = {.rate = 0};
         ramp_begin(&ramp, &profile, 0, rates[_i]);
