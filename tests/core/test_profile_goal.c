@@ -160,6 +160,16 @@ START_TEST(a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on)
 }
 END_TEST
 
+/* Half a step behind the last pulse: from there a stop takes 120.5 steps. */
+START_TEST(a_place_ahead_must_leave_room_for_the_part_of_a_step_that_is_done)
+{
+    cruise(true);
+    ck_assert_int_eq(go(920500, PROFILE_TO_PLACE, 120 + _i, 1000), _i == 0 ? PROFILE_TURNS : PROFILE_MOVES);
+    run(RKM04_NEVER - 1);
+    ck_assert_uint_eq(pulses, 121);
+}
+END_TEST
+
 /* Stop behind 120 steps, then from rest to where it was to go. */
 static void expect_turn(uint64_t at, int64_t left, bool forward)
 {
@@ -257,6 +267,7 @@ int main(void)
     tcase_add_loop_test(goal, a_stop_on_the_way_takes_the_deceleration, 0, 2);
     tcase_add_loop_test(goal, a_whole_way_of_a_stop_stays_whole_behind_a_goal_on_the_way, 0, 40);
     tcase_add_loop_test(goal, a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on, 0, 6);
+    tcase_add_loop_test(goal, a_place_ahead_must_leave_room_for_the_part_of_a_step_that_is_done, 0, 2);
     tcase_add_loop_test(goal, a_place_ahead_that_is_too_near_is_reached_by_a_turn, 0, 2);
     tcase_add_loop_test(goal, a_place_behind_or_passed_is_reached_by_a_turn, 0, 2);
     tcase_add_loop_test(goal, a_speed_in_the_other_direction_is_reached_by_a_turn, 0, 2);
