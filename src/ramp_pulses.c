@@ -221,13 +221,12 @@ static void set_cubic(struct rkm04_ramp *ramp, int64_t middle)
     const struct motion_state there = ramp_moved(ramp, middle);
     const uint64_t speed = (uint64_t)there.w.whole, inverse = ((UINT64_C(1) << 63) + speed / 2) / speed;
     const uint64_t c = quotient((uint64_t)ramp->step, inverse); /* ticks from pulse to pulse there */
-    const int64_t z = (int64_t)(c - quotient((uint64_t)there.y.whole, inverse));
-    const uint64_t size = size_of(z);
-    const int64_t bend_z = curve_term(steep, size, inverse), bend_c = curve_term(steep, c, inverse);
-    const int64_t x = (z < 0) == down ? bend_z : -bend_z, u = down ? -bend_c : bend_c;
+    const uint64_t back = quotient((uint64_t)there.y.whole, inverse) - c; /* -z of the first: some intervals before the middle */
+    const int64_t bend_z = curve_term(steep, back, inverse), bend_c = curve_term(steep, c, inverse);
+    const int64_t x = down ? bend_z : -bend_z, u = down ? -bend_c : bend_c;
     const int64_t x30 = scaled_down(x, 10), u30 = scaled_down(u, 10), x2 = x30 * x30, xu = x30 * u30, u2 = u30 * u30;
-    const int64_t bent = scaled_product(size, scaled_down(x2, 19) - x);
-    ramp->due = ((uint64_t)middle << 32) + (uint64_t)(z < 0 ? z - bent : z + bent) + RAMP_NEAR;
+    const int64_t bent = scaled_product(back, scaled_down(x2, 19) - x);
+    ramp->due = ((uint64_t)middle << 32) - back - (uint64_t)bent + RAMP_NEAR;
     ramp->due1 = c + (uint64_t)scaled_product(c, scaled_down(3 * (x2 + xu) + u2, 19) - 2 * x - u);
     ramp->due2 = (uint64_t)scaled_product(c, scaled_down(12 * (xu + u2), 20) - 2 * u);
     ramp->due3 = (uint64_t)scaled_product(c, scaled_down(12 * u2, 20));

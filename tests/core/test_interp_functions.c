@@ -397,6 +397,10 @@ START_TEST(E1_a_table_with_eleven_segments_cannot_be_computed)
 {
     expect_impossible("F10 Y Y Y Y Y Y Y Y Y Y Y R T01", 13 * MS);
     expect_impossible("F10 Y Y Y Y Y Y Y Y Y Y Y Y Y Y Y Y R T01", 18 * MS);
+    char text[600] = "F10 ";
+    for (unsigned i = 0; i < 261; i++)
+        strcat(text, "Y ");
+    expect_impossible(strcat(text, "R T01"), 263 * MS);
 }
 END_TEST
 
