@@ -45,6 +45,7 @@ struct bus_options {
     unsigned output_flags;      /* of output_file.h: --force */
     const char *control;        /* socket; NULL: the default */
     bool no_control;
+    const char *window;         /* ADDRESS:PORT of --window; NULL: none */
     bool verbose;
     bool no_sandbox;            /* --no-sandbox */
     const char *folder[BUS_FOLDERS_MAX]; /* --allow-folder; NULL: no more */

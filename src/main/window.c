@@ -17,7 +17,7 @@ static const struct argp_option option_table[] = {
     {"control", 'c', "PATH", 0, "Show the units of the emulator with this control socket", 0},
     {"http", KEY_HTTP, "ADDRESS:PORT", 0, "Where to serve the page (default 127.0.0.1:0; port 0: any that is free)", 0},
     {"open", KEY_OPEN, NULL, 0, "Open the page in the browser", 0},
-    {"bound", KEY_BOUND, NULL, OPTION_HIDDEN, "End with the process that started this one", 0},
+    {"bound", KEY_BOUND, NULL, OPTION_HIDDEN, "Begin when a byte comes on stdin; end when stdin ends", 0},
     {0},
 };
 

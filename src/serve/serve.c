@@ -22,6 +22,7 @@
 #include "serve_options.h"
 #include "serve_report.h"
 #include "serve_sandbox.h"
+#include "serve_window.h"
 #include "text/text.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
@@ -46,6 +47,7 @@ struct serve {
     struct coverage coverage;
     struct coverage_files coverage_files;
     struct control *control; /* NULL: none */
+    int window;              /* descriptor of serve_window.h; -1: none */
     enum exit_status status;
 
     uv_loop_t loop;
@@ -156,7 +158,7 @@ static rlim_t count_files(const struct bus_options *options)
     for (unsigned i = 0; i < BUS_FILES_MAX; i++)
         line += (rlim_t)(options->trace[i] != NULL) + (options->wire[i] != NULL);
     return FILES_LOOP + options->lines * line + (options->pty ? FILES_WATCH : 0) + (options->no_control ? 0 : FILES_CONTROL) +
-           (options->coverage ? FILES_COVERAGE : 0);
+           (options->coverage ? FILES_COVERAGE : 0) + (options->window != NULL);
 }
 
 /* The lowest `ulimit -n' with so many free numbers: some are in use already by the process that started us. */
@@ -230,6 +232,16 @@ static bool run_buses(struct serve *serve)
         if (!bus_start(serve->bus[i]))
             return false;
     return true;
+}
+
+/* Before rights are given up: the window needs other ones. */
+static bool start_window(struct serve *serve)
+{
+    if (!serve->options.window)
+        return true;
+    if (serve->control)
+        serve->window = serve_window_start(control_path(serve->control), serve->options.window);
+    return serve->window >= 0;
 }
 
 /* The default path of the control socket: beside the link of the first bus; without one a name made of where the bus is, in the
@@ -323,13 +335,15 @@ static bool start_serve(struct serve *serve)
         options->device.kind->coverage->begin(&serve->coverage, &options->device.config);
     serve->idle.data = serve;
     if (!check_uv("make a timer", uv_timer_init(&serve->loop, &serve->idle)) || !start_watch(serve) || !start_buses(serve) ||
-        !reserve_files(serve) || !start_control(serve) || !run_buses(serve))
+        !reserve_files(serve) || !start_control(serve) || !start_window(serve) || !run_buses(serve))
         return false;
     serve_sandbox_files(options, serve->bus, control_path(serve->control));
     log_start_thread();
     log_flush(LOG_WAIT_MS); /* before READY, for readers of both */
     if (!serve_report_ready(options, serve->bus, control_path(serve->control)))
         return false;
+    if (serve->window >= 0)
+        serve_window_show(serve->window);
     serve_sandbox_calls(options);
     on_presence(serve);
     return true;
@@ -362,6 +376,8 @@ static void report_coverage(struct serve *serve)
 static void end_serve(struct serve *serve)
 {
     control_close(serve->control);
+    if (serve->window >= 0)
+        close(serve->window);
     for (unsigned i = 0; i < serve->options.lines; i++)
         if (serve->bus[i] && !bus_end(serve->bus[i]))
             serve->status = STATUS_FAILURE;
@@ -379,6 +395,7 @@ static void end_serve(struct serve *serve)
 static enum exit_status run_serve(struct serve *serve)
 {
     serve->status = STATUS_FAILURE;
+    serve->window = -1;
     if (!allow_files(&serve->options) || !read_plant(&serve->options) || !find_address(&serve->options.tcp, serve->tcp) ||
         !find_address(&serve->options.rfc2217, serve->rfc2217) || !check_uv("make an event loop", uv_loop_init(&serve->loop)))
         return STATUS_FAILURE;

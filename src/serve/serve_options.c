@@ -47,7 +47,7 @@ enum key {
     KEY_CONTROL,
     KEY_ALLOW_FOLDER,
     KEY_NO_SANDBOX,
-    KEY_NO_CONTROL
+    KEY_NO_CONTROL, KEY_WINDOW
 };
 
 static const struct argp_option table[] = {
@@ -90,6 +90,8 @@ static const struct argp_option table[] = {
      "Unix socket to read and change the state of all units (JSON-RPC; rkmctl --control); default: the link's name and "
      ".control; without a link, a name from the device or address, in the folder of default links", 0},
     {"no-control", KEY_NO_CONTROL, NULL, 0, "No control socket", 0},
+    {"window", KEY_WINDOW, "ADDRESS:PORT", OPTION_ARG_OPTIONAL,
+     "Show the units in a browser, too (rkmctl window): the address is printed after READY; default 127.0.0.1:0, any port", 0},
     {"plant", KEY_PLANT, "FILE", 0, "Attach simulated mechanics: true positions, end stops, switches that drive inputs", 0},
     {"trace", KEY_TRACE, "FILE", 0,
      "Record every pulse, input, output and other event: " TRACE_HELP "; may be "
@@ -294,6 +296,8 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
         options->turnaround = options->baud != 0 ? SEGMENT_TURNAROUND : 0;
     if (options->control && options->no_control)
         argp_error(state, "expected either --control or --no-control");
+    if (options->window && options->no_control)
+        argp_error(state, "--window needs the control socket: expected it without --no-control");
     check_patterns(options, state);
     options->pty = !options->port && (!net || options->link);
 }
@@ -393,6 +397,9 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_NO_CONTROL:
         options->no_control = true;
+        return 0;
+    case KEY_WINDOW:
+        options->window = text ? text : "127.0.0.1:0";
         return 0;
     default:
         return read_line_option(key, text, state);

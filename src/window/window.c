@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include "window_folder.h"
@@ -23,6 +22,28 @@ static void on_signal(uv_signal_t *handle, int number)
 {
     (void)number;
     uv_stop(handle->loop);
+}
+
+/* Who has started this process lets it begin, or has ended. */
+static bool is_wanted(void)
+{
+    char byte;
+    return read(STDIN_FILENO, &byte, 1) == 1;
+}
+
+static void on_input(uv_poll_t *handle, int status, int events)
+{
+    char bytes[16];
+    (void)events;
+    if (status < 0 || read(STDIN_FILENO, bytes, sizeof bytes) <= 0)
+        uv_stop(handle->loop);
+}
+
+/* The end of stdin ends the window. */
+static void watch_input(struct window *window)
+{
+    if (uv_poll_init(&window->loop, &window->input, STDIN_FILENO) == 0)
+        uv_poll_start(&window->input, UV_READABLE, on_input);
 }
 
 static void begin_signals(struct window *window)
@@ -87,13 +108,15 @@ enum exit_status window_run(const struct window_options *options)
     signal(SIGPIPE, SIG_IGN);
     window.pages = (struct pages){.loop = &window.loop, .request = window_request, .closed = window_page_closed,
                                   .context = &window};
-    if (options->bound)
-        prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (options->bound && !is_wanted())
+        return STATUS_SUCCESS;
     if (uv_loop_init(&window.loop) != 0 || !window_port_begin(&window.port, &window.pages)) {
         warnx("cannot make an event loop");
         return STATUS_FAILURE;
     }
     begin_signals(&window);
+    if (options->bound)
+        watch_input(&window);
     window_watch_begin(&window.watch, &window.pages);
     bool listens = window_server_begin(&window, options->http);
     if (listens) {

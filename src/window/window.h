@@ -24,7 +24,7 @@ struct window_options {
     const char *port;    /* of units, opened at the start; NULL: none */
     const char *control; /* of an emulator; NULL: none */
     bool open;           /* show the page in the user's browser */
-    bool bound;          /* end with the process that started this one */
+    bool bound;          /* begin when a byte comes on stdin, end when stdin ends: with the process that started this one */
 };
 
 /* Serve the window until SIGTERM, SIGINT or SIGHUP. A line "WINDOW http://…" on stdout says where. Returns the exit status. */

@@ -26,6 +26,7 @@ struct window {
     struct window_watch watch;
     char folder[PATH_MAX]; /* of files for downloads; empty: not made yet */
     uv_signal_t signals[3];
+    uv_poll_t input;
 };
 
 #endif

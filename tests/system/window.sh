@@ -53,6 +53,22 @@ test_sigterm_ends_it_within_a_second() {
     same "" "$(<"$folder/window.err")" "stderr"
 }
 
+test_serve_shows_its_units_and_ends_the_window() {
+    "$RKM04" serve --link "$folder/bus" --window >"$folder/serve.out" 2>"$folder/serve.err" &
+    local emulator=$!
+    soon "the address of the window" grep -q '^WINDOW http://' "$folder/serve.out"
+    same "READY WINDOW" "$(sed 's/ .*//' "$folder/serve.out" | xargs)" "lines on stdout"
+    address=$(sed -n 's/^WINDOW //p' "$folder/serve.out")
+    case_of doors "$address"
+    case_of emulator "$address"
+    kill -KILL $emulator
+    wait $emulator
+    soon "the window has ended" refuses "$address"
+    exits 2 "$RKM04" serve --link "$folder/other" --window --no-control
+}
+
+refuses() { ! python3 "$client" tools "$1" 2>/dev/null; }
+
 test_wrong_usage_is_told() {
     exits 1 "$RKMCTL" window --http nonsense
     holds "$complained" "expected ADDRESS:PORT" "the message"

@@ -34,6 +34,10 @@ test_each_control_of_the_panel_acts() { drive panel; }
 test_two_pages_show_the_same() { drive pages; }
 test_everything_works_with_the_keyboard_alone() { drive keyboard; }
 test_both_languages_and_themes_are_accessible_at_three_sizes() { drive looks; }
+test_an_emulator_that_ends_and_comes_again_is_shown() {
+    export RKM04 RKMCTL
+    drive loss
+}
 test_the_page_is_small() { drive size; }
 
 run_cases "$@"

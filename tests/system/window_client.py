@@ -228,5 +228,20 @@ def tools(window):
     same(None, page.ask(do="format", text="x")["text"], "format of what is wrong")
 
 
-cases = {"doors": doors, "limits": limits, "nonsense": nonsense, "port": port, "tools": tools}
+def emulator(window):
+    """The states of units come while the page watches; a slow page gets fewer, and the window goes on."""
+    page = window.socket()
+    page.ask(do="watch", on=True)
+    while page.receive().get("event") != "state":
+        pass
+    page.send('{"id": 1, "do": "call", "method": "di.set", "params": {"di": {"3": 1}}}')
+    while True:
+        event = page.receive()
+        if event.get("event") == "state" and event["state"]["di"] == 4:
+            break
+    answer = page.ask(do="call", method="shutdown")
+    same(True, "unknown method" in answer["error"], answer)
+
+
+cases = {"emulator": emulator, "doors": doors, "limits": limits, "nonsense": nonsense, "port": port, "tools": tools}
 cases[sys.argv[1]](Window(sys.argv[2]), *sys.argv[3:])

@@ -3,6 +3,7 @@
 // and axe-core. Waits are for conditions, with a limit.
 import { createRequire } from "node:module";
 import { readFileSync, writeFileSync } from "node:fs";
+import { execFileSync, spawn } from "node:child_process";
 import assert from "node:assert/strict";
 
 const require = createRequire(process.env.NODE_PATH + "/");
@@ -267,6 +268,29 @@ const cases = {
         assert.ok(wide <= 0, `${view} on ${size} is ${wide} pixels too wide`);
         await page.screenshot({ path: `${pictures || folder}/window-${view}-${size}.png`, fullPage: size === "phone" });
       }
+    }
+  },
+
+  // The emulator ends, and another one comes in its place; the same with the port.
+  async loss(page) {
+    await connect(page);
+    await openPanel(page);
+    execFileSync(process.env.RKMCTL, ["-c", port + ".control", "shutdown"]);
+    await says(page, "emulator-text", "ended");
+    await shows(page, "#inside", "element.hidden");
+    const again = spawn(process.env.RKM04, ["serve", "--link", port], { stdio: "ignore" });
+    try {
+      await shows(page, "#inside", "!element.hidden");
+      await shows(page, ".unit td", "element.textContent === 'idle'");
+      await page.click("#tab-service");
+      await page.selectOption("#message", "1");
+      await page.click("#send");
+      await says(page, "answers", "closed at its other end");
+      await says(page, "status", "No port is open.");
+      await connect(page);
+      await send(page, "1", "01.02,06.03.2009");
+    } finally {
+      again.kill();
     }
   },
 
