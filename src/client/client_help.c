@@ -14,7 +14,7 @@ static const struct help {
 } commands[] = {
     {"version", "version", "The unit's version text.", UNIT_OPTIONS, "  rkmctl -p /dev/ttyUSB0 version\n"},
     {"set", "set TEXT",
-     "Send a program text in one message; it begins to run. The unit's flag and the character it refuses are shown.",
+     "Send a program text in one message; the unit begins to execute it. If the unit refuses it, its flag and the place are shown.",
      "  --allow-overflow\n" MOTOR_OPTIONS, "  rkmctl -m 2 set '\\ S100 V1000 A2000 F5000 R'\n"},
     {"send", "send FILE",
      "Check a program file and send it, in several messages if it is long; - is standard input.",
@@ -39,14 +39,14 @@ static const struct help {
     {"advance", "advance TIME|CONDITION", "Advance a stepped clock by a time, or until a condition holds.",
      "  --limit=TIME, -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl advance 250ms\n  rkmctl advance 'm1.idle' --limit 1min\n"},
     {"events", "events [KIND...] [motor=N] [count=N]",
-     "What happens, a line each. Exit status 3 if there are fewer than count within --limit.",
+     "Print events, a line each. Exit status 3 if there are fewer than count within --limit.",
      "  --limit=TIME, -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl events motion command motor=1 count=4\n"},
     {"snapshot", "snapshot NAME|file=PATH", "Save the state of everything, under a name or in a file.",
      "  --force\n" EMULATOR_OPTIONS, "  rkmctl snapshot homed\n"},
     {"restore", "restore NAME|file=PATH", "Return to a snapshot.", EMULATOR_OPTIONS, "  rkmctl restore homed\n"},
     {"reset", "reset", "Power off and on; flash is kept.", "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl reset\n"},
     {"power", "power on|off", "The power switch.", "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl -u 3 power off\n"},
-    {"switch", "switch NODE [reset]", "The address switch S1; it counts from the next power-up, with reset at once.",
+    {"switch", "switch NODE [reset]", "The address switch S1, read at power-up; with reset the unit is powered off and on at once.",
      "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl switch 5 reset\n"},
     {"clock", "clock [CLOCK]", "Show or set the clock: real, xN, max, stepped.", EMULATOR_OPTIONS, "  rkmctl clock x100\n"},
     {"fault", "fault [inject KIND NAME=VALUE...|clear [ID]]", "List injected faults; inject one; clear one or all.",
@@ -65,7 +65,7 @@ static const struct help {
      "Type commands and program text; Tab completes, the history is kept. A line that begins with a small letter is a\n"
      "command, any other is program text for the present motor; `node N' and `motor M' choose. With -f FILE the commands of\n"
      "a file.",
-     "  -f FILE and those of every command", "  rkmctl -p /dev/ttyUSB0 shell\n  rkmctl shell -f check.txt\n"},
+     "  -f FILE and those of all commands", "  rkmctl -p /dev/ttyUSB0 shell\n  rkmctl shell -f check.txt\n"},
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])

@@ -39,19 +39,19 @@ enum {
 static const struct argp_option option_table[] = {
     {NULL, 0, NULL, 0, "A unit on the bus:", 1},
     {"port", 'p', "PORT", 0,
-     "Serial device, pseudo terminal, or tcp:HOST:PORT (default: RKM04_PORT of the environment, else the bus of the one emulator "
-     "of yours that is running)", 0},
+     "Serial device, pseudo terminal, or tcp:HOST:PORT (default: RKM04_PORT of the environment, else the bus of your emulator, if "
+     "only one is running)", 0},
     {"node", 'n', "NODE", 0,
      "Address of the unit, 1 to 16; 0: all units, which do not answer (default: RKM04_NODE of the environment, else 1)", 0},
     {"motor", 'm', "MOTOR", 0, "Motor 1 to 4; 0: all four (default 1)", 0},
-    {"framing", KEY_FRAMING, "NAME", 0, "hdlc or plain, as the unit has it (default hdlc)", 0},
-    {"message-max", KEY_MESSAGE_MAX, "BYTES", 0, "Longest message the unit takes, 64 to 9216 (default 9216)", 0},
+    {"framing", KEY_FRAMING, "NAME", 0, "Framing of the unit: hdlc or plain (default hdlc)", 0},
+    {"message-max", KEY_MESSAGE_MAX, "BYTES", 0, "Longest message that the unit accepts, 64 to 9216 (default 9216)", 0},
     {"allow-overflow", KEY_ALLOW_OVERFLOW, NULL, 0,
      "set, send: a program that overflows the unit's memory is a warning, not a failure", 0},
     {NULL, 0, NULL, 0, "The emulator:", 2},
     {"control", 'c', "PATH", 0,
      "Its control socket (default: RKM04_CONTROL of the environment, else that of an `rkm04 serve' without --link, else that of "
-     "the one emulator of yours that is running)", 0},
+     "your emulator, if only one is running)", 0},
     {"unit", 'u', "UNIT", 0, "The unit, as in 3; 3-2: the second unit with address 3; not needed if there is only one", 0},
     {"line", KEY_LINE, "N", 0, "The bus of an emulator with several, 0 to 255 (default 0)", 0},
     {"limit", KEY_LIMIT, "TIME", 0,
@@ -61,9 +61,9 @@ static const struct argp_option option_table[] = {
     {"once", KEY_ONCE, NULL, 0, "watch: print one picture as text", 0},
     {NULL, 0, NULL, 0, "Both:", 3},
     {"timeout", KEY_TIMEOUT, "MS", 0,
-     "How long to wait for an answer, 1 to 3600000 ms (default 1000; emulator: 10000, and for wait, advance and call without "
-     "end)", 0},
-    {"file", 'f', "FILE", 0, "shell: do the commands of FILE, - is standard input, and end at the first that fails", 0},
+     "How long to wait for an answer, 1 to 3600000 ms (default 1000; emulator: 10000; no limit for wait, advance and "
+     "call)", 0},
+    {"file", 'f', "FILE", 0, "shell: execute the commands of FILE (- is standard input) and end at the first that fails", 0},
     {"json", 'j', NULL, 0, "Print the answer as JSON", 0},
     {0},
 };
@@ -80,7 +80,7 @@ static const char doc[] =
     "\v"
     "Commands to a unit, with --port:\n"
     "  version      the unit's version text\n"
-    "  set TEXT     send a program text in one message; it begins to run\n"
+    "  set TEXT     send a program text in one message; the unit begins to execute it\n"
     "  send FILE    check and send a program file, - is standard input\n"
     "  store        write the program in memory to flash\n"
     "  position     position counter; with -m 0 of all motors\n"
@@ -93,9 +93,9 @@ static const char doc[] =
     "  state        everything about the unit, or all units\n"
     "  watch        its front panel, live\n"
     "  di           the inputs; with 3=1 5=0 set them\n"
-    "  wait         until a condition holds; exit status 3 if not within --limit\n"
-    "  advance      a stepped clock by a time, or until a condition holds\n"
-    "  events       what happens, a line each: kinds, motor=N, count=N\n"
+    "  wait         wait until a condition holds; exit status 3 if not within --limit\n"
+    "  advance      advance a stepped clock by a time, or until a condition holds\n"
+    "  events       print events, a line each; KIND..., motor=N, count=N\n"
     "  snapshot     save the state of everything, under a NAME or in a file\n"
     "  restore      return to a snapshot\n"
     "  reset        power off and on; flash is kept\n"
@@ -113,7 +113,7 @@ static const char doc[] =
     "  window       the service program in a browser: `rkmctl window --help'\n"
     "\n"
     "Conditions: m1.position>=5000, m1.true<0, m1.steps>9, m1.state=idle, m1.idle, m1.led=blink, m1.fault!=none, idle, "
-    "powered=1, do3=1, di08=0, var80=1, message=4, master.message, unit.message, dropped, t>=2.5s; u3. in front: of unit 3. "
+    "powered=1, do3=1, di08=0, var80=1, message=4, master.message, unit.message, dropped, t>=2.5s; prefix u3.: unit 3. "
     "Several conditions must all hold; with `or' between them, one is enough.\n"
     "\n"
     "Examples:\n"
@@ -126,7 +126,7 @@ static const char doc[] =
     "  rkmctl di 3=1 && rkmctl wait 'm1.position>=5000' --limit 10s\n"
     "  rkmctl -c bus.control -u 3 fault inject drop direction=to_master count=1\n"
     "\n"
-    "`rkmctl COMMAND --help' tells more about a command.\n"
+    "`rkmctl COMMAND --help' describes a command.\n"
     "\n"
     "Exit status: 0 success; 1 failure (refused, memory overflowed, flash not written, port or emulator cannot be reached); 2 "
     "wrong usage; 3 no answer, the condition did not hold, or too few events, in time.";
@@ -216,7 +216,7 @@ static enum exit_status do_request(struct options *options)
     const struct client_job *job = &options->job;
     if (job->path != NULL || job->unit != NULL || job->line >= 0 || job->limit != NULL || job->once || job->advance ||
         job->force)
-        return client_usage("%s goes to a unit on the bus: expected --port, --node and --motor", options->command);
+        return client_usage("%s is sent to a unit on the bus: expected --port, --node and --motor", options->command);
     const char *node = getenv("RKM04_NODE");
     if (options->node == NULL && node != NULL && node[0] != '\0')
         request->node = read_number("RKM04_NODE", node, 0, RKM04_NODE_MAX);
@@ -231,7 +231,7 @@ static enum exit_status do_job(struct options *options)
 {
     struct client_job *job = &options->job;
     if (options->request.port != NULL)
-        return client_usage("%s goes to the emulator: expected --control instead of --port", options->command);
+        return client_usage("%s is sent to the emulator: expected --control instead of --port", options->command);
     if (options->request.allow_overflow)
         return client_usage("--allow-overflow is for set and send");
     if (job->unit == NULL)

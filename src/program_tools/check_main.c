@@ -26,20 +26,20 @@ static const struct argp_option option_table[] = {
     {"werror", KEY_WERROR, NULL, 0, "Exit status 1 also for warnings", 0},
     {"format", KEY_FORMAT, "FORMAT", 0, "Print as " CHECK_FORMAT_NAMES, 0},
     {"json", 'j', NULL, 0, "The same as --format json", 0},
-    {"plant", KEY_PLANT, "FILE", 0, "What the motors move (docs/PLANT.md): waits for its inputs are looked at", 0},
-    {"list", KEY_LIST, NULL, 0, "List the warnings and what they say", 0},
+    {"plant", KEY_PLANT, "FILE", 0, "Simulated mechanics (docs/PLANT.md): also check waits for inputs that they drive", 0},
+    {"list", KEY_LIST, NULL, 0, "List the warnings with a description of each", 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {0},
 };
 
 static const char doc[] =
-    "Report what is wrong with programs of the RKM04: everything that a unit would refuse, and what it takes although it is "
-    "hardly meant. FILE is a program text (.rks), - standard input. Files given as M=FILE are the programs of one unit, M "
-    "the motor, 1 to 4 or 0 for all: then it is also reported when motors wait for each other. Other files are checked each "
+    "Check programs of the RKM04: report everything that a unit would refuse, and warn about commands that it accepts but that "
+    "are probably wrong. FILE is a program text (.rks), - standard input. Files given as M=FILE are the programs of one unit, M "
+    "is the motor, 1 to 4 or 0 for all; a warning is then also given if motors wait for each other. Each other file is checked "
     "by itself."
     "\v"
-    "A comment switches warnings off for its line, or for the next line if it stands alone: {nolint NAME NAME}; for the whole "
-    "text: {nolint-file NAME}. docs/CHECK.md describes each warning.\n"
+    "The comment {nolint NAME NAME} switches warnings off for its line, or for the next line if it is alone on its line; "
+    "{nolint-file NAME} switches one off for the whole text. docs/CHECK.md describes each warning.\n"
     "\n"
     "Examples:\n"
     "  rkm04 check drill.rks\n"
@@ -61,7 +61,7 @@ static void take_names(struct argp_state *state, struct options *options, const 
         else {
             char name[64];
             snprintf(name, sizeof name, "%.*s", (int)length, text);
-            argp_error(state, "--no-warn: no warning is called `%s' (--list shows them)%s", name,
+            argp_error(state, "--no-warn: unknown warning `%s' (--list shows all)%s", name,
                        nearest_hint(name, check_warning_names()));
         }
         text += length + (text[length] == ',');

@@ -21,17 +21,17 @@ struct options {
 };
 
 static const struct argp_option option_table[] = {
-    {"plant", KEY_PLANT, "FILE", 0, "What the motors move: limit switches act, collisions are reported (docs/PLANT.md)", 0},
-    {"pass-inputs", KEY_PASS_INPUTS, NULL, 0, "Inputs for which everything waits come at once", 0},
+    {"plant", KEY_PLANT, "FILE", 0, "Simulated mechanics (docs/PLANT.md): limit switches act, collisions are reported", 0},
+    {"pass-inputs", KEY_PASS_INPUTS, NULL, 0, "When all motors wait for inputs, set these inputs at once", 0},
     {"json", 'j', NULL, 0, "Print as JSON", 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {0},
 };
 
 static const char doc[] =
-    "Run programs of one unit in virtual time and tell of each motion its steps, its duration, its peak speed and its break "
-    "points as Get Tabul Run shows them, and of the whole how long it takes; of an endless loop a round. M is the motor, 1 to 4 "
-    "or 0 for all; without it 1. FILE is a program text (.rks), - standard input."
+    "Run programs of one unit in virtual time and print the steps, duration, peak speed and break points (as in Get Tabul Run) "
+    "of each motion, and the total time; for an endless loop, the time of one round. M is the motor, 1 to 4 or 0 for all; "
+    "without it 1. FILE is a program text (.rks), - standard input."
     "\v"
     "Examples:\n"
     "  rkm04 estimate drill.rks\n"

@@ -26,9 +26,9 @@ static const struct argp_option option_table[] = {
 };
 
 static const char doc[] =
-    "Tell what programs of the RKM04 do, command by command, with the parameters in force at each motion as far as they are the "
-    "same whatever way led there. FILE is a program text (.rks), - standard input; M=FILE says for which motor, 1 to 4 or 0 for "
-    "all. Files without a motor are for motor 1."
+    "Describe in words what programs of the RKM04 do, command by command. For each motion, the parameters are shown that are "
+    "the same on all paths to it. FILE is a program text (.rks), - standard input; M is its motor, 1 to 4 or 0 for all; without "
+    "it 1."
     "\v"
     "Examples:\n"
     "  rkm04 explain drill.rks\n"

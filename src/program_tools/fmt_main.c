@@ -30,9 +30,9 @@ static const struct argp_option option_table[] = {
 };
 
 static const char doc[] =
-    "Lay out programs of the RKM04: labels at the margin, loops and subroutines indented, a line ends behind a motion, a wait, a "
-    "jump. Numbers are written as the unit writes them, comments stay as they are. Files are changed in place; - reads standard "
-    "input and writes standard output. The commands stay the same."
+    "Format programs of the RKM04: labels start at the margin, loops and subroutines are indented, and a line ends after a "
+    "motion, a wait or a jump. Numbers are written as the unit writes them; comments and commands do not change. Files are "
+    "changed in place; - reads standard input and writes standard output."
     "\v"
     "Examples:\n"
     "  rkm04 fmt drill.rks\n"

@@ -32,7 +32,7 @@ enum option_key { KEY_FORCE = 256 };
 static const struct argp_option option_table[] = {
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"stimulus", 's', "FILE", 0, "Inputs and messages that come while the programs run", 0},
-    {"trace", 't', "FILE", 0, "Record every event (" TRACE_ENDINGS "; any other name CSV); - is standard output, CSV", 0},
+    {"trace", 't', "FILE", 0, "Record every event (" TRACE_ENDINGS "; any other name: CSV); - is CSV on standard output", 0},
     {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
     {"force", KEY_FORCE, NULL, 0,
      "Also overwrite a file of another kind with the trace; never one that is also read or written otherwise", 0},
@@ -42,7 +42,7 @@ static const struct argp_option option_table[] = {
 static const char doc[] =
     "Run programs of an RKM04, or of another device, in virtual time, as fast as the machine can, until every motor is idle, "
     "stopped, or waits for an input that no stimulus sets; without --until also until the state repeats, because the program "
-    "would never end. M is the motor, 1 to 4 or 0 for all; without it 1, or all where a program of the device is for all. "
+    "would never end. M is the motor, 1 to 4 or 0 for all; without it 1, or all if programs of the device are always for all. "
     "FILE is a program text (.rks), - standard input. Several files for the same motor are sent in order."
     "\v"
     "Lines of a stimulus file (times as in --until, from the start of the run):\n"
@@ -54,7 +54,7 @@ static const char doc[] =
     "A trace as CSV has the columns t_us,source,event,value:\n"
     "  m1,step,POSITION   m1,dir,1|-1        m1,motion,begin|end\n"
     "  m1,led,off|on|blink                   m1,command,INDEX (0: idle)\n"
-    "  m1,position,POSITION   where no pulse led there: C100, =, after a motion under T41\n"
+    "  m1,position,POSITION   changed without a pulse: C100, =, after a motion under T41\n"
     "  unit,di|do|var,MASK\n"
     "docs/TRACES.md describes the other formats.\n"
     "\n"

@@ -49,26 +49,26 @@ struct options {
 enum option_key { KEY_FORCE = 256, KEY_FROM, KEY_PLANT, KEY_TITLE, KEY_UNIT, KEY_WIDTH, KEY_SCALE, KEY_FORMAT };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "FILE", 0, "Where the picture goes: .svg, .png, .html or .csv; - is standard output", 0},
-    {"format", KEY_FORMAT, "FORM", 0, "svg, png, html or csv, whatever the name of FILE", 0},
-    {"from", KEY_FROM, "TIME", 0, "Show what comes from this time on (250us, 1500ms, 2.5s)", 0},
+    {"output", 'o', "FILE", 0, "The picture: .svg, .png, .html or .csv; - is standard output", 0},
+    {"format", KEY_FORMAT, "FORM", 0, "svg, png, html or csv, regardless of the name of FILE", 0},
+    {"from", KEY_FROM, "TIME", 0, "Start of the part that is shown (250us, 1500ms, 2.5s)", 0},
     {"until", 'u', "TIME", 0, "Stop after this time", 0},
     {"stimulus", 's', "FILE", 0, "Inputs and messages that come while the programs run, as for exec", 0},
     {"plant", KEY_PLANT, "FILE", 0, "Attach simulated mechanics and draw true positions, too", 0},
-    {"unit", KEY_UNIT, "NAME", 0, "The unit to show, of a trace or recording with several", 0},
+    {"unit", KEY_UNIT, "NAME", 0, "The unit to show, if a trace or recording has several", 0},
     {"title", KEY_TITLE, "TEXT", 0, "Heading of the picture", 0},
-    {"width", KEY_WIDTH, "PX", 0, "Width of the picture, 240 to 8000; without it 800", 0},
-    {"scale", KEY_SCALE, "N", 0, "Dots of a PNG for each px, 1 to 4; without it 2", 0},
+    {"width", KEY_WIDTH, "PX", 0, "Width of the picture in px, 240 to 8000; default 800", 0},
+    {"scale", KEY_SCALE, "N", 0, "Dots of a PNG per px, 1 to 4; default 2", 0},
     {"force", KEY_FORCE, NULL, 0, "Also overwrite a file of another kind", 0},
     {0},
 };
 
 static const char doc[] =
-    "Draw what programs do: planned speed and position of each motor over time, as in the manual's figures, what it waits for, "
+    "Draw what motors do: planned speed and position over time, as in the manual's figures, what each motor waits for, "
     "and the inputs, outputs and variables that change."
     "\v"
-    "FILE is a program text, M= its motor, as for `rkm04 exec'; or one trace as CSV, whose speeds are means over a few "
-    "milliseconds; or one recording, which is replayed; or one scenario (.yaml). A program that never ends is drawn until "
+    "FILE is a program text and M its motor, as for `rkm04 exec'; or one trace as CSV (its speeds are averages over a few "
+    "milliseconds); or one recording, which is replayed; or one scenario (.yaml). A program that never ends is drawn until "
     "its state repeats.\n"
     "A PNG is made by rsvg-convert (package librsvg2-bin).\n"
     "\n"

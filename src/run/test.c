@@ -36,8 +36,8 @@ static const struct argp_option option_table[] = {
      "Also overwrite files of another kind with the report and recordings; never one that is also read or written otherwise", 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0,
      "Run under these readings (docs/READINGS.md). `all': run under the defaults and under each other value of each reading, one "
-     "at a time, and report on which the result depends; `pairs': also under each two; `list' lists them. May be given several "
-     "times: what is named is kept, the others change. What a scenario names itself is kept, too", 0},
+     "at a time, and report on which the result depends; `pairs': also under each pair; `list' lists them. May be given several "
+     "times: readings named with a value, here or in a scenario, do not change", 0},
     {"strict", KEY_STRICT, NULL, 0, "With --readings all or pairs: a scenario that depends on a reading has failed", 0},
     {0},
 };
@@ -59,11 +59,11 @@ static const char doc[] =
     "    - wait: {motor: 1, state: idle, position: 0}\n"
     "    - pulses: {motor: 1, forward: 5000, back: 5000}\n"
     "\n"
-    "A line for each, \"pass FILE: NAME (TIME)\" or \"FAIL FILE:LINE:COLUMN: NAME: expected ...; seen ...; at tick ...\". The "
+    "It prints a line for each, \"pass FILE: NAME (TIME)\" or \"FAIL FILE:LINE:COLUMN: NAME: expected ...; seen ...; at tick ...\". The "
     "inputs and outputs of a scenario that fails are kept in NAME.record; `rkm04 replay' repeats them.\n"
     "\n"
-    "With --readings all a second line says \"FILE: passes under 22 of 23; depends on hold-exit\", and one for each run that "
-    "ended otherwise says how. A scenario that means one reading names it: readings: {hold-exit: latch}.\n"
+    "With --readings all a second line is printed, such as \"FILE: passes under 22 of 23; depends on hold-exit\", and a line for "
+    "each run with another result. A scenario for one reading names it: readings: {hold-exit: latch}.\n"
     "\n"
     "Examples:\n"
     "  rkm04 test homing.yaml\n"

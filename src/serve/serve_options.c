@@ -64,8 +64,8 @@ static const struct argp_option table[] = {
      "directory. %l in it stands for the number of the bus", 0},
     {"port", KEY_PORT, "DEVICE", 0, "Use this serial device or pty instead of creating a pty", 0},
     {"rts", KEY_RTS, "WHO", 0,
-     "Who turns the driver of an RS485 device on while units send: driver (default), the kernel's if it can, else the adapter; "
-     "toggles: RTS is on while bytes go out", 0},
+     "What switches the driver of an RS485 device on while units send: driver (default), the kernel's driver if it can, else the "
+     "adapter; toggles: the emulator, which switches RTS on while it sends", 0},
     {"tcp", KEY_TCP, "HOST:PORT", 0,
      "Offer the bus over TCP as plain bytes; default host 127.0.0.1, port 0: a free one. No pty without --link",
      0},
@@ -74,7 +74,7 @@ static const struct argp_option table[] = {
     {"turnaround", KEY_TURNAROUND, "US", 0,
      "Time from the end of a request to the start of the answer, 0 to 1000000 us; default 521, one character", 0},
     {"strict-line", KEY_STRICT_LINE, NULL, 0,
-     "A client with another speed or character format than 19200 8N1 gets what a real bus gives: silence or garbage", 0},
+     "Bytes of a client with another speed or character format than 19200 8N1 are garbled or lost, as on a real bus", 0},
     {"lines", KEY_LINES, "N", 0,
      "Number of buses, 1 to 256, each with all these units and a pty (bus0, bus1, ...) or TCP port (PORT, PORT+1, ...) of its "
      "own; default 1", 0},
@@ -112,11 +112,11 @@ static const struct argp_option table[] = {
     {"ready-fd", KEY_READY_FD, "FD", 0, "Also write the READY line to this file descriptor, then close it", 0},
     {"exit-when-idle", KEY_EXIT_WHEN_IDLE, "SECONDS", OPTION_ARG_OPTIONAL,
      "End when no client has had the bus open for this many seconds of real time, 0 to 86400; default 10. With --port: when "
-     "nothing has come in", 0},
+     "no byte has been received", 0},
     {"coverage", KEY_COVERAGE, "FILE", 0,
      "At the end write which messages, commands, flags and faults clients have used, as text, and to FILE.json",
      0},
-    {"min-coverage", KEY_MIN_COVERAGE, "PERCENT", 0, "Exit status 4 if clients have used less, 0 to 100, as in 72.5", 0},
+    {"min-coverage", KEY_MIN_COVERAGE, "PERCENT", 0, "Exit status 4 if clients have used less than this percentage, 0 to 100, as in 72.5", 0},
     {0},
 };
 

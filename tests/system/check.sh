@@ -69,7 +69,7 @@ test_files_with_a_motor_belong_together_others_do_not() {
 
 test_wrong_usage_says_what_was_expected() {
     checked 2 'R' --no-warn no-step
-    holds "$complained" "no warning is called \`no-step'" "the name"
+    holds "$complained" "unknown warning \`no-step'" "the name"
     holds "$complained" "did you mean \`no-steps'?" "the nearest"
     checked 2 'R' --format jsn
     holds "$complained" "expected text, json, sarif, github or gcc, found 'jsn'; did you mean \`json'?" "the format"

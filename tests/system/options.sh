@@ -33,11 +33,14 @@ long_options() {
 }
 
 test_the_manual_pages_know_every_option_and_no_other() {
-    local pages
+    local pages sub
     pages=$(dirname "$0")/../../docs/man
-    in_page() { sed 's/\\//g' "$pages/$1" | grep -o -E -e '--[a-z][a-z-]+' | grep -v -x -e --help -e --version | sort -u; }
-    same "$(for sub in serve exec test replay devices; do long_options "$RKM04" "$sub"; done | sort -u)" "$(in_page rkm04.1)" \
-        "options in rkm04.1"
+    in_page() { sed 's/\\f[A-Z]//g; s/\\//g' "$pages/$1" | grep -o -E -e '--[a-z][a-z-]+' | grep -v -x -e --help -e --version | sort -u; }
+    same "$(for sub in serve exec test replay plot devices; do long_options "$RKM04" "$sub"; done | sort -u)" \
+        "$(in_page rkm04.1)" "options in rkm04.1"
+    for sub in check fmt explain estimate; do
+        same "$(long_options "$RKM04" "$sub")" "$(in_page "rkm04-$sub.1")" "options in rkm04-$sub.1"
+    done
     same "$(long_options "$RKMCTL")" "$(in_page rkmctl.1)" "options in rkmctl.1"
 }
 
