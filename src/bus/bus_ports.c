@@ -203,7 +203,7 @@ static void on_readable(uv_poll_t *handle, int status, int events)
     if (!ports->reading)
         return; /* there is no room any more, or the adapter has been unplugged */
     if (!read_line(ports)) {
-        bus_log(ports->log, "%s has disappeared: %s; start again when it is back",
+        bus_log(ports->log, "%s has disappeared: %s; restart the emulator when it is back",
                 ports->options->port ? ports->options->port : line->path, errno ? strerror(errno) : "hung up");
         ports->calls->failed(ports->context);
         return;
@@ -540,7 +540,7 @@ static void plug_in_adapter(struct bus_ports *ports)
         bus_log(ports->log, "the adapter is plugged in again");
 }
 
-/* What the fault of the adapter has come to since the last look. It may have come and gone: then it is another pty. */
+/* What the fault of the adapter has come to since the last check. It may have come and gone: then it is another pty. */
 static void follow_adapter(struct bus_ports *ports)
 {
     if (ports->ended)

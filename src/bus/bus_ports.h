@@ -46,7 +46,7 @@ struct bus_ports {
 
     struct bus_rts rts;         /* of a device, with --rts toggle */
 
-    bool pulled, unplugged;     /* the adapter was pulled out since the last look; it is out now, if it is up to the fault */
+    bool pulled, unplugged;     /* the adapter was pulled out since the last check; it is out now, if it is up to the fault */
     bool out;                   /* what follows of that has been done */
     bool closing;               /* `readable` is, of the pty that is gone */
     bool lost;                  /* the pty is, to a client that has locked it and gone */

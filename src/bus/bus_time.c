@@ -247,8 +247,8 @@ static void log_end_of_time(struct bus_time *time)
 {
     if (time->over_logged || !sim_time_is_over(time->sim))
         return;
-    bus_log(time->log, "virtual time has reached its end, %" PRIu64 " s: the units' time does not go on, and they "
-            "answer no more. Start again", SIM_TIME_MAX / US_PER_SECOND);
+    bus_log(time->log, "virtual time has reached its end, %" PRIu64 " s: the units' time has stopped, and they no "
+            "longer answer. Restart the emulator", SIM_TIME_MAX / US_PER_SECOND);
     time->over_logged = true;
 }
 

@@ -122,7 +122,7 @@ static bool scan_term(struct reader *reader, struct term *term)
     skip_blanks(reader);
     if (accept_span(reader, NAME_CHARACTERS "+", term->value, sizeof term->value))
         return true;
-    report_expected(reader, "a value behind %s%s, found '%.40s'", term->name, term->compare, reader->at);
+    report_expected(reader, "a value after %s%s, found '%.40s'", term->name, term->compare, reader->at);
     return false;
 }
 
@@ -154,9 +154,9 @@ static json_t *read_integer(const struct reader *reader, const struct term *term
 {
     int64_t number;
     if (term->compare[0] == '\0')
-        return report_expected(reader, "a comparison behind %s, as in %s>=5000", term->name, term->name);
+        return report_expected(reader, "a comparison after %s, as in %s>=5000", term->name, term->name);
     if (!read_number(term->value, &number))
-        return report_expected(reader, "a whole number behind %s%s, found '%s'", term->name, term->compare, term->value);
+        return report_expected(reader, "a whole number after %s%s, found '%s'", term->name, term->compare, term->value);
     return no_memory(reader, make_comparison(term, json_integer(number)));
 }
 
@@ -175,7 +175,7 @@ static json_t *word_term(const struct reader *reader, const struct term *term, c
     const char *name;
     bool known = false, equal = strcmp(term->compare, "=") == 0;
     if (!equal && strcmp(term->compare, "!=") != 0)
-        return report_expected(reader, "= or != and a word behind %s, found '%s%s'", term->name, term->compare, term->value);
+        return report_expected(reader, "= or != and a word after %s, found '%s%s'", term->name, term->compare, term->value);
     json_t *any = json_array();
     for (unsigned i = 0; (name = name_of(key, i)) != NULL; i++) {
         bool same = strcmp(name, term->value) == 0;
@@ -186,7 +186,7 @@ static json_t *word_term(const struct reader *reader, const struct term *term, c
     if (known)
         return one_or_list(reader, any, "any");
     json_decref(any);
-    int length = snprintf(reader->wrong, CLIENT_CONDITION_WRONG_SIZE, "expected behind %s one of", term->name);
+    int length = snprintf(reader->wrong, CLIENT_CONDITION_WRONG_SIZE, "expected after %s one of", term->name);
     for (unsigned i = 0; (name = name_of(key, i)) != NULL; i++)
         length += snprintf(reader->wrong + length, CLIENT_CONDITION_WRONG_SIZE - (size_t)length, "%s %s", i > 0 ? "," : "", name);
     snprintf(reader->wrong + length, CLIENT_CONDITION_WRONG_SIZE - (size_t)length, ", found '%s'", term->value);

@@ -131,7 +131,7 @@ static enum exit_status clear_faults(struct client_job *job)
 {
     json_t *result, *params = NULL;
     if (job->count > 2)
-        return client_usage("fault clear: expected one number, found '%s' behind it", job->words[2]);
+        return client_usage("fault clear: expected one number, found '%s' after it", job->words[2]);
     if (job->count == 2) {
         uint64_t id;
         if (!number_read(job->words[1], 1, INT32_MAX, &id))

@@ -139,7 +139,7 @@ enum exit_status client_control_advance(struct client_job *job)
     if (job->words[0][0] < '0' || job->words[0][0] > '9')
         return call_wait(job, "advance", read_until(job));
     if (job->count > 1)
-        return client_usage("advance: expected one time, as in 10ms, found '%s' behind it", job->words[1]);
+        return client_usage("advance: expected one time, as in 10ms, found '%s' after it", job->words[1]);
     if (job->limit != NULL || job->unit != NULL)
         return client_usage("advance: --limit and --unit need a condition, found the time %s", job->words[0]);
     return call_wait(job, "advance", json_pack("{s:o}", "ticks", read_time(job->words[0])));

@@ -87,7 +87,7 @@ const struct client_found *client_find_one(const char *option)
     if (count == 1 && (!is_port || found[0].port[0] != '\0'))
         return &found[0];
     if (count == 0)
-        warnx("no emulator of yours is running: expected %s, or `rkm04 serve' beside", option);
+        warnx("no emulator of yours is running: expected %s, or a running `rkm04 serve'", option);
     else
         warnx("%s: choose one of these with %s:", count > 1 ? "several emulators are running" : "the emulator has several buses",
               option);

@@ -14,7 +14,8 @@ static const struct help {
 } commands[] = {
     {"version", "version", "The unit's version text.", UNIT_OPTIONS, "  rkmctl -p /dev/ttyUSB0 version\n"},
     {"set", "set TEXT",
-     "Send a program text in one message; the unit begins to execute it. If the unit refuses it, its flag and the place are shown.",
+     "Send a program text in one message; the unit begins to execute it. If it refuses the text, its flag and\n"
+     "the place are shown.",
      "  --allow-overflow\n" MOTOR_OPTIONS, "  rkmctl -m 2 set '\\ S100 V1000 A2000 F5000 R'\n"},
     {"send", "send FILE",
      "Check a program file and send it, in several messages if it is long; - is standard input.",
@@ -46,7 +47,7 @@ static const struct help {
     {"restore", "restore NAME|file=PATH", "Return to a snapshot.", EMULATOR_OPTIONS, "  rkmctl restore homed\n"},
     {"reset", "reset", "Power off and on; flash is kept.", "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl reset\n"},
     {"power", "power on|off", "The power switch.", "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl -u 3 power off\n"},
-    {"switch", "switch NODE [reset]", "The address switch S1, read at power-up; with reset the unit is powered off and on at once.",
+    {"switch", "switch NODE [reset]", "The address switch S1, read at power-up; with reset the power is switched off and on.",
      "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl switch 5 reset\n"},
     {"clock", "clock [CLOCK]", "Show or set the clock: real, xN, max, stepped.", EMULATOR_OPTIONS, "  rkmctl clock x100\n"},
     {"fault", "fault [inject KIND NAME=VALUE...|clear [ID]]", "List injected faults; inject one; clear one or all.",

@@ -42,8 +42,8 @@ static const char *const own[] = {"node", "motor", "help", "quit", "exit", NULL}
 
 static const char help[] =
     "A line that begins with a small letter is a command, any other is program text for the present motor.\n"
-    "  node N        talk to the unit with address N, 0: to all\n"
-    "  motor M       of motor M, 0: of all\n"
+    "  node N        the next lines are for the unit with address N; 0: for all units\n"
+    "  motor M       the next lines are for motor M; 0: for all motors\n"
     "  help [NAME]   this text, or help for a command\n"
     "  quit          the same as Ctrl-D\n"
     "  # ...         a comment\n"
@@ -166,7 +166,7 @@ static enum exit_status show_help(const struct state *state, char *const *word, 
 static enum exit_status do_words(struct state *state, char **word, int count)
 {
     if (count == -1)
-        return report_usage(state, "expected the end of what stands in quotes", "the end of the line");
+        return report_usage(state, "expected a closing quote", "the end of the line");
     if (count == -2)
         return report_usage(state, "expected at most 64 words", "more");
     if (count == 0)
@@ -209,8 +209,8 @@ static enum exit_status do_file(struct state *state, FILE *in)
         line[strcspn(line, "\r\n")] = '\0';
         status = do_line(state, line);
         if (status != STATUS_SUCCESS)
-            fprintf(stderr, "%s:%u: the command has failed (exit status %d); the rest is left out\n", state->name, state->line,
-                    (int)status);
+            fprintf(stderr, "%s:%u: the command has failed (exit status %d); no further commands are executed\n",
+                    state->name, state->line, (int)status);
     }
     free(line);
     return status;
@@ -284,7 +284,7 @@ static enum exit_status do_person(struct state *state)
     if (has_history)
         read_history(history);
     signal(SIGINT, SIG_IGN); /* ends the command */
-    puts("help lists the commands, Ctrl-D ends");
+    puts("help lists the commands, Ctrl-D ends the shell");
     while (!state->is_over) {
         put_prompt(state, prompt);
         if ((line = readline(prompt)) == NULL)

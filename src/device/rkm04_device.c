@@ -300,9 +300,9 @@ static bool is_stuck(const struct device_unit *unit, unsigned motor, char text[D
 {
     static const char *const reasons[] = {
         [RKM04_FAULT_NO_LABEL] = "a jump or call to a label that is not in memory",
-        [RKM04_FAULT_LOOP_LEVELS] = "more than 8 loops inside one another",
+        [RKM04_FAULT_LOOP_LEVELS] = "more than 8 nested loops",
         [RKM04_FAULT_NO_LOOP] = "E without a loop",
-        [RKM04_FAULT_CALL_LEVELS] = "more than 6 calls inside one another",
+        [RKM04_FAULT_CALL_LEVELS] = "more than 6 nested calls",
         [RKM04_FAULT_NO_CALL] = ". without a call",
         [RKM04_FAULT_OVERWRITTEN] = "the start of the loop or the place to return to has been overwritten",
         [RKM04_FAULT_MOTION] = "the compound motion cannot be computed: more than ten segments, two directions, or a segment "

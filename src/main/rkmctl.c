@@ -39,8 +39,8 @@ enum {
 static const struct argp_option option_table[] = {
     {NULL, 0, NULL, 0, "A unit on the bus:", 1},
     {"port", 'p', "PORT", 0,
-     "Serial device, pseudo terminal, or tcp:HOST:PORT (default: RKM04_PORT of the environment, else the bus of your emulator, if "
-     "only one is running)", 0},
+     "Serial device, pseudo terminal, or tcp:HOST:PORT (default: RKM04_PORT of the environment, else the bus of your emulator, "
+     "if only one is running)", 0},
     {"node", 'n', "NODE", 0,
      "Address of the unit, 1 to 16; 0: all units, which do not answer (default: RKM04_NODE of the environment, else 1)", 0},
     {"motor", 'm', "MOTOR", 0, "Motor 1 to 4; 0: all four (default 1)", 0},

@@ -104,7 +104,7 @@ static bool read_stall(const struct config_node *motor, struct plant_stall *to)
     int64_t start;
     if (!node)
         return true;
-    if (!is_map(node, "what it can follow, as in {start: 500, limit: [{speed: 4000, acceleration: 20000}]}") ||
+    if (!is_map(node, "the limits of the motor, as in {start: 500, limit: [{speed: 4000, acceleration: 20000}]}") ||
         !config_keys(node, names))
         return false;
     const struct config_node *limit = config_get(node, "limit"), *first = config_get(node, "start");
@@ -150,7 +150,7 @@ static bool read_motor(const struct config_node *node, int64_t counter, struct p
         return read_offset(node, counter, to);
     if (!is_map(node, "a motor, as in {offset: 0}") || !config_keys(node, names))
         return false;
-    if (turn && !config_integer(turn, "the steps of a turn", 2, PLANT_POSITION_MAX, &to->turn))
+    if (turn && !config_integer(turn, "the steps per turn", 2, PLANT_POSITION_MAX, &to->turn))
         return false;
     if (turn && config_get(node, "stops"))
         return config_error(turn, "expected turn or stops: a turntable has no end");

@@ -15,22 +15,22 @@
 #define CHECK_TABLE(ROW) \
     ROW(CHECK_MISSING_LABEL, "missing-label", "a jump or call to a label that the program does not have") \
     ROW(CHECK_DUPLICATE_LABEL, "duplicate-label", "a label that occurs more than once") \
-    ROW(CHECK_UNUSED_LABEL, "unused-label", "a label to which nothing jumps") \
+    ROW(CHECK_UNUSED_LABEL, "unused-label", "a label that no jump or call uses") \
     ROW(CHECK_LOOP_END, "loop-end", "E where no loop is open") \
     ROW(CHECK_OPEN_LOOP, "open-loop", "L without its E") \
-    ROW(CHECK_LOOP_DEPTH, "loop-depth", "more than 8 loops in each other") \
-    ROW(CHECK_STRAY_RETURN, "stray-return", ". outside of a subroutine") \
-    ROW(CHECK_RUN_INTO, "run-into", "a subroutine that is also run into") \
-    ROW(CHECK_CALL_DEPTH, "call-depth", "more than 6 calls in each other") \
+    ROW(CHECK_LOOP_DEPTH, "loop-depth", "more than 8 nested loops") \
+    ROW(CHECK_STRAY_RETURN, "stray-return", ". outside a subroutine") \
+    ROW(CHECK_RUN_INTO, "run-into", "a subroutine that is also entered without a call") \
+    ROW(CHECK_CALL_DEPTH, "call-depth", "more than 6 nested calls") \
     ROW(CHECK_UNREACHABLE, "unreachable", "commands that are never executed") \
     ROW(CHECK_BUSY_LOOP, "busy-loop", "an endless loop without a motion, a dwell or a wait") \
     ROW(CHECK_NO_STEPS, "no-steps", "R before any F, B or G") \
-    ROW(CHECK_MOVES_AGAIN, "moves-again", "R behind G or H, which have moved already") \
+    ROW(CHECK_MOVES_AGAIN, "moves-again", "R after G or H, which move without R") \
     ROW(CHECK_MIXED_DIRECTIONS, "mixed-directions", "Y segments of different directions") \
     ROW(CHECK_TOO_MANY_SEGMENTS, "too-many-segments", "more than ten Y segments") \
     ROW(CHECK_EMPTY_SEGMENT, "empty-segment", "a Y segment without steps") \
-    ROW(CHECK_LATE_MARK, "late-mark", "T51 to T58 behind the first Y") \
-    ROW(CHECK_NO_RAMP, "no-ramp", "V not above S: no ramps") \
+    ROW(CHECK_LATE_MARK, "late-mark", "T51 to T58 after the first Y") \
+    ROW(CHECK_NO_RAMP, "no-ramp", "V not higher than S: no ramps") \
     ROW(CHECK_SPEED_NOT_REACHED, "speed-not-reached", "a motion too short to reach V") \
     ROW(CHECK_STAND_ALONE, "stand-alone", "K, C75 or a change of speed inside a program") \
     ROW(CHECK_OPEN_BLOCK, "open-block", "[ without ]") \
@@ -38,11 +38,11 @@
     ROW(CHECK_UNUSED_GUARD, "unused-guard", "M or N that no motion uses") \
     ROW(CHECK_USED_GUARD, "used-guard", "M or N that guards only one of the passes of a loop") \
     ROW(CHECK_OUTPUT_STAYS, "output-stays", "an output that is set and never cleared") \
-    ROW(CHECK_INPUT_NEVER_COMES, "input-never-comes", "a wait for an input that the plant never brings") \
+    ROW(CHECK_INPUT_NEVER_COMES, "input-never-comes", "a wait for an input that the plant never sets") \
     ROW(CHECK_VARIABLE_NEVER_SET, "variable-never-set", "a wait for a variable that no motor sets") \
     ROW(CHECK_DEADLOCK, "deadlock", "motors that wait for each other") \
-    ROW(CHECK_APOSTROPHE, "apostrophe", "a typographic apostrophe as a call") \
-    ROW(CHECK_UNKNOWN_NOLINT, "unknown-nolint", "a nolint comment with a name that no warning has")
+    ROW(CHECK_APOSTROPHE, "apostrophe", "a typographic apostrophe in a call") \
+    ROW(CHECK_UNKNOWN_NOLINT, "unknown-nolint", "a nolint comment with an unknown name")
 
 #define CHECK_CONSTANT(constant, name, says) constant,
 enum check_warning { CHECK_TABLE(CHECK_CONSTANT) CHECK_WARNINGS };

@@ -96,7 +96,7 @@ static void report_deadlock(struct check *check, const struct check_motor *motor
         if (!(set_by(other, false) & bit_of(variable)) || wait == other->code.count)
             continue;
         check_warn(check, motor, CHECK_DEADLOCK, i, i, "one of them has to set its variable before it waits",
-                   "motor %u waits for VAR %u, which motor %u sets only behind its wait for VAR %u", motor->motor, variable,
+                   "motor %u waits for VAR %u, which motor %u sets only after its wait for VAR %u", motor->motor, variable,
                    other->motor, (unsigned)other->code.commands[wait].command.argument);
         return;
     }

@@ -14,10 +14,10 @@ static void check_loop(struct check *check, const struct check_motor *motor, siz
         check_warn(check, motor, CHECK_LOOP_END, i, i, "the program stops here with a fault", "E without an open loop");
     if (marks & FLOW_LOOP_LEVELS)
         check_warn(check, motor, CHECK_LOOP_DEPTH, i, i, "the program stops here with a fault",
-                   "a loop in 8 others: a motor has 8 levels of loops");
+                   "a ninth nested loop: a motor has 8 levels of loops");
     if (motor->code.commands[i].command.op == 'L' && (marks & FLOW_REACHED) && !(marks & FLOW_LOOP_CLOSED) &&
         motor->flow.complete)
-        check_warn(check, motor, CHECK_OPEN_LOOP, i, i, "the commands behind it are executed once", "L without an E");
+        check_warn(check, motor, CHECK_OPEN_LOOP, i, i, "the commands after it are executed once", "L without an E");
 }
 
 /* A label at which a subroutine is run into before the `.` at `i`; FLOW_NO_NODE: there is none. */
@@ -34,15 +34,15 @@ static void check_calls(struct check *check, const struct check_motor *motor, si
     const uint8_t marks = motor->flow.marks[i];
     if (marks & FLOW_CALL_LEVELS)
         check_warn(check, motor, CHECK_CALL_DEPTH, i, i, "the program stops here with a fault",
-                   "a call inside of 6 others: a motor has 6 levels of calls");
+                   "a seventh nested call: a motor has 6 levels of calls");
     if (!(marks & FLOW_NO_CALL))
         return;
     const uint32_t into = run_into_before(motor, i);
     if (into == FLOW_NO_NODE)
-        check_warn(check, motor, CHECK_STRAY_RETURN, i, i, "the program stops here with a fault", ". outside of a subroutine");
+        check_warn(check, motor, CHECK_STRAY_RETURN, i, i, "the program stops here with a fault", ". outside a subroutine");
     else if (into != *told)
-        check_warn(check, motor, CHECK_RUN_INTO, into, into, "end the program before it, with a jump over the subroutine",
-                   "the program runs into subroutine %u; its . stops it with a fault",
+        check_warn(check, motor, CHECK_RUN_INTO, into, into, "end the program before it, by a jump over the subroutine",
+                   "the program enters subroutine %u without a call; its . stops it with a fault",
                    (unsigned)motor->code.commands[into].command.argument);
     if (into != FLOW_NO_NODE)
         *told = into;
@@ -66,9 +66,9 @@ static void report_run(struct check *check, const struct check_motor *motor, siz
     const size_t count = last - from + 1;
     const char *hint = NULL;
     if (command.op == '@' && !motor->flow.called[command.argument] && !motor->flow.jumped[command.argument])
-        hint = "nothing jumps to this label";
+        hint = "no jump or call uses this label";
     else if (from > motor->code.first && code_is_endless(motor->code.commands[from - 1].command))
-        hint = "the motion before it ends by M, N, X or K alone";
+        hint = "only M, N, X or K ends the motion before it";
     check_warn(check, motor, CHECK_UNREACHABLE, from, last, hint, "%zu command%s never executed", count,
                count == 1 ? " is" : "s are");
 }
@@ -77,7 +77,7 @@ static void check_reached(struct check *check, const struct check_motor *motor)
 {
     const struct code *code = &motor->code;
     if (code->has_reset && code->first > 1)
-        check_warn(check, motor, CHECK_UNREACHABLE, 0, code->first - 2, "\\ acts first, wherever it stands",
+        check_warn(check, motor, CHECK_UNREACHABLE, 0, code->first - 2, "\\ is executed first, wherever it is",
                    "%zu command%s before \\ dropped", code->first - 1, code->first == 2 ? " is" : "s are");
     if (!motor->flow.complete)
         return;
@@ -138,7 +138,7 @@ static void check_cycles(struct check *check, struct check_motor *motor)
         add_node(flow, cycles, i);
     for (size_t i = 0; i < count; i++)
         if (cycles[i].is_cycle && !cycles[i].has_exit && !cycles[i].takes_time)
-            check_warn(check, motor, CHECK_BUSY_LOOP, cycles[i].first, cycles[i].first, "W1 gives it a pace",
+            check_warn(check, motor, CHECK_BUSY_LOOP, cycles[i].first, cycles[i].first, "add W1, so that a pass takes time",
                        "an endless loop without a motion, a dwell or a wait");
     free(cycles);
 }

@@ -59,11 +59,11 @@ static void report(struct check *check, const struct guards *guards, size_t i)
     if (!(guards->motor->flow.marks[i] & FLOW_REACHED))
         return;
     if (!guards->use[i].used && !several && guards->motor->flow.complete)
-        check_warn(check, guards->motor, CHECK_UNUSED_GUARD, i, i, NULL, "%c%02u guards no motion: none follows it", op,
+        check_warn(check, guards->motor, CHECK_UNUSED_GUARD, i, i, NULL, "%c%02u guards no motion: there is none after it", op,
                    (unsigned)command.argument);
     if (guards->use[i].used_up)
         check_warn(check, guards->motor, CHECK_USED_GUARD, i, i, "arm it inside the loop",
-                   "%c%02u is used up by the first motion that it stops; the loop goes on without it", op,
+                   "%c%02u is disarmed by the first motion that it stops; later passes run without it", op,
                    (unsigned)command.argument);
 }
 

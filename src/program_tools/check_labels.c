@@ -25,7 +25,7 @@ static void check_label(struct check *check, const struct check_motor *motor, si
     const struct flow *flow = &motor->flow;
     if (flow->label[label] != i)
         check_warn(check, motor, CHECK_DUPLICATE_LABEL, i, i, "jumps go to the last one",
-                   "label %u is written again further on: this one does not count", label);
+                   "label %u occurs again later: this one has no effect", label);
     else if (!flow->called[label] && !flow->jumped[label] && is_reached(motor, i))
         check_warn(check, motor, CHECK_UNUSED_LABEL, i, i, NULL, "label %u is never used", label);
 }
@@ -36,7 +36,7 @@ static void check_size(struct check *check, const struct check_motor *motor)
     if (commands > RKM04_PROGRAM_MAX)
         check_warn(check, motor, CHECK_MEMORY_FULL, motor->code.first + RKM04_PROGRAM_MAX,
                    motor->code.first + RKM04_PROGRAM_MAX, "a motor holds 700 commands; further ones overwrite the oldest",
-                   "the program has %zu commands: this one is written over the first", commands);
+                   "the program has %zu commands: this one overwrites the first", commands);
 }
 
 /* `[` waits for a later `]` (C9). */
@@ -47,7 +47,7 @@ static void check_blocks(struct check *check, const struct check_motor *motor)
         const uint8_t op = motor->code.commands[i].command.op;
         closed = closed || op == ']';
         if (op == '[' && !closed)
-            check_warn(check, motor, CHECK_OPEN_BLOCK, i, i, "the motor waits here until a ] is sent", "[ without a ] behind it");
+            check_warn(check, motor, CHECK_OPEN_BLOCK, i, i, "the motor waits here until a ] is sent", "[ without a ] after it");
     }
 }
 
@@ -61,8 +61,8 @@ void check_labels(struct check *check, const struct check_motor *motor)
             check_label(check, motor, i);
         if (command.op == 'V' && i > motor->code.first && code_is_endless(motor->code.commands[i - 1].command))
             check_warn(check, motor, CHECK_STAND_ALONE, i, i,
-                       "put V before the motion; during it the speed is changed by a V alone in a message",
-                       "V behind an endless motion is executed when the motion has ended");
+                       "put V before the motion; during a motion, only a V alone in a message changes the speed",
+                       "V after an endless motion is executed when the motion has ended");
     }
     check_size(check, motor);
     check_blocks(check, motor);

@@ -61,7 +61,7 @@ static void check_single(const struct look *look)
     if (in->speed <= in->start_speed) {
         if (is_news(look, CHECK_NO_RAMP, look->index))
             check_warn(look->check, look->motor, CHECK_NO_RAMP, look->index, look->index, NULL,
-                       "V%" PRId64 " is not above S%" PRId64 ": the motion has constant speed and no ramps", in->speed,
+                       "V%" PRId64 " is not higher than S%" PRId64 ": the motion has constant speed and no ramps", in->speed,
                        in->start_speed);
         return;
     }
@@ -137,15 +137,15 @@ static void check_segment(const struct look *look)
     const size_t i = look->index;
     const unsigned both = FLOW_FORWARD | FLOW_BACK;
     if (in->table == 1u << RKM04_SEGMENTS_MAX && is_news(look, CHECK_TOO_MANY_SEGMENTS, i))
-        check_warn(look->check, look->motor, CHECK_TOO_MANY_SEGMENTS, i, i, "R cannot compute the motion: the LED blinks",
+        check_warn(look->check, look->motor, CHECK_TOO_MANY_SEGMENTS, i, i, "the unit cannot plan the motion: the LED blinks",
                    "an eleventh segment: a compound motion has ten at most");
     if ((in->table & 1) == 0 && in->direction != both && in->table_direction != both && in->direction != in->table_direction &&
         is_news(look, CHECK_MIXED_DIRECTIONS, i))
-        check_warn(look->check, look->motor, CHECK_MIXED_DIRECTIONS, i, i, "R cannot compute the motion: the LED blinks",
+        check_warn(look->check, look->motor, CHECK_MIXED_DIRECTIONS, i, i, "the unit cannot plan the motion: the LED blinks",
                    "this segment moves %s, those before it %s", in->direction == FLOW_FORWARD ? "forward" : "back",
                    in->direction == FLOW_FORWARD ? "back" : "forward");
     if (in->count == 0 && is_news(look, CHECK_EMPTY_SEGMENT, i))
-        check_warn(look->check, look->motor, CHECK_EMPTY_SEGMENT, i, i, "R cannot compute the motion: the LED blinks",
+        check_warn(look->check, look->motor, CHECK_EMPTY_SEGMENT, i, i, "the unit cannot plan the motion: the LED blinks",
                    "a segment without steps: no F, B or G before it");
 }
 
@@ -155,7 +155,7 @@ static void check_mark(const struct look *look)
     const unsigned number = look->command.argument;
     if (number >= 51 && number <= 58 && (look->in->table & 1) == 0 && is_news(look, CHECK_LATE_MARK, i))
         check_warn(look->check, look->motor, CHECK_LATE_MARK, i, i, "put it before the first Y",
-                   "T%u behind the first Y has no effect on this motion", number);
+                   "T%u after the first Y has no effect on this motion", number);
 }
 
 static void check_command(const struct look *look)

@@ -58,7 +58,7 @@ static uint64_t read_names(struct check *check, const struct code_comment *comme
             memcpy(name, text + at, kept);
             name[kept] = '\0';
             const struct diagnostic place = {.source = comment->source, .offset = comment->offset + at, .length = length};
-            check_warn_at(check, place, CHECK_UNKNOWN_NOLINT, NULL, "no warning is called `%s'%s", name,
+            check_warn_at(check, place, CHECK_UNKNOWN_NOLINT, NULL, "unknown warning `%s'%s", name,
                           nearest_hint(name, check_warning_names()));
         }
         at += length + 1;

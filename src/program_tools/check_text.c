@@ -56,12 +56,12 @@ static const char *stray_number_hint(uint8_t op)
     case 'H':
         return "H takes no number: it moves to position 0; G moves to another one";
     case 'E':
-        return "E takes no number; L says how often: L3 ... E";
+        return "E takes no number; L sets the number of passes: L3 ... E";
     case 'D':
     case 'Y':
-        return "the steps stand in F or B before it";
+        return "F or B before it sets the steps";
     case '.':
-        return "numbers are whole";
+        return "only whole numbers are possible";
     default:
         return "this command takes no number";
     }
@@ -78,7 +78,7 @@ static const char *hint_number(const struct rkm04_reader *reader)
     const uint8_t before = byte_at(reader, at - 1);
     if (takes_no_number(before))
         return stray_number_hint(before);
-    return is_digit(before) ? "a number has no blanks inside" : NULL;
+    return is_digit(before) ? "a number has no blanks in it" : NULL;
 }
 
 static const char *hint_unknown(const struct rkm04_reader *reader)
@@ -95,11 +95,11 @@ static const char *hint_unknown(const struct rkm04_reader *reader)
     case ';':
     case ',':
     case ':':
-        return "commands need nothing between them, a blank will do";
+        return "no separator is needed between commands; a blank is possible";
     case '#':
     case '/':
     case '*':
-        return "a comment stands in braces: { text }";
+        return "comments are written in braces: { text }";
     case '-':
     case '+':
         return is_digit(next) ? "a number of steps has no sign: F moves forward, B back" : NULL;
@@ -109,7 +109,7 @@ static const char *hint_unknown(const struct rkm04_reader *reader)
     case 'P':
         return "the position counter is set by C100 or =n";
     case '{':
-        return "everything behind it counts as a comment";
+        return "everything after it is a comment";
     default:
         return NULL;
     }
@@ -125,7 +125,7 @@ static const char *hint_bad_value(const struct rkm04_reader *reader)
     if (wrong == '-' && op == 'G')
         return "positions below 0 are reached by B, or by H and =n";
     if (wrong == '@' && (op == 'J' || op == '\'' || op == 'I'))
-        return "the number alone: J5 jumps to @5";
+        return "write the number alone: J5 jumps to @5";
     if ((op == 'T' || op == 'C' || op == 'O' || op == 'Z') && is_digit(wrong))
         return op == 'T' || op == 'C' ? "01..08 are outputs, 40..58 functions, 80..95 variables"
                                       : "01..08 are inputs, 80..95 variables";

@@ -89,11 +89,11 @@ static void print_whole(const struct estimate *estimate, FILE *out)
                     estimate->position[i]);
     for (unsigned i = 0; i < RKM04_INPUTS; i++)
         if (estimate->assumed >> i & 1)
-            fprintf(out, "input %02u comes as soon as it is waited for\n", i + 1);
+            fprintf(out, "input %02u is set as soon as a motor waits for it\n", i + 1);
     if (estimate->deadlock)
         fprintf(out, "from " SECONDS_FORMAT " on motors wait for each other\n", SECONDS(estimate->deadlock_at));
     if (estimate->end == ESTIMATE_LIMIT)
-        fprintf(out, "given up after %u commands\n", ESTIMATE_COMMANDS_MAX);
+        fprintf(out, "stopped after %u commands\n", ESTIMATE_COMMANDS_MAX);
 }
 
 void estimate_print(const struct estimate *estimate, const struct program_source *sources, FILE *out)

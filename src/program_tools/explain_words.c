@@ -43,7 +43,7 @@ static const struct meaning {
     {'A', 1, 60000, {"acceleration %u steps/s²", "zrychlení %u kroků/s²"}},
     {'B', 1, 16000000, {"set %u steps back", "pohyb vzad: zadá %u kroků"}},
     {'C', 1, 8, {"output %02u off", "zruš výstup %02u"}},
-    {'C', 40, 40, {"T40 off: a full memory is written over", "zruš funkci 40: plná paměť se přepisuje"}},
+    {'C', 40, 40, {"T40 off: in a full memory, new commands overwrite old ones", "zruš funkci 40: plná paměť se přepisuje"}},
     {'C', 41, 41, {"T41 off: end of the simulation", "zruš funkci 41: konec simulace"}},
     {'C', 42, 50, {"function %u off (no effect)", "zruš funkci %u (bez účinku)"}},
     {'C', 51, 58, {"function %u off", "zruš funkci %u"}},
@@ -53,11 +53,11 @@ static const struct meaning {
     {'D', 0, 0, {"reverse the direction", "změna směru pohybu"}},
     {'E', 0, 0, {"end of the loop", "konec smyčky"}},
     {'F', 1, 16000000, {"set %u steps forward", "pohyb vpřed: zadá %u kroků"}},
-    {'G', RKM04_G_FORWARD, RKM04_G_FORWARD, {"move forward without an end", "trvale vpřed"}},
-    {'G', RKM04_G_BACK, RKM04_G_BACK, {"move back without an end", "trvale vzad"}},
+    {'G', RKM04_G_FORWARD, RKM04_G_FORWARD, {"move forward without end", "trvale vpřed"}},
+    {'G', RKM04_G_BACK, RKM04_G_BACK, {"move back without end", "trvale vzad"}},
     {'G', 1, 2000000000, {"move to position %u", "absolutní poloha: dojezd na %u"}},
     {'H', 0, 0, {"move to position 0", "výchozí poloha: pohyb na absolutní nulu"}},
-    {'J', 1, 80, {"go on at label %u", "skok na návěští %u"}},
+    {'J', 1, 80, {"continue at label %u", "skok na návěští %u"}},
     {'K', 0, 0, {"stop the motion and the program; only alone in a message", "konec pohybu; pouze samostatně"}},
     {'L', 1, 255, {"loop: %u times", "začátek smyčky: %u opakování"}},
     {'M', 1, 8, {"guard: input %02u at 1 stops the next motion", "stop od BI True: vstup %02u v log. 1 ukončí pohyb"}},
@@ -67,8 +67,8 @@ static const struct meaning {
     {'R', 0, 0, {"move", "proveď pohyb"}},
     {'S', 1, 2000, {"start/stop speed %u steps/s", "startovní rychlost %u kroků/s"}},
     {'T', 1, 8, {"output %02u on", "nastav výstup %02u"}},
-    {'T', 40, 40, {"T40 on: a full memory takes no more commands", "nastav funkci 40: plná paměť další povely nepřijme"}},
-    {'T', 41, 41, {"T41 on: simulation, no pulse leaves the unit", "nastav funkci 41: simulace bez výstupních signálů"}},
+    {'T', 40, 40, {"T40 on: a full memory accepts no more commands", "nastav funkci 40: plná paměť další povely nepřijme"}},
+    {'T', 41, 41, {"T41 on: simulation, the unit makes no pulses", "nastav funkci 41: simulace bez výstupních signálů"}},
     {'T', 42, 50, {"function %u on (no effect)", "nastav funkci %u (bez účinku)"}},
     {'T', 51, 58, {"function %u on: its output is set when the last segment begins",
                    "nastav funkci %u: výstup na začátku posledního úseku"}},
@@ -85,13 +85,13 @@ static const struct meaning {
     {'=', 0, UINT32_MAX, {"set the position counter to %d", "zapiš absolutní polohu %d"}},
     {'\'', 1, 80, {"call the subroutine at label %u", "volání podprogramu na návěští %u"}},
     {'.', 0, 0, {"end of the subroutine", "konec podprogramu"}},
-    {'[', 0, 0, {"wait for ]: what follows is not executed before", "program: čeká na konec programu ]"}},
-    {']', 0, 0, {"what follows [ may be executed", "konec programu: povely od [ se vykonají"}},
+    {'[', 0, 0, {"wait until ] is in memory, then execute what follows", "program: čeká na konec programu ]"}},
+    {']', 0, 0, {"the commands after [ may be executed", "konec programu: povely od [ se vykonají"}},
 };
 
 const char *explain_template(struct rkm04_command command, enum explain_language language)
 {
-    static const char *const jump_if[EXPLAIN_LANGUAGES] = {"if %s %02u is %u, go on at label %u",
+    static const char *const jump_if[EXPLAIN_LANGUAGES] = {"if %s %02u is %u, continue at label %u",
                                                            "podmíněný skok: je-li %s %02u v log. %u, na návěští %u"};
     if (command.op == 'I')
         return jump_if[language];

@@ -62,7 +62,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         if (options->files.count == 0)
             argp_error(state, "no program given");
         if (options->json && (options->diff || options->check))
-            argp_error(state, "--json shows all; --check and --diff do not go with it");
+            argp_error(state, "--json cannot be combined with --check or --diff");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

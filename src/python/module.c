@@ -143,9 +143,9 @@ PyMODINIT_FUNC PyInit__sim(void)
     if (!type || PyModule_AddObject(module, "Sim", type) != 0 ||
         PyModule_AddStringConstant(module, "version", RKM04_VERSION) != 0)
         return NULL;
-    error_type = add_error(module, "Error", "rkm04.Error", "Base of the errors of this package.", PyExc_RuntimeError);
+    error_type = add_error(module, "Error", "rkm04.Error", "Base class of the errors of this package.", PyExc_RuntimeError);
     refused_type = add_error(module, "RefusedError", "rkm04.RefusedError",
-                             "Something was refused; the text says why. `code` is that of JSON-RPC.", error_type);
+                             "A request was refused; the text says why. `code` is that of JSON-RPC.", error_type);
     busy_type = add_error(module, "BusyError", "rkm04.BusyError", "Another thread uses the bus at the same time.", error_type);
     closed_type = add_error(module, "ClosedError", "rkm04.ClosedError", "The bus is closed.", error_type);
     return error_type && refused_type && busy_type && closed_type ? module : NULL;

@@ -262,7 +262,7 @@ static PyObject *sim_write(struct sim_object *self, PyObject *data)
     if (self->raised)
         return NULL;
     if (!is_done) {
-        PyErr_SetString(error_type, "virtual time has come to its end: the bytes are not sent");
+        PyErr_SetString(error_type, "virtual time has reached its end: the bytes are not sent");
         return NULL;
     }
     return PyLong_FromUnsignedLongLong(passed > now ? passed : now);
@@ -520,26 +520,26 @@ static PyObject *sim_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 }
 
 static PyMethodDef sim_methods[] = {
-    METHOD("call", sim_call, METH_VARARGS, "call(method, params): do a method of the control socket; JSON in, JSON out."),
+    METHOD("call", sim_call, METH_VARARGS, "call(method, params): execute a method of the control socket; JSON in, JSON out."),
     METHOD("now", sim_now_, METH_NOARGS, "now(): present tick, us."),
     METHOD("next_event", sim_next_event_, METH_NOARGS, "next_event(): tick before which nothing happens, or None."),
     METHOD("axis", sim_axis_, METH_VARARGS, "axis(unit, motor): (position, true_position, state, speed, fault, led)."),
     METHOD("advance", sim_advance_, METH_O, "advance(tick): let time pass up to the tick."),
     METHOD("wait_byte", sim_wait_byte, METH_VARARGS,
            "wait_byte(tick, count=1, stop=-1): let time pass until the host has so many bytes, or that one, up to the tick."),
-    METHOD("write", sim_write, METH_O, "write(data): the host sends; returns the tick at which it has passed."),
+    METHOD("write", sim_write, METH_O, "write(data): the host sends; returns the tick of its end."),
     METHOD("configure", sim_configure, METH_VARARGS, "configure(baud, data_bits, parity, stop_halves): the host's port."),
-    METHOD("read", sim_read, METH_O, "read(most): bytes that have come; -1: all."),
+    METHOD("read", sim_read, METH_O, "read(most): bytes that were received; -1: all."),
     METHOD("read_ticks", sim_read_ticks, METH_O, "read_ticks(most): the same as a list of (tick, byte)."),
-    METHOD("in_waiting", sim_in_waiting, METH_NOARGS, "in_waiting(): how many bytes have come."),
-    METHOD("lost", sim_lost, METH_NOARGS, "lost(): how many bytes were lost because nobody read."),
-    METHOD("set_break", sim_break_, METH_O, "set_break(on): the host holds the wires at 0, or no more."),
-    METHOD("purge", sim_purge_, METH_NOARGS, "purge(): forget what was written and has not set out."),
-    METHOD("is_idle", sim_is_idle, METH_NOARGS, "is_idle(): no byte under way, no answer to come."),
+    METHOD("in_waiting", sim_in_waiting, METH_NOARGS, "in_waiting(): how many received bytes can be read."),
+    METHOD("lost", sim_lost, METH_NOARGS, "lost(): how many bytes were dropped because they were not read in time."),
+    METHOD("set_break", sim_break_, METH_O, "set_break(on): the host holds the wires at 0, or releases them."),
+    METHOD("purge", sim_purge_, METH_NOARGS, "purge(): drop bytes that were written but not sent yet."),
+    METHOD("is_idle", sim_is_idle, METH_NOARGS, "is_idle(): no byte is being sent, no answer is due."),
     METHOD("frame", sim_frame, METH_VARARGS, "frame(node, message): bytes on the wires."),
     METHOD("hear_message", sim_receive_message, METH_O, "hear_message(tick): (dnode, snode, message) or None at the tick."),
     METHOD("events", sim_events, METH_O, "events(subscription): take (lines of JSON, lost, tick of the first lost)."),
-    METHOD("close", sim_close, METH_NOARGS, "close(): end its files and free it."),
+    METHOD("close", sim_close, METH_NOARGS, "close(): close its files and free it."),
     {NULL, NULL, 0, NULL},
 };
 

@@ -197,7 +197,7 @@ static bool do_command(struct replay *replay)
         return replay_wrong(replay, "command", "expected \"command\", one that rkm04 " RKM04_VERSION " knows");
     bool restore = strcmp(method, "restore") == 0 && json_object_get(params, "file");
     if (restore && !replay->embedded)
-        return replay_wrong(replay, "command", "expected the file that was restored before this line, behind \"embedded\"");
+        return replay_wrong(replay, "command", "expected a line \"embedded\" with the restored file before this line");
     json_t *result = execute_command(replay, method, params, &refusal);
     json_decref(result);
     if (replay->paused)
@@ -243,7 +243,7 @@ static bool do_outputs(struct replay *replay)
 
 static bool expects_outputs(struct replay *replay, const char *key)
 {
-    return replay->outputs || replay_wrong(replay, key, "expected no outputs: the recording says that it has none");
+    return replay->outputs || replay_wrong(replay, key, "expected no outputs: the recording declares that it has none");
 }
 
 static bool do_out(struct replay *replay)

@@ -81,7 +81,7 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end, bool
     const struct device_kind *kind = run->device;
     const struct device_unit *unit = exec_run_unit(run);
     fprintf(out, "at %" PRIu64 ".%06" PRIu64 " s: %s\n", run->reached / US_PER_SECOND, run->reached % US_PER_SECOND,
-            waits ? "not finished, but nothing more comes" : ends[end]);
+            waits ? "not finished, but no motor can continue" : ends[end]);
     fprintf(out, "motor     position  state   command  led    fault\n");
     for (unsigned motor = 1; motor <= kind->axes; motor++) {
         struct device_axis state;
@@ -141,7 +141,7 @@ static void report_waits(struct exec_run *run, const json_t *waits)
         unsigned motor = (unsigned)json_integer_value(json_object_get(wait, "motor"));
         const char *command = json_string_value(json_object_get(wait, "command"));
         if (!run->device->is_stuck(exec_run_unit(run), motor, text))
-            fprintf(stderr, "rkm04 exec: motor %u waits%s%s for %s, which nothing brings\n", motor,
+            fprintf(stderr, "rkm04 exec: motor %u waits%s%s for %s, which never happens\n", motor,
                     command != NULL ? " in " : "", command != NULL ? command : "",
                     json_string_value(json_object_get(wait, "for")));
     }

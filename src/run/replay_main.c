@@ -155,7 +155,7 @@ static bool update_progress(void *context)
     progress->next = now + PROGRESS_EVERY;
     progress->shown = true;
     double virtual = (double)sim_now(replay_sim(progress->replay)) / US_PER_SECOND;
-    fprintf(stderr, "\r%.1f s of the line's time, %.0f times real time", virtual, virtual / (now - progress->begin));
+    fprintf(stderr, "\r%.1f s of the bus's time, %.0f times real time", virtual, virtual / (now - progress->begin));
     if (progress->size > 0)
         fprintf(stderr, "; %.0f %% of the recording", 100.0 * (double)ftello(progress->in) / (double)progress->size);
     fputs("; Ctrl-C ends it\033[K", stderr);

@@ -59,7 +59,7 @@ static const char doc[] =
     "    - wait: {motor: 1, state: idle, position: 0}\n"
     "    - pulses: {motor: 1, forward: 5000, back: 5000}\n"
     "\n"
-    "It prints a line for each, \"pass FILE: NAME (TIME)\" or \"FAIL FILE:LINE:COLUMN: NAME: expected ...; seen ...; at tick ...\". The "
+    "It prints for each \"pass FILE: NAME (TIME)\" or \"FAIL FILE:LINE:COLUMN: NAME: expected ...; seen ...; at tick ...\". The "
     "inputs and outputs of a scenario that fails are kept in NAME.record; `rkm04 replay' repeats them.\n"
     "\n"
     "With --readings all a second line is printed, such as \"FILE: passes under 22 of 23; depends on hold-exit\", and a line for "

@@ -112,7 +112,7 @@ static char *bounds_text(const struct scenario_pulses *pulses)
     FILE *out = open_memstream(&text, &length);
     if (out == NULL)
         return NULL;
-    fprintf(out, "pulses of motor %u%s", pulses->motor, pulses->since_last ? " since the last look" : "");
+    fprintf(out, "pulses of motor %u%s", pulses->motor, pulses->since_last ? " since the last check" : "");
     print_bounds(out, &pulses->count, "count");
     print_bounds(out, &pulses->forward, "forward");
     print_bounds(out, &pulses->back, "back");

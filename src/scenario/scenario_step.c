@@ -98,7 +98,7 @@ json_t *scenario_condition(struct scenario_reader *reader, const struct config_n
     if (condition == NULL)
         config_error(node, "%s", refusal.text);
     else if (!ok)
-        config_error(node, "expected something that lasts: a message can only be waited for, with wait or when");
+        config_error(node, "expected a state: for a message use wait or when");
     condition_free(condition);
     if (ok)
         return json;

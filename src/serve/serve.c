@@ -192,8 +192,8 @@ static bool start_watch(struct serve *serve)
         return true;
     serve->notices.data = serve;
     return line_watch_open(&serve->watch) &&
-           check_uv("watch the line", uv_poll_init(&serve->loop, &serve->notices, serve->watch.fd)) &&
-           check_uv("watch the line", uv_poll_start(&serve->notices, UV_READABLE, on_notice));
+           check_uv("watch the bus", uv_poll_init(&serve->loop, &serve->notices, serve->watch.fd)) &&
+           check_uv("watch the bus", uv_poll_start(&serve->notices, UV_READABLE, on_notice));
 }
 
 /* When all inputs are read and valid: see that all files can be written, while none is changed. */
@@ -254,7 +254,7 @@ static bool default_control(const struct serve *serve, char path[PATH_MAX])
     if (serve->options.pty) {
         if (snprintf(path, PATH_MAX, "%s.control", ports->link.path) < PATH_MAX)
             return true;
-        log_error("the path of the link is too long for a control socket beside it");
+        log_error("the path of the link is too long for a control socket next to it");
         return false;
     }
     const char *kind = port ? "" : ports->tcp ? "tcp-" : "rfc2217-";

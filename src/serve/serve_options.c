@@ -116,7 +116,8 @@ static const struct argp_option table[] = {
     {"coverage", KEY_COVERAGE, "FILE", 0,
      "At the end write which messages, commands, flags and faults clients have used, as text, and to FILE.json",
      0},
-    {"min-coverage", KEY_MIN_COVERAGE, "PERCENT", 0, "Exit status 4 if clients have used less than this percentage, 0 to 100, as in 72.5", 0},
+    {"min-coverage", KEY_MIN_COVERAGE, "PERCENT", 0,
+     "Exit status 4 if clients have used less than this percentage, 0 to 100, as in 72.5", 0},
     {0},
 };
 

@@ -19,7 +19,7 @@
 
 /* Of an option that takes readings, for --help. */
 #define READINGS_OPTION_HELP \
-    "How the units read what the manual leaves open, as in hold-exit=latch,speed-change=500ms; `list' lists all readings " \
+    "How the units behave where the manual leaves it open, as in hold-exit=latch,speed-change=500ms; `list' lists all readings " \
     "with their values (docs/READINGS.md)"
 
 /* A set of readings: bit `at`. */

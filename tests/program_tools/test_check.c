@@ -72,12 +72,12 @@ START_TEST(a_slip_is_answered_with_what_may_have_been_meant)
         {"FO R", "bad-value@1:1", "O is a letter; did you mean the digit 0?"},
         {"F1l0 R", "unknown-command@1:3", "l is a letter; did you mean the digit 1?"},
         {"F10 R100", "unknown-command@1:6", "R takes no number; F or B set the steps: F1000 R"},
-        {"F10 L2 R E2", "unknown-command@1:11", "E takes no number; L says how often: L3 ... E"},
-        {"F10; R", "unknown-command@1:4", "commands need nothing between them, a blank will do"},
-        {"# a", "unknown-command@1:1", "a comment stands in braces: { text }"},
+        {"F10 L2 R E2", "unknown-command@1:11", "E takes no number; L sets the number of passes: L3 ... E"},
+        {"F10; R", "unknown-command@1:4", "no separator is needed between commands; a blank is possible"},
+        {"# a", "unknown-command@1:1", "comments are written in braces: { text }"},
         {"F-100 R", "bad-value@1:1", "did you mean B, which moves back?"},
-        {"@5 J@5", "bad-value@1:4", "the number alone: J5 jumps to @5"},
-        {"{ a", "open-comment@1:1", "everything behind it counts as a comment"},
+        {"@5 J@5", "bad-value@1:4", "write the number alone: J5 jumps to @5"},
+        {"{ a", "open-comment@1:1", "everything after it is a comment"},
         {"@1 \x92" "1", "unknown-command@1:4", "a typographic apostrophe of code page 1250; the call is '"},
     };
     for (size_t i = 0; i < COUNT(slips); i++) {
@@ -253,7 +253,7 @@ static const char *check_two(const char *first, const char *second)
 START_TEST(motors_that_wait_for_each_other_are_found)
 {
     ck_assert_str_eq(check_two("O80 T81", "O81 T80"), "x:deadlock@1 y:deadlock@1");
-    ck_assert_str_eq(found.list[0].message, "motor 1 waits for VAR 80, which motor 2 sets only behind its wait for VAR 81");
+    ck_assert_str_eq(found.list[0].message, "motor 1 waits for VAR 80, which motor 2 sets only after its wait for VAR 81");
     ck_assert_str_eq(check_two("T81 O80 C81", "O81 T80 Z81 C80"), "");
     ck_assert_str_eq(check_two("O80 F9999 R", "W5"), "x:variable-never-set@1");
     ck_assert_str_eq(check_two("@1 I80H2 W1 J1 @2 W5", "W5"), "x:variable-never-set@4");

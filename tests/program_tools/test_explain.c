@@ -37,7 +37,7 @@ START_TEST(each_motion_has_its_parameters)
     ck_assert_str_eq(explain("C100 G500 D R"), "move: 500 steps back; S100 V1000 A2000");
     ck_assert_str_eq(explain("=800 G500"), "move to position 500: 300 steps back; S100 V1000 A2000");
     ck_assert_str_eq(explain("H"), "move to position 0; S100 V1000 A2000");
-    ck_assert_str_eq(explain("M03 G-"), "move back without an end; S100 V1000 A2000, guarded by M03");
+    ck_assert_str_eq(explain("M03 G-"), "move back without end; S100 V1000 A2000, guarded by M03");
     ck_assert_str_eq(explain("V50 (02"), "move back at start/stop speed until input 02 is 1; S100");
     ck_assert_str_eq(explain("V500 F100 Y V900 Y R"), "move: compound motion of 2 segments, 200 steps forward; S100");
     ck_assert_str_eq(explain("V500 F100 Y"), "segment of a compound motion: 100 steps forward; V500 A2000");

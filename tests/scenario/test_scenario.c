@@ -207,7 +207,7 @@ START_TEST(pulses_are_counted_by_direction_and_since_the_last_look)
                                      "  - set: 'R T41 R'\n  - wait: {motor: 1, state: idle}\n"
                                      "  - pulses: {motor: 1, count: 10, since: last}\n  - pulses: {motor: 1, count: 50}\n"
                                      "  - pulses: {motor: 1, count: 1, since: last}\n";
-    expect_fail(text, 10, "pulses of motor 1 since the last look, count == 1", "0 pulses, 0 forward, 0 back");
+    expect_fail(text, 10, "pulses of motor 1 since the last check, count == 1", "0 pulses, 0 forward, 0 back");
 }
 END_TEST
 
@@ -407,7 +407,7 @@ START_TEST(errors_name_the_place_and_what_was_expected)
     expect_error(QUIET "  - {message: '01', unit: all, answer: any}\n", "expected none: no unit answers");
     expect_error(QUIET "  - {pulses: {motor: 1, count: -1}}\n", "error: expected count");
     expect_error(QUIET "  - {pulses: {motor: 1, count: 1, since: noon}}\n", "error: expected start or last");
-    expect_error(QUIET "  - {expect: {message: {number: 1}}}\n", "3:14: error: expected something that lasts");
+    expect_error(QUIET "  - {expect: {message: {number: 1}}}\n", "3:14: error: expected a state: for a message");
     expect_error(QUIET "  - {stays: {t: 1}}\n", "3:5: error: expected for");
     expect_error("stimuli: [{di: {\"01\": 1}}]\nsteps: [{advance: 1s}]\n", "1:11: error: expected either at or when");
     expect_error("stimuli: [{at: 1s, set: 'R'}]\nsteps: [{advance: 1s}]\n", "1:11: error: expected one of di, expect, power");

@@ -64,7 +64,7 @@ test_files_with_a_motor_belong_together_others_do_not() {
     exits 0 "$RKM04" check x.rks y.rks
     same "" "$said" "each by itself"
     exits 0 "$RKM04" check 1=x.rks 2=y.rks
-    holds "$said" "x.rks:1:1: warning: motor 1 waits for VAR 80, which motor 2 sets only behind its wait for VAR 81" "together"
+    holds "$said" "x.rks:1:1: warning: motor 1 waits for VAR 80, which motor 2 sets only after its wait for VAR 81" "together"
 }
 
 test_wrong_usage_says_what_was_expected() {

@@ -35,7 +35,10 @@ long_options() {
 test_the_manual_pages_know_every_option_and_no_other() {
     local pages sub
     pages=$(dirname "$0")/../../docs/man
-    in_page() { sed 's/\\f[A-Z]//g; s/\\//g' "$pages/$1" | grep -o -E -e '--[a-z][a-z-]+' | grep -v -x -e --help -e --version | sort -u; }
+    in_page() {
+        sed 's/\\f[A-Z]//g; s/\\//g' "$pages/$1" | grep -o -E -e '--[a-z][a-z-]+' | grep -v -x -e --help -e --version |
+            sort -u
+    }
     same "$(for sub in serve exec test replay plot devices; do long_options "$RKM04" "$sub"; done | sort -u)" \
         "$(in_page rkm04.1)" "options in rkm04.1"
     for sub in check fmt explain estimate; do

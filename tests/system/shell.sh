@@ -32,7 +32,7 @@ test_a_file_ends_at_the_first_command_that_fails() {
     [[ $said != *01.02* ]] || fail "it went on"
     script 'set "x'
     exits 2 "$RKMCTL" -p "$folder/bus" shell -f "$folder/script"
-    holds "$complained" "script:1: error: expected the end of what stands in quotes" "an open quote"
+    holds "$complained" "script:1: error: expected a closing quote" "an open quote"
     script 'F100 q'
     exits 1 "$RKMCTL" -p "$folder/bus" shell -f "$folder/script"
     exits 1 "$RKMCTL" shell -f "$folder/none"
