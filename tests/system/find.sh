@@ -19,7 +19,7 @@ test_without_an_emulator_it_says_what_to_do() {
     exits 2 "$RKMCTL" version
     holds "$complained" "no emulator of yours is running: expected --port" "what is said"
     exits 1 "$RKMCTL" state
-    holds "$complained" "expected --control, or \`rkm04 serve'" "the same for the control socket"
+    holds "$complained" "expected --control, or a running \`rkm04 serve'" "the same for the control socket"
 }
 
 test_the_one_that_is_running_is_found() {

@@ -83,7 +83,6 @@ test_values_out_of_range_are_usage_errors_of_the_client() {
     refused 4 "$RKMCTL" "${port[@]}" -m 5 position
     refused hdlc "$RKMCTL" "${port[@]}" --framing morse version
     exits 2 "$RKMCTL" "${port[@]}" --timeout soon version
-    exits 2 "$RKMCTL" version
     exits 2 "$RKMCTL" "${port[@]}" set
     exits 2 "$RKMCTL" "${port[@]}" raw 0g
     exits 2 "$RKMCTL" "${port[@]}" raw 012
