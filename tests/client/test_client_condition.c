@@ -125,8 +125,8 @@ START_TEST(what_is_no_condition_is_refused_with_what_is_one)
     assert_refused(">=5", "m1.position>=5000");
     assert_refused("m5.idle", "m1.position");
     assert_refused("m1.speed>5", "m1.position, true, steps");
-    assert_refused("m1.position", "a comparison behind m1.position");
-    assert_refused("m1.position>=", "a value behind m1.position>=");
+    assert_refused("m1.position", "a comparison after m1.position");
+    assert_refused("m1.position>=", "a value after m1.position>=");
     assert_refused("m1.position>=ten", "a whole number");
     assert_refused("m1.position>=99999999999999999999", "a whole number");
     assert_refused("m1.position=5;idle", "found ';idle'");

@@ -105,7 +105,8 @@ static const char *const refused[][2] = {
     {"{\"plant\": {\"motors\": {\"1\": {\"offset\": true}}}}",
      "-32602 plant: expected the offset, a whole number -1000000000000..1000000000000, found true"},
     {"{\"plant\": \"motors: {1: {ofset: 1}}\\n\"}",
-     "-32602 plant: plant:1:14: error: expected offset, stops, turn, stall, jam or missing_lead, found \"ofset\""},
+     "-32602 plant: plant:1:14: error: expected offset, stops, turn, stall, jam or missing_lead,"
+     " found \"ofset\"; did you mean `offset'?"},
     {"{\"motor\": 1}", "-32602 expected position, jammed or missing_lead"},
     {"{\"motor\": 1, \"jammed\": 1}", "-32602 jammed: expected true or false"},
     {"{\"motor\": 1, \"jammed\": true, \"position\": 1}", "-32602 expected position alone, without jammed and missing_lead"},

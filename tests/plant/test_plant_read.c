@@ -42,7 +42,7 @@ START_TEST(with_several_units_the_file_must_say_which)
     ck_assert(!plant_rig_configure(&rig, "units: {4: {motors: {1: }}}"));
     ck_assert_str_eq(rig.errors, "plant:1:9: error: expected 3 or 5, found \"4\"\n");
     ck_assert(!plant_rig_configure(&rig, "units: {3: {motors: {1: }}, 5: {motor: 1}}"));
-    ck_assert_str_eq(rig.errors, "plant:1:33: error: expected motors or switches, found \"motor\"\n");
+    ck_assert_str_eq(rig.errors, "plant:1:33: error: expected motors or switches, found \"motor\"; did you mean `motors'?\n");
     ck_assert_ptr_null(rig.sim.unit[0].plant);
 }
 END_TEST
@@ -74,20 +74,21 @@ static const struct {
     const char *text, *said;
 } refused[] = {
     {"[]", "1:1: error: expected a plant: motors and switches"},
-    {"motor: 1", "1:1: error: expected units, motors or switches, found \"motor\""},
+    {"motor: 1", "1:1: error: expected units, motors or switches, found \"motor\"; did you mean `motors'?"},
     {"units: {1: {}}\nmotors: {}", "2:1: error: expected units, found \"motors\""},
     {"units: 1", "1:8: error: expected plants by unit, as in {3: {motors: …, switches: …}}"},
     {"units: {1: x}", "1:12: error: expected motors and switches"},
     {"motors: []", "1:9: error: expected motors by number, as in {1: {offset: 0}}"},
     {"motors: {5: {}}", "1:10: error: expected 1, 2, 3 or 4, found \"5\""},
     {"motors: {1: 5}", "1:13: error: expected a motor, as in {offset: 0}"},
-    {MOTOR("ofset: 1"), "1:14: error: expected offset, stops, turn, stall, jam or missing_lead, found \"ofset\""},
+    {MOTOR("ofset: 1"), "1:14: error: expected offset, stops, turn, stall, jam or missing_lead,"
+     " found \"ofset\"; did you mean `offset'?"},
     {MOTOR("offset: 1.5"), "1:22: error: expected the offset, a whole number -1000000000000..1000000000000, found 1.5"},
     {MOTOR("turn: 1"), "1:20: error: expected the steps per turn, a whole number 2..1000000000000, found 1"},
     {MOTOR("turn: 100, stops: {low: 1}"), "1:20: error: expected turn or stops: a turntable has no end"},
     {MOTOR("missing_lead: 2"), "1:28: error: expected whether a lead is missing, true or false, found 2"},
     {MOTOR("stops: 5"), "1:21: error: expected the end stops, as in {low: -50, high: 20000}"},
-    {MOTOR("stops: {top: 5}"), "1:22: error: expected low or high, found \"top\""},
+    {MOTOR("stops: {top: 5}"), "1:22: error: expected low or high, found \"top\"; did you mean `low'?"},
     {MOTOR("stops: {low: 5, high: 4}"), "1:21: error: expected a lower end stop that is not above the upper one"},
     {MOTOR("stops: {low: 5}"), "1:13: error: expected a motor between its end stops, found it at 0 (counter 0, offset 0)"},
     {MOTOR("jam: 5s"), "1:19: error: expected a jam, as in {from: 2s, to: 2500ms}"},

@@ -75,7 +75,7 @@ START_TEST(a_file_that_is_no_record_is_named_with_line_column_and_what_was_expec
         {HEAD "{\"t\":9,\"command\":\"di.set\"}\n", "x:2:1: expected \"params\", an object"},
         {HEAD "{\"t\":9,\"command\":\"shutdown\",\"params\":{}}\n", "x:2:18: expected \"command\", one that rkm04 "},
         {HEAD "{\"t\":9,\"command\":\"restore\",\"params\":{\"file\":\"/etc/passwd\"}}\n",
-         "x:2:18: expected the file that was restored before this line"},
+         "x:2:18: expected a line \"embedded\" with the restored file before this line"},
         {HEAD "{\"t\":9,\"out\":\"7e\"}\n", "x:2:14: expected no outputs: the recording declares that it has none"},
         {HEAD "{\"outputs\":true}\n", "x:2:12: expected \"outputs\": false"},
         {HEAD_OUT "{\"t\":9,\"moved\":1}\n", "x:2:16: expected {\"outputs\":false} before this line"},
