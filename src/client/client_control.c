@@ -19,9 +19,13 @@
 
 bool client_job_connect(struct client_job *job)
 {
+    static struct client_found pair;
     char path[PATH_MAX];
-    const char *named = job->path != NULL ? job->path : getenv("RKM04_CONTROL");
-    if (!job->connected && (named == NULL || named[0] == '\0') && client_rpc_path(NULL, path) && access(path, F_OK) != 0) {
+    const char *named = job->path != NULL ? job->path : getenv("RKM04_CONTROL"), *port = getenv("RKM04_PORT");
+    const bool is_named = named != NULL && named[0] != '\0';
+    if (!job->connected && !is_named && port != NULL && port[0] != '\0' && client_find_pair(port, NULL, &pair))
+        job->path = pair.control;
+    else if (!job->connected && !is_named && client_rpc_path(NULL, path) && access(path, F_OK) != 0) {
         const struct client_found *found = client_find_one("--control");
         if (found == NULL)
             return false;

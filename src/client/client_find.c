@@ -4,6 +4,7 @@
 #include <err.h>
 #include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -77,6 +78,43 @@ size_t client_find(struct client_found found[CLIENT_FOUND_MAX])
     if (sockets != NULL)
         fclose(sockets);
     return count;
+}
+
+/* What follows the host in the name of a TCP port of this machine; NULL: it is another port. */
+static const char *local_number(const char *port)
+{
+    static const char *const hosts[] = {"tcp:localhost:", "tcp:127.0.0.1:"};
+    for (size_t i = 0; i < sizeof hosts / sizeof hosts[0]; i++)
+        if (strncmp(port, hosts[i], strlen(hosts[i])) == 0)
+            return port + strlen(hosts[i]);
+    return NULL;
+}
+
+static bool is_same_port(const char *one, const char *other)
+{
+    char file[PATH_MAX], other_file[PATH_MAX];
+    const char *number = local_number(one), *other_number = local_number(other);
+    if (number != NULL && other_number != NULL)
+        return strcmp(number, other_number) == 0;
+    return strcmp(one, other) == 0 ||
+           (realpath(one, file) != NULL && realpath(other, other_file) != NULL && strcmp(file, other_file) == 0);
+}
+
+bool client_find_pair(const char *port, const char *control, struct client_found *pair)
+{
+    static struct client_found found[CLIENT_FOUND_MAX];
+    char beside[PATH_MAX];
+    if (control != NULL)
+        return ask(pair, control);
+    int length = snprintf(beside, sizeof beside, "%s" ENDING, port);
+    if (length > 0 && (size_t)length < sizeof beside && access(beside, F_OK) == 0 && ask(pair, beside))
+        return true;
+    for (size_t i = client_find(found); i-- > 0;)
+        if (is_same_port(found[i].port, port)) {
+            *pair = found[i];
+            return true;
+        }
+    return false;
 }
 
 const struct client_found *client_find_one(const char *option)

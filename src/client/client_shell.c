@@ -18,6 +18,8 @@
 
 #include <rkm04/limits.h>
 
+#include "client_control.h"
+#include "client_find.h"
 #include "client_help.h"
 #include "client_request.h"
 #include "client_usage.h"
@@ -28,8 +30,11 @@
 #define OPTIONS_MAX 12
 #define PROMPT_SIZE 56
 
+#define LINE_SIZE (4 * RKM04_MESSAGE_MAX)
+
 struct state {
-    const struct client_shell *shell;
+    struct client_shell shell;
+    struct client_found pair;
     unsigned node, motor;
     bool has_node;
     bool is_person;
@@ -85,7 +90,7 @@ static void add_number(struct line *line, const char *name, unsigned value)
 
 static void add_options(struct line *line, const struct state *state, const char *command)
 {
-    const struct client_shell *shell = state->shell;
+    const struct client_shell *shell = &state->shell;
     line->argv[line->argc++] = (char *)"rkmctl";
     if (state->has_node)
         add_number(line, "node", state->node);
@@ -106,11 +111,43 @@ static void add_options(struct line *line, const struct state *state, const char
         add_number(line, "line", (unsigned)shell->line);
 }
 
+static const char *given_or(const char *option, const char *name)
+{
+    const char *text = option != NULL ? option : getenv(name);
+    return text != NULL && text[0] != '\0' ? text : NULL;
+}
+
+/* Where only one of --port and --control was given, the other is that of the same emulator. Returns false if there is none; said. */
+static bool choose_emulator(struct state *state, bool for_port)
+{
+    struct client_shell *shell = &state->shell;
+    const bool has_port = given_or(shell->port, "RKM04_PORT") != NULL, has_control = given_or(shell->control, "RKM04_CONTROL") != NULL;
+    if (for_port ? has_port || shell->control == NULL : has_control || shell->port == NULL)
+        return true;
+    if (!client_find_pair(shell->port, for_port ? shell->control : NULL, &state->pair)) {
+        warnx("no emulator of yours has the %s %s: expected %s", for_port ? "control socket" : "bus",
+              for_port ? shell->control : shell->port, for_port ? "--port" : "--control");
+        return false;
+    }
+    if (for_port && state->pair.port[0] == '\0') {
+        warnx("the emulator has several buses: expected --port");
+        return false;
+    }
+    if (for_port)
+        shell->port = state->pair.port;
+    else
+        shell->control = state->pair.control;
+    return true;
+}
+
 /* Do a command of rkmctl in a process of its own. */
-static enum exit_status run(const struct state *state, char *const *word, int count)
+static enum exit_status run(struct state *state, char *const *word, int count)
 {
     static struct line line;
     int status;
+    const bool for_port = client_request_has(word[0]);
+    if ((for_port || client_control_has(word[0])) && !choose_emulator(state, for_port))
+        return STATUS_FAILURE;
     line.argc = 0;
     add_options(&line, state, word[0]);
     for (int i = 0; i < count; i++)
@@ -120,7 +157,7 @@ static enum exit_status run(const struct state *state, char *const *word, int co
     pid_t child = fork();
     if (child == 0) {
         signal(SIGINT, SIG_DFL);
-        status = state->shell->run(line.argc, line.argv);
+        status = state->shell.run(line.argc, line.argv);
         fflush(stdout);
         _exit(status);
     }
@@ -198,21 +235,37 @@ static enum exit_status do_line(struct state *state, char *line)
 
 /* ---- A file ----------------------------------------------------------------------------------------------------------- */
 
+/* Is what fgets has read into `line` a whole line of text? */
+static bool is_whole(const struct state *state, const char *line, FILE *in)
+{
+    size_t length = strlen(line);
+    if (length > 0 && (line[length - 1] == '\n' || feof(in)))
+        return true;
+    if (length == LINE_SIZE - 1)
+        fprintf(stderr, "%s:%u: error: expected a line of at most %d bytes\n", state->name, state->line, LINE_SIZE - 2);
+    else
+        fprintf(stderr, "%s:%u: error: expected a text, found byte 00\n", state->name, state->line);
+    return false;
+}
+
 static enum exit_status do_file(struct state *state, FILE *in)
 {
-    char *line = NULL;
-    size_t room = 0;
-    ssize_t length;
+    static char line[LINE_SIZE];
     enum exit_status status = STATUS_SUCCESS;
-    while (!state->is_over && status == STATUS_SUCCESS && (length = getline(&line, &room, in)) >= 0) {
+    while (!state->is_over && status == STATUS_SUCCESS && fgets(line, sizeof line, in) != NULL) {
         state->line++;
+        if (!is_whole(state, line, in))
+            return STATUS_FAILURE;
         line[strcspn(line, "\r\n")] = '\0';
         status = do_line(state, line);
         if (status != STATUS_SUCCESS)
             fprintf(stderr, "%s:%u: the command has failed (exit status %d); no further commands are executed\n",
                     state->name, state->line, (int)status);
     }
-    free(line);
+    if (ferror(in)) {
+        warn("cannot read %s", state->name);
+        return STATUS_FAILURE;
+    }
     return status;
 }
 
@@ -303,7 +356,7 @@ static enum exit_status do_person(struct state *state)
 
 enum exit_status client_shell(const struct client_shell *shell)
 {
-    struct state state = {.shell = shell, .node = shell->node, .motor = shell->motor, .has_node = shell->has_node};
+    struct state state = {.shell = *shell, .node = shell->node, .motor = shell->motor, .has_node = shell->has_node};
     const bool is_stdin = shell->file == NULL || strcmp(shell->file, "-") == 0;
     state.name = is_stdin ? "<stdin>" : shell->file;
     state.is_person = shell->file == NULL && isatty(STDIN_FILENO);

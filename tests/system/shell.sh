@@ -38,6 +38,35 @@ test_a_file_ends_at_the_first_command_that_fails() {
     exits 1 "$RKMCTL" shell -f "$folder/none"
 }
 
+test_a_file_that_cannot_be_read_as_lines_is_an_error() {
+    serve bus
+    mkdir "$folder/directory"
+    exits 1 "$RKMCTL" -p "$folder/bus" shell -f "$folder/directory"
+    holds "$complained" "cannot read $folder/directory: Is a directory" "a folder"
+    head -c 100000 /dev/zero | tr '\0' F >"$folder/long"
+    exits 1 "$RKMCTL" -p "$folder/bus" shell -f "$folder/long"
+    holds "$complained" "long:1: error: expected a line of at most" "a line without an end"
+    printf 'F100\0 R\n' >"$folder/binary"
+    exits 1 "$RKMCTL" -p "$folder/bus" shell -f "$folder/binary"
+    holds "$complained" "binary:1: error: expected a text" "a byte 0"
+}
+
+test_all_commands_are_for_the_same_emulator() {
+    serve one --node 3
+    serve two
+    script 'di 5=1' state
+    exits 0 env -u RKM04_CONTROL XDG_RUNTIME_DIR="$folder" "$RKMCTL" -p "$folder/two" shell -f "$folder/script"
+    holds "$said" "unit 1" "the unit of the emulator whose bus it is"
+    script 'node 3' position
+    exits 0 env -u RKM04_PORT "$RKMCTL" -c "$folder/one.control" shell -f "$folder/script"
+    same "motor 1: 0" "$said" "the position in the emulator whose control socket it is"
+    script state
+    exits 1 env -u RKM04_CONTROL "$RKMCTL" -p "$folder/none" shell -f "$folder/script"
+    holds "$complained" "no emulator of yours has the bus $folder/none: expected --control" "a bus without an emulator"
+    exits 0 env -u RKM04_CONTROL RKM04_PORT="$folder/one" "$RKMCTL" state
+    holds "$said" "unit 3" "the emulator of RKM04_PORT"
+}
+
 test_commands_come_from_a_pipe_too() {
     serve bus
     said=$(echo position | "$RKMCTL" -p "$folder/bus" shell) || fail "a pipe"
@@ -58,8 +87,9 @@ test_a_person_edits_and_completes_and_finds_the_lines_again() {
 
 test_an_interrupt_ends_the_command_and_not_the_shell() {
     serve bus
-    person 'events step...' 'wait for events step' '^C' position '^D'
+    person 'events step...' 'wait for listening' '^C' position '^D'
     holds "$shown" "motor 1: 0" "a command behind it"
+    [[ $shown != *unknown* ]] || fail "events had not begun"
 }
 
 run_cases "$@"

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """A person at `rkmctl shell`: shell_client.py RKMCTL ARGUMENT...: types what stands on standard input, a line for each line that
-comes back with a prompt, and prints all that was shown. \\t is Tab, ^C the interrupt, ^D the end."""
+comes back with a prompt (behind one that ends with ... none comes), and prints all that was
+shown. \\t is Tab, ^C the interrupt, ^D the end."""
 import os
 import pty
 import select
@@ -36,7 +37,8 @@ def main():
     shown = bytearray()
     read_until(terminal, shown, PROMPT)
     for line in sys.stdin.read().splitlines():
-        keys = line.replace("\\t", "\t").encode()
+        stays = line.endswith("...")  # the command does not end by itself
+        keys = line.removesuffix("...").replace("\\t", "\t").encode()
         if line == "^C":
             os.write(terminal, b"\x03")
         elif line == "^D":
@@ -49,7 +51,7 @@ def main():
         if line in ("^D", "quit"):
             break
         for _ in range(2 if "\\t" in line else 1):  # a completed line is drawn anew, with its prompt
-            if not line.endswith("..."):
+            if not stays:
                 read_until(terminal, shown, PROMPT)
     _, status = os.waitpid(child, 0)
     sys.stdout.write(shown.decode(errors="replace"))
