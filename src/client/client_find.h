@@ -21,8 +21,8 @@ size_t client_find(struct client_found found[CLIENT_FOUND_MAX]);
  * ("--port"). */
 const struct client_found *client_find_one(const char *option);
 
-/* The one with the bus `port`, or, where `control` is not NULL, with this control socket. Returns false if there is none, which is
- * not said. */
+/* The one with the bus `port`, or, where `control` is not NULL, with this control socket. Returns false, and reports nothing, if
+ * there is none. */
 bool client_find_pair(const char *port, const char *control, struct client_found *pair);
 
 #endif

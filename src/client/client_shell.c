@@ -117,11 +117,12 @@ static const char *given_or(const char *option, const char *name)
     return text != NULL && text[0] != '\0' ? text : NULL;
 }
 
-/* Where only one of --port and --control was given, the other is that of the same emulator. Returns false if there is none; said. */
+/* Where only one of --port and --control was given, the other is that of the same emulator. Returns false if there is none. */
 static bool choose_emulator(struct state *state, bool for_port)
 {
     struct client_shell *shell = &state->shell;
-    const bool has_port = given_or(shell->port, "RKM04_PORT") != NULL, has_control = given_or(shell->control, "RKM04_CONTROL") != NULL;
+    const bool has_port = given_or(shell->port, "RKM04_PORT") != NULL;
+    const bool has_control = given_or(shell->control, "RKM04_CONTROL") != NULL;
     if (for_port ? has_port || shell->control == NULL : has_control || shell->port == NULL)
         return true;
     if (!client_find_pair(shell->port, for_port ? shell->control : NULL, &state->pair)) {
