@@ -308,6 +308,9 @@ static void draw_position(struct drawing *drawing, const struct plot_motor *moto
         fputs("\"><title>true position</title></path>\n", drawing->out);
     }
     close_panel(drawing, POSITION_HEIGHT);
+    if (motor->truths > 0)
+        fprintf(drawing->out, "<text class=\"soft end\" x=\"%g\" y=\"%.1f\">dashed: true position</text>\n",
+                LEFT + drawing->time.size, drawing->y + POSITION_HEIGHT + 13);
     drawing->y += POSITION_HEIGHT;
 }
 

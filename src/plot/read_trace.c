@@ -2,6 +2,7 @@
 /* A trace has the pulses, not the plan: speeds are means over a few milliseconds. */
 #include "read_trace.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,6 +16,7 @@ struct reader {
     const char *name, *unit;
     FILE *errors;
     size_t line;
+    uint64_t us; /* of the last row */
     struct {
         double since, last;      /* us of the pulse that the present mean begins with, < 0: none yet; of the last one */
         double from, position;   /* counter there, now */
@@ -134,6 +136,12 @@ static bool take_row(struct reader *reader, char *line)
     }
     if (!number_read(part[0], 0, TIME_VALUE_MAX, &us))
         return is_wrong(reader, 1, "a time in us");
+    if (us < reader->us) {
+        char expected[64];
+        snprintf(expected, sizeof expected, "a time of %" PRIu64 " us or later, as in the row before", reader->us);
+        return is_wrong(reader, 1, expected);
+    }
+    reader->us = us;
     struct row row = {line, (double)us, part[1], part[2], part[3]};
     if (strchr(row.source, '.') != NULL && reader->unit == NULL)
         return is_wrong(reader, (size_t)(part[1] - line) + 1, "a trace of one unit: choose one of them with --unit");

@@ -377,18 +377,42 @@ static bool write_picture(FILE *out, const struct plot_curves *curves, const str
     }
 }
 
-static bool write_output(const struct plot_curves *curves, const struct options *options)
+static void copy_file(FILE *out, FILE *in)
+{
+    char bytes[BUFSIZ];
+    size_t length;
+    rewind(in);
+    while ((length = fread(bytes, 1, sizeof bytes, in)) > 0 && fwrite(bytes, 1, length, out) == length) {
+    }
+}
+
+static bool write_to_file(const struct plot_curves *curves, const struct options *options, FILE *picture)
 {
     char *why = NULL;
-    if (options->output == NULL)
-        return write_picture(stdout, curves, options) && (fflush(stdout) == 0 || is_wrong("standard output", strerror(errno)));
+    if (picture == NULL)
+        return is_wrong("", strerror(errno));
+    if (!write_picture(picture, curves, options))
+        return false;
     FILE *out = output_file_open(options->output, &forms[options->form].kind, options->output_flags | OUTPUT_MAY_WAIT, &why);
-    bool is_right = out != NULL && write_picture(out, curves, options);
+    bool is_right = out != NULL;
+    if (is_right)
+        copy_file(out, picture);
     if (out != NULL && output_file_close(out) != 0)
         is_right = is_wrong(options->output, strerror(errno));
     if (out == NULL)
         fprintf(stderr, COMMAND ": cannot write %s: %s\n", options->output, why != NULL ? why : strerror(ENOMEM));
     free(why);
+    return is_right;
+}
+
+static bool write_output(const struct plot_curves *curves, const struct options *options)
+{
+    if (options->output == NULL)
+        return write_picture(stdout, curves, options) && (fflush(stdout) == 0 || is_wrong("standard output", strerror(errno)));
+    FILE *picture = tmpfile(); /* what is at the place already is overwritten by a whole picture only */
+    bool is_right = write_to_file(curves, options, picture);
+    if (picture != NULL)
+        fclose(picture);
     return is_right;
 }
 

@@ -93,6 +93,11 @@ test_without_rsvg_convert_a_png_is_refused_and_the_way_out_named() {
     program a 'F10 R'
     exits 1 env PATH=/nowhere "$RKM04" plot -o "$folder/a.png" "$folder/a.rks"
     holds "$complained" "librsvg2-bin" "what to install"
+    [[ ! -e $folder/a.png ]] || fail "there is a file"
+    exits 0 "$RKM04" plot -o "$folder/a.png" "$folder/a.rks"
+    cp "$folder/a.png" "$folder/kept.png"
+    exits 1 env PATH=/nowhere "$RKM04" plot -o "$folder/a.png" "$folder/a.rks"
+    cmp -s "$folder/a.png" "$folder/kept.png" || fail "the picture that was there has gone"
 }
 
 test_a_run_without_end_is_drawn_until_it_repeats() {
@@ -106,7 +111,8 @@ test_a_run_without_end_is_drawn_until_it_repeats() {
 
 test_a_plant_shows_where_the_axis_is() {
     exits 0 "$RKM04" plot -o "$folder/a.svg" "$examples/linear-axis.yaml"
-    holds "$(<"$folder/a.svg")" "true position" "the curve of the plant"
+    holds "$(<"$folder/a.svg")" "<title>true position</title>" "the curve of the plant"
+    holds "$(<"$folder/a.svg")" ">dashed: true position</text>" "what the dashed curve is"
 }
 
 test_thousands_of_motions_make_a_small_picture() {
@@ -122,6 +128,9 @@ test_refusals_name_their_place_and_write_nothing() {
     printf 't_us,source,event,value\n12,m1,step,x\n' >"$folder/bad.csv"
     exits 1 "$RKM04" plot -o "$folder/a.svg" "$folder/bad.csv"
     holds "$complained" "bad.csv:2:12: error: expected a position" "the trace"
+    printf 't_us,source,event,value\n12,m1,step,1\n11,m1,step,2\n' >"$folder/bad.csv"
+    exits 1 "$RKM04" plot -o "$folder/a.svg" "$folder/bad.csv"
+    holds "$complained" "bad.csv:3:1: error: expected a time of 12 us or later" "a time that goes back"
     program a 'F10 R'
     exits 1 "$RKM04" plot -o "$folder/a.rks" --format svg "$folder/a.rks"
     holds "$complained" "cannot write" "over its own input"
