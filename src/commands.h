@@ -4,7 +4,7 @@
  * COMMAND_TABLE(ROW) expands ROW(character, name, form, ranges...) for each. parse.c makes from it what may be written,
  * interp.c a dispatch on the functions do_<name>.
  *
- * form, what stands behind the character:
+ * form, what follows the character:
  *   NONE      nothing
  *   NUMBER    a number in one of the ranges
  *   BIT       the same, the number of an input, output, variable or function: canonically two digits

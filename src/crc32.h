@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Go on over `length` bytes. `crc`: 0 at the start, later what the call before returned. Returns the value so far. */
+/* Continue over `length` bytes. `crc`: 0 at the start, later what the call before returned. Returns the value so far. */
 uint32_t crc32_update(uint32_t crc, const uint8_t *data, size_t length);
 
 #endif

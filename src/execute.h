@@ -5,10 +5,10 @@
 
 #include <rkm04/unit.h>
 
-/* Execute motor->command, whose number is motor->number; motor->next stands behind it, motor->due one slot later. */
+/* Execute motor->command, whose number is motor->number; motor->next follows it, motor->due one slot later. */
 void execute_command(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
-/* Motor in O, Z, `[` or before a label that is not in memory: go on if what it waits for is there. Returns whether it is. */
+/* Motor in O, Z, `[` or before a label that is not in memory: continue if what it waits for is there. Returns whether it is. */
 bool execute_wait_is_over(const struct rkm04_unit *unit, struct rkm04_motor *motor);
 
 /* Do nothing for so many slots. */

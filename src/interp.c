@@ -141,7 +141,7 @@ void interp_request(struct rkm04_motor *motor, char request)
         motor->hold_fresh = request == 'K';
         return;
     }
-    if (request == 'K' && !has_work(motor)) /* nothing to hold, whatever arrives behind it */
+    if (request == 'K' && !has_work(motor)) /* nothing to hold, whatever arrives after it */
         return;
     if (n > 0 && motor->pending[n - 1] == request)
         return;
@@ -240,8 +240,8 @@ static void apply_requests(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->pendings = 0;
 }
 
-/* Execution goes on at the commands stored since K, X or a fault, or is held before them; the rest of what was before is dropped
- * (C3). */
+/* Execution continues at the commands stored since K, X or a fault, or is held before them; the rest of what was before is
+ * dropped (C3). */
 static void start_new_commands(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (!is_at_rest(motor) || motor->fresh == RKM04_NEVER ||
@@ -259,7 +259,7 @@ static void start_new_commands(struct rkm04_unit *unit, struct rkm04_motor *moto
     motor->fresh = RKM04_NEVER;
 }
 
-/* After C75 a held motor goes on with what it was doing. */
+/* After C75 a held motor continues with what it was doing. */
 static void resume_from_hold(struct rkm04_unit *unit, struct rkm04_motor *motor)
 {
     if (motor->state != RKM04_HELD || !motor->resume || motion_free_from(unit, motor) > unit->now)

@@ -20,7 +20,7 @@ enum phase {
     KEPT_ONE,
     KEPT_TWO, /* the older of two bytes kept back goes to the buffer */
     PHASE_MASK = 0x0F,
-    ESCAPED = 0x80 /* beside the phase: the byte before was an escape */
+    ESCAPED = 0x80 /* besides the phase: the byte before was an escape */
 };
 
 static void take(struct rkm04_receiver *r, uint8_t byte, uint8_t *buffer, size_t room)
@@ -54,7 +54,7 @@ static void take(struct rkm04_receiver *r, uint8_t byte, uint8_t *buffer, size_t
     r->left = (r->left << 8 | byte) & 0xFFFFu;
 }
 
-/* A flag ends what stands before it. Returns true if that was a whole message. */
+/* A flag ends what is before it. Returns true if that was a whole message. */
 static bool finish(struct rkm04_receiver *r)
 {
     if (r->phase == HUNT || r->phase == DNODE)

@@ -28,13 +28,13 @@ uint64_t motion_mark_due(const struct rkm04_motor *motor);
 /* Send that pulse and set its outputs. */
 void motion_pass_mark(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
-/* Decelerate to a stop (R5); what comes behind it stands in motor->after. */
+/* Decelerate to a stop (R5); what comes after it is in motor->after. */
 void motion_stop(struct rkm04_unit *unit, struct rkm04_motor *motor, enum rkm04_after after);
 
-/* Look at M, N and the input of a limit move in this slot (C5). */
+/* Check M, N and the input of a limit move in this slot (C5). */
 void motion_check_inputs(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
-/* Go on with the rest of a held motion (C3). */
+/* Continue with the rest of a held motion (C3). */
 void motion_resume(struct rkm04_unit *unit, struct rkm04_motor *motor);
 
 /* Stop at once, without a ramp (C1). The motion is dropped. */

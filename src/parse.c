@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* parse.c: program text -> commands, and commands -> canonical text (specification section 5, P8).
  *
- * What a command looks like stands in commands.h; how each form of operand is read, checked and written stands in `forms`.
- * The characters: blanks are all up to 0x20, a comment is { ... } and may stand between commands only. */
+ * What a command looks like is in commands.h; how each form of operand is read, checked and written is in `forms`.
+ * The characters: blanks are all up to 0x20, a comment is { ... } and may be between commands only. */
 #include <rkm04/text.h>
 
 #include "commands.h"
@@ -233,7 +233,7 @@ static size_t format_absolute(char *text, uint32_t argument)
     return 1;
 }
 
-/* Parts behind one that does not fit are read too, so that they are not taken for commands when reading goes on. */
+/* Parts after one that does not fit are read too, so that they are not taken for commands when reading continues. */
 static uint32_t read_jump_if(struct rkm04_reader *reader, const struct row *row)
 {
     uint32_t bit = take_in_ranges(reader, row, 0, 2);

@@ -129,7 +129,7 @@ static void add_end(struct rkm04_profile *profile, struct rkm04_place at, uint64
 
 /* ---- The plan ----------------------------------------------------------------------------------------------------- */
 
-/* Where planning stands: a place in a segment, and the speed there. */
+/* The present state of planning: a place in a segment, and the speed there. */
 struct state {
     struct rkm04_place at;
     uint64_t q;
@@ -295,9 +295,9 @@ void profile_plan(struct rkm04_motion *motion)
     plan_from(motion, (struct state){at, q_of(slower(speed, motion->start_speed)), segment, false});
 }
 
-/* ---- Planning anew while moving -------------------------------------------------------------------------------------- */
+/* ---- Planning again while moving -------------------------------------------------------------------------------------- */
 
-/* w^2, the places behind the point counted in as far as they matter. */
+/* w^2, the places after the point counted in as far as they matter. */
 static struct wide square_of(struct rkm04_fixed w)
 {
     struct wide square = wide_product((uint64_t)w.whole, (uint64_t)w.whole);
@@ -511,7 +511,7 @@ enum profile_answer profile_go(struct rkm04_motion *motion, uint64_t tick, uint3
         return start_from_rest(motion, tick, rate, goal);
     struct state state = present_state(motion, tick);
     struct rkm04_fixed y;
-    state.at.high -= (uint64_t)motion->done << 32; /* anew from the pulse sent last: no motion runs out of places */
+    state.at.high -= (uint64_t)motion->done << 32; /* again from the pulse sent last: no motion runs out of places */
     state.segment = 0;
     motion->done = 0;
     motion->changed = true;

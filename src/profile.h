@@ -6,11 +6,11 @@
 
 #include <rkm04/motion.h>
 
-/* Plan the rest of a motion from standstill at motion->done steps: on to its end, or for ever (R1, R3, R4; after a hold C3).
+/* Plan the rest of a motion from standstill at motion->done steps: on to its end, or without end (R1, R3, R4; after a hold C3).
  * The break points that were passed before stay in the table. */
 void profile_plan(struct rkm04_motion *motion);
 
-/* Plan anew at `tick` while moving: the speed of the segment it is in becomes `speed` (C4, R6). No effect on the final ramp. */
+/* Plan again at `tick` while moving: the speed of the segment it is in becomes `speed` (C4, R6). No effect on the final ramp. */
 void profile_change_speed(struct rkm04_motion *motion, uint64_t tick, uint16_t speed);
 
 /* Plan a stop from the present speed at `tick` (R5). Nothing changes on the final ramp.
@@ -44,7 +44,7 @@ enum profile_answer profile_go(struct rkm04_motion *motion, uint64_t tick, uint3
 
 /* ---- What the host sees ---- */
 
-/* The i-th break point as P7 prints it. Returns false behind the last one. */
+/* The i-th break point as P7 prints it. Returns false after the last one. */
 struct profile_point {
     uint32_t step;
     uint32_t speed; /* steps/s, rounded down */

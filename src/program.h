@@ -28,7 +28,7 @@ unsigned program_place(uint64_t number);
 /* Number of the label 1..80 written last. Returns false if it is not in memory. */
 bool program_label(const struct rkm04_program *program, unsigned label, uint64_t *number);
 
-/* Has a `]` arrived behind this number? (C9) */
+/* Has a `]` arrived after this number? (C9) */
 bool program_closed_after(const struct rkm04_program *program, uint64_t number);
 
 #endif

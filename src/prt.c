@@ -27,7 +27,7 @@ enum flag { FLAG_RIGHT = 0, FLAG_BAD_VALUE = 1, FLAG_UNKNOWN = 2, FLAG_OVERFLOW 
 
 /* What a text turned out to be. */
 struct text {
-    struct rkm04_reader program; /* stands behind the last `\`, or at the beginning */
+    struct rkm04_reader program; /* after the last `\`, or at the beginning */
     struct rkm04_command sole;   /* the command, if there is just one */
     unsigned commands; /* one that is not to be taken as alone counts twice */
     bool reset;
@@ -189,7 +189,7 @@ static void put_position(struct rkm04_answer *answer, int32_t position)
         put(answer, text[i]);
 }
 
-/* The break points as they stand now, so that the answer does not change while it goes out (P7). */
+/* The break points as they are now, so that the answer does not change while it goes out (P7). */
 static void store_table(const struct rkm04_motor *motor, struct rkm04_answer *answer)
 {
     struct profile_point point;
@@ -328,7 +328,7 @@ static bool program_chunk(const struct rkm04_unit *unit, struct rkm04_answer *an
     return true;
 }
 
-/* One point of a table; behind the last one the closing bracket. */
+/* One point of a table; after the last one the closing bracket. */
 static bool table_chunk(struct rkm04_answer *answer)
 {
     uint8_t *to = answer->chunk;

@@ -11,7 +11,7 @@ void prt_handle(struct rkm04_unit *unit, const uint8_t *message, size_t length, 
 /* Set Command for motors '0'..'4' (P1 to P4). Returns the flag; *character is 0 unless the flag is 1 or 2. */
 int prt_set_command(struct rkm04_unit *unit, uint8_t motor, const uint8_t *text, size_t length, uint8_t *character);
 
-/* The next byte of the answer's message. Returns false behind the last one. */
+/* The next byte of the answer's message. Returns false after the last one. */
 bool prt_answer_byte(const struct rkm04_unit *unit, struct rkm04_answer *answer, uint8_t *byte);
 
 /* Bytes of the whole message of an answer that has not been begun. */

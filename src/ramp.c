@@ -243,7 +243,7 @@ uint64_t ramp_quiet_pulses(const struct rkm04_ramp *ramp, uint32_t most)
     if (ramp->slope > 0) /* the mean speed of the leg, which its first pulses do not reach */
         w += ramp->slope * (int64_t)(ramp->end.tick - ramp->at);
     uint64_t quiet = ramp_quiet_until(ramp), fastest = ramp->next + (uint64_t)(ramp->step / w) * most;
-    if (most != UINT32_MAX && fastest < quiet) /* an endless motion is quiet for ever */
+    if (most != UINT32_MAX && fastest < quiet) /* an endless motion is quiet without end */
         quiet = fastest;
     return quiet > ramp->next ? quiet : ramp->next; /* as soon as no pulse is left in the leg, or in the motion */
 }
@@ -280,7 +280,7 @@ size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint6
 /* As motion_moved(), for a way of any length. */
 struct leap {
     uint64_t ticks, steps; /* passed, the next one included */
-    struct rkm04_fixed y;  /* behind them */
+    struct rkm04_fixed y;  /* after them */
     int64_t w;
 };
 

@@ -33,7 +33,7 @@ static inline uint32_t ramp_step_of(struct rkm04_place place)
  * pulses come at most once a tick. */
 void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick, uint32_t rate);
 
-/* Go on from the present position and speed at `tick` along a profile planned anew: point[leg] is the present place. */
+/* Continue from the present position and speed at `tick` along a profile planned again: point[leg] is the present place. */
 void ramp_continue(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick);
 
 /* Put the ticks of the next pulses due up to and including `limit` into `tick`, at most `room`, of one leg. Moves profile->leg

@@ -162,7 +162,7 @@ uint64_t ramp_fast_from(uint32_t slope, uint32_t rate)
 {
     uint64_t w = 98000000;
     uint32_t top = 1, megahertz = 1000000;
-    if (slope == 0) /* a speed that is no whole number: the places of w behind the point must not matter */
+    if (slope == 0) /* a speed that is no whole number: the places of w after the point must not matter */
         slope = 1;
     for (; megahertz < rate; megahertz *= 2)
         w = w * 9 / 4; /* 2^(8/7) = 2.208, and a little for the places of 1 / w */
@@ -172,7 +172,7 @@ uint64_t ramp_fast_from(uint32_t slope, uint32_t rate)
 }
 
 /* How many pulses make a block, and from which w on, in sixteenths of ramp->fast: the error grows with pulses^4 / w^7. Fewer than
- * are left in the leg, so that the next pulse behind a block always is of the same leg. */
+ * are left in the leg, so that the next pulse after a block always is of the same leg. */
 static uint8_t block_of(const struct rkm04_ramp *ramp)
 {
     static const struct {
@@ -212,7 +212,7 @@ static inline int64_t curve_term(uint32_t steep, uint64_t a, uint64_t inverse)
     return (int64_t)((product.high * steep + low.high) << 9 | low.low >> 55);
 }
 
-/* The pulses behind the present one, at which y and w stand, computed from `middle` ticks on: the cubic's value at the first,
+/* The pulses after the present one, at which y and w stand, computed from `middle` ticks on: the cubic's value at the first,
  * RAMP_NEAR too late, and its differences. */
 static void set_cubic(struct rkm04_ramp *ramp, int64_t middle)
 {

@@ -16,7 +16,7 @@ void ramp_find_first(struct rkm04_ramp *ramp);
  * there may be more up to `limit`. */
 size_t ramp_leg_pulses(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room);
 
-/* Pulse j behind the one at which y and w stand is due at `tick` or a tick earlier. Returns which. */
+/* Pulse j after the one at which y and w stand is due at `tick` or a tick earlier. Returns which. */
 uint64_t ramp_exact_tick(const struct rkm04_ramp *ramp, uint64_t tick, size_t j);
 
 /* w from which on pulses of a slope in steps/s^2 may be worked out in blocks of 16. */
@@ -32,7 +32,7 @@ bool ramp_begin_block(struct rkm04_ramp *ramp);
 /* y and w of the ramp d ticks on, or back if d < 0. */
 struct motion_state ramp_moved(const struct rkm04_ramp *ramp, int64_t d);
 
-/* Let y and w stand at the next pulse, and no block be under way. */
+/* Let y and w be at the next pulse, and no block be under way. */
 void ramp_leave_block(struct rkm04_ramp *ramp);
 
 #endif

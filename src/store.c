@@ -110,7 +110,7 @@ static unsigned block_of(const struct slot *slot, int half)
     return 2 * (slot->motor - 1) + (unsigned)half;
 }
 
-/* Could this command stand in a memory? `\`, K and C75 are executed at once and never stored. */
+/* Can this command be in a memory? `\`, K and C75 are executed at once and never stored. */
 static bool is_storable(struct rkm04_command command)
 {
     return rkm04_command_valid(command) && command.op != '\\' && command.op != 'K' &&
@@ -127,7 +127,7 @@ static int read_block(const struct slot *slot, unsigned block, unsigned offset, 
     return 1;
 }
 
-/* Read the commands of a record, go on with the check value over them, and append them to `program` unless it is NULL.
+/* Read the commands of a record, continue with the check value over them, and append them to `program` unless it is NULL.
  * Returns CONTENT_RECORD if all of them are commands. */
 static enum content read_commands(const struct slot *slot, unsigned block, unsigned count, uint32_t *check,
                                   struct rkm04_program *program)
@@ -152,7 +152,7 @@ static enum content read_commands(const struct slot *slot, unsigned block, unsig
     return CONTENT_RECORD;
 }
 
-/* Look at one block. With CONTENT_RECORD *header is set and `program`, unless it is NULL, holds the commands. */
+/* Check one block. With CONTENT_RECORD *header is set and `program`, unless it is NULL, holds the commands. */
 static enum content read_record(const struct slot *slot, unsigned block, struct header *header, struct rkm04_program *program)
 {
     uint8_t bytes[HEADER_SIZE];
@@ -201,7 +201,7 @@ static unsigned put_commands(uint8_t *bytes, const struct rkm04_program *program
     return length;
 }
 
-/* Go on with the check value over the commands of a memory. */
+/* Continue with the check value over the commands of a memory. */
 static uint32_t check_commands(uint32_t check, const struct rkm04_program *program)
 {
     uint8_t bytes[CHUNK_SIZE];

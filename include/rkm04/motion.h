@@ -56,7 +56,7 @@ struct rkm04_break {
 struct rkm04_profile {
     uint8_t count; /* points in use */
     uint8_t leg;   /* the motion is between point[leg] and point[leg + 1] */
-    bool endless;  /* the last point's slope holds for ever; otherwise the last point is the end */
+    bool endless;  /* the last point's slope holds without end; otherwise the last point is the end */
     struct rkm04_break point[RKM04_BREAKS_MAX];
 };
 
@@ -74,7 +74,7 @@ struct rkm04_ramp {
     uint32_t level;           /* speed of a level leg in whole steps/s; 0: it slopes, or its speed is no whole number */
     uint32_t phase;           /* on a level leg: y / (2 * rate), rounded down */
     uint64_t fast;            /* on a slope: w from which its pulses are worked out in blocks */
-    uint64_t due, due1, due2, due3; /* of a block: when the pulse behind the next one is due, and differences (ramp_pulses.c) */
+    uint64_t due, due1, due2, due3; /* of a block: when the pulse after the next one is due, and differences (ramp_pulses.c) */
     uint8_t block, sent;      /* pulses of the block, and how many of them are out; 0: none under way */
     bool exact;               /* no irrational number has come in so far (R5) */
     uint32_t rate;            /* ticks a second */

@@ -41,7 +41,7 @@ struct rkm04_command {
 struct rkm04_reader {
     const uint8_t *text;
     size_t length;
-    size_t at;    /* next character to be read; after an error: where reading goes on */
+    size_t at;    /* next character to be read; after an error: where reading continues */
     size_t start; /* offset of the character of the command read last, or of the wrong one */
     size_t wrong; /* after an error: offset of the character that did not fit; may be `length` */
 };
@@ -57,7 +57,7 @@ enum rkm04_read {
 void rkm04_read_begin(struct rkm04_reader *reader, const void *text, size_t length);
 
 /* Read the next command, passing over blanks and comments (manual 5.3.2). `\`, `K` and `C75` are read like the others.
- * After an error reading may go on behind it, to find the errors that follow.
+ * After an error reading may continue after it, to find the errors that follow.
  * Returns what was found; *command is set with RKM04_READ_COMMAND only. */
 enum rkm04_read rkm04_read(struct rkm04_reader *reader, struct rkm04_command *command);
 
@@ -69,7 +69,7 @@ bool rkm04_command_valid(struct rkm04_command command);
  * no blank. Returns the length, 1..RKM04_COMMAND_TEXT_MAX; no terminating zero. */
 size_t rkm04_format(struct rkm04_command command, char text[RKM04_COMMAND_TEXT_MAX]);
 
-/* What may stand behind a command, for messages to people. */
+/* What may follow a command, for messages to people. */
 struct rkm04_range {
     int32_t low, high; /* inclusive */
 };

@@ -55,9 +55,9 @@ enum rkm04_slot {
 
 enum rkm04_led { RKM04_LED_OFF, RKM04_LED_ON, RKM04_LED_BLINK /* 0.5 s on, 0.5 s off, begins on */ };
 
-/* Things worth tracing, beside steps and outputs. */
+/* Things worth tracing, besides steps and outputs. */
 enum rkm04_event {
-    RKM04_EVENT_MOTION,   /* value 1: a motion begins (or goes on after a hold), 0: it has ended */
+    RKM04_EVENT_MOTION,   /* value 1: a motion begins (or continues after a hold), 0: it has ended */
     RKM04_EVENT_COMMAND,  /* value: place 1..700 of the command being executed; 0: the motor went idle or ended */
     RKM04_EVENT_LED,      /* value: enum rkm04_led */
     RKM04_EVENT_VARIABLE, /* motor 0; value: all 16 variables, VAR 80 in bit 0 */
@@ -143,7 +143,7 @@ struct rkm04_motor {
     uint64_t next;       /* number of the next command */
     uint64_t number;     /* number of the command being executed */
     struct rkm04_command command;
-    uint64_t due;        /* READY, DWELL: tick from which it goes on */
+    uint64_t due;        /* READY, DWELL: tick from which it continues */
     uint64_t fresh;      /* number of the first command stored since K, X or a fault, not begun; RKM04_NEVER: none (C3) */
     uint64_t wake;       /* slot in which its turn has something to do; RKM04_NEVER: none */
     uint64_t last_pulse; /* tick of the last pulse */
@@ -154,8 +154,8 @@ struct rkm04_motor {
     uint8_t after;       /* enum rkm04_after */
     uint8_t fault;       /* enum rkm04_fault */
     uint8_t led;         /* enum rkm04_led */
-    bool resume;         /* C75 came: go on as soon as the motor may */
-    bool hold_fresh;     /* K came behind the commands at `fresh`: hold before them */
+    bool resume;         /* C75 came: continue as soon as the motor may */
+    bool hold_fresh;     /* K came after the commands at `fresh`: hold before them */
     bool pin_forward;    /* the direction output */
     uint8_t slot;        /* enum rkm04_slot: what is in flash */
 
@@ -229,7 +229,7 @@ struct rkm04_unit {
     uint8_t differs[RKM04_INPUTS]; /* slots in a row in which an input was not as it counts (reading `input-filter`) */
     bool simulation;     /* T41 */
     bool touched;        /* something came in or VAR changed: every motor has its turn in the next slot */
-    bool waiting;        /* a request stands in `message` until the answer has gone (P10) */
+    bool waiting;        /* a request is in `message` until the answer has gone (P10) */
 
     struct rkm04_receiver receiver;
     struct rkm04_sender sender;
@@ -243,7 +243,7 @@ struct rkm04_unit {
 
 /* Power-up or reset at tick 0 (U5, U8): clears everything, then loads the flash slots, which start at the first slot.
  * config, port: copied / kept by address; port must stay valid, context is handed to it. For a reset in the middle of
- * things call it again. Returns nothing: what was found in flash stands in rkm04_motor_state.slot. */
+ * things call it again. Returns nothing: what was found in flash is in rkm04_motor_state.slot. */
 void rkm04_init(struct rkm04_unit *unit, const struct rkm04_config *config, const struct rkm04_port *port, void *context);
 
 /* The first tick that is not yet done. */
@@ -290,7 +290,7 @@ struct rkm04_motor_state {
     enum rkm04_slot slot;
 };
 
-/* Look at motor 1..4. Returns false if there is no such motor. */
+/* Read the state of motor 1..4. Returns false if there is no such motor. */
 bool rkm04_motor_state(const struct rkm04_unit *unit, unsigned motor, struct rkm04_motor_state *state);
 
 uint8_t rkm04_inputs(const struct rkm04_unit *unit);

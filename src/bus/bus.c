@@ -9,7 +9,7 @@
 #include "line/line.h"
 #include "record/record.h"
 
-#define INJECTED_LOGGED 100u /* acts of faults on demand in the log */
+#define INJECTED_LOGGED 100u /* acts of injected faults in the log */
 
 /* ---- The log -------------------------------------------------------------------------------------------------------- */
 

@@ -43,7 +43,7 @@ struct bus {
     struct coverage *coverage; /* NULL: not wanted */
     struct bus_log log;
     struct watcher news;  /* for the log */
-    unsigned injected;    /* acts of faults on demand */
+    unsigned injected;    /* acts of injected faults */
 
     struct sim sim;
     struct bus_time time;   /* drives the sim */
@@ -87,7 +87,7 @@ void bus_changed(struct bus *bus);
 void bus_wait(struct bus *bus, struct bus_waiter *waiter);
 void bus_cancel_wait(struct bus *bus, struct bus_waiter *waiter);
 
-/* A clock that stands: let time run to where the waiter is done. Returns false if the clock goes by itself, or another client
+/* A stopped clock: let time run to where the waiter is done. Returns false if the clock goes by itself, or another client
  * is advancing it. */
 bool bus_advance(struct bus *bus, struct bus_waiter *waiter);
 bool bus_is_stepped(const struct bus *bus);

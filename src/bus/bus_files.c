@@ -17,7 +17,7 @@ static const char *path_of(unsigned number, const char *pattern, char path[PATH_
     return NULL;
 }
 
-/* Say why a file could not be written; `error` is an errno. Returns true if it could. */
+/* Report why a file could not be written; `error` is an errno. Returns true if it could. */
 static bool check_written(const char *path, int error)
 {
     if (error != 0)

@@ -37,9 +37,9 @@ struct bus_options {
     bool exit_when_idle;
     unsigned idle_seconds;      /* of --exit-when-idle */
     bool late_skips;            /* --late */
-    uint64_t seed;              /* of faults on demand */
+    uint64_t seed;              /* of injected faults */
     const char *plant;          /* file; NULL: none */
-    char *plant_text;           /* what stands in it, from read_plant() */
+    char *plant_text;           /* its content, from read_plant() */
     const char *trace[BUS_FILES_MAX], *wire[BUS_FILES_MAX]; /* patterns; NULL: no more */
     const char *record;         /* pattern; NULL: none */
     unsigned output_flags;      /* of output_file.h: --force */

@@ -28,7 +28,7 @@ bool bus_time_is_stepped(const struct bus_time *time)
     return time->clock.stands;
 }
 
-/* Where the clock stands at `now` (ns). */
+/* Where the clock is at `now` (ns). */
 static uint64_t clock_tick(const struct bus_time *time, uint64_t now)
 {
     uint64_t tick = virtual_clock_tick(&time->clock, now);

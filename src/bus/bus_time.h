@@ -35,13 +35,13 @@ struct bus_time {
     const struct bus_time_calls *calls;
     void *context;
     struct sim *sim;
-    bool timed;           /* bytes take their time unless the clock stands */
+    bool timed;           /* bytes take their time unless the clock is stopped */
     uint32_t own_kinds;   /* of watch.h, what the bus itself watches, not for a client */
 
     struct virtual_clock clock;
     char clock_text[16];  /* as it was set */
     uint64_t last_byte;   /* ns at which the last bytes came */
-    uint64_t goal;        /* a clock that stands: tick to which it is advanced */
+    uint64_t goal;        /* a stopped clock: tick to which it is advanced */
     uint64_t wake;        /* ns for which the timer is set; 0: it is not */
     struct bus_waiter *waiters;
     struct bus_waiter *advancing; /* of them, the one for whom the clock is moved; NULL: none */

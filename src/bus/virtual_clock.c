@@ -13,7 +13,7 @@
 static uint32_t read_thousandths(const char *text)
 {
     uint32_t value = 0;
-    int places = -1; /* behind the point; -1: before it */
+    int places = -1; /* after the point; -1: before it */
     for (; *text; text++) {
         if (*text == '.' && places < 0) {
             places = 0;

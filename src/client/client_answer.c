@@ -56,7 +56,7 @@ json_t *client_json_text(const uint8_t *bytes, size_t length)
     return string;
 }
 
-/* The text behind the head as a C string in `text`. Returns false if it has no place or contains a zero. */
+/* The text after the head as a C string in `text`. Returns false if it has no place or contains a zero. */
 static bool copy_text(const struct client_answer *answer, char text[TEXT_MAX])
 {
     size_t length = answer->length - HEAD;

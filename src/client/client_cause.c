@@ -21,7 +21,7 @@ struct cause {
     bool stepped;
 };
 
-/* Connect to the control socket beside the link. Returns false if there is none. */
+/* Connect to the control socket next to the link. Returns false if there is none. */
 static bool connect_beside(struct cause *cause, const char *port)
 {
     char path[PATH_MAX];

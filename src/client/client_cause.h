@@ -5,7 +5,7 @@
 
 #include <rkm04/link.h>
 
-/* If an emulator with a control socket beside it (PORT.control) makes `port`: print what keeps the unit with address `node` from
+/* If an emulator with a control socket next to it (PORT.control) makes `port`: print what keeps the unit with address `node` from
  * answering a request in this framing: another framing, no such unit, two of them, no power, time that is stopped. Returns
  * whether there was anything to print. Waits for an emulator that hangs for a second. */
 bool client_print_emulator_causes(const char *port, const struct rkm04_framing *framing, unsigned node);

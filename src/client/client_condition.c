@@ -33,7 +33,7 @@ struct term {
 
 static json_t *report_expected(const struct reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Say what was expected. Always returns NULL. */
+/* Report what was expected. Always returns NULL. */
 static json_t *report_expected(const struct reader *reader, const char *format, ...)
 {
     va_list arguments;
@@ -133,7 +133,7 @@ static bool read_number(const char *text, int64_t *number)
     return number_read_signed(text, INT64_MIN, INT64_MAX, number);
 }
 
-/* The number behind `word` in a name, low..high, at most two digits; -1: the name is another. */
+/* The number after `word` in a name, low..high, at most two digits; -1: the name is another. */
 static int number_behind(const char *name, const char *word, int low, int high)
 {
     size_t length = strlen(word);
@@ -203,7 +203,7 @@ static json_t *read_time(const struct reader *reader, const struct term *term)
     return no_memory(reader, make_comparison(term, value));
 }
 
-/* 0 or 1, or for what may stand without value nothing (1). Returns -1 if it is none of them: said. */
+/* 0 or 1; 1 if the value may be left out and is. Returns -1 if it is none of them: reported. */
 static int read_bit(const struct reader *reader, const struct term *term, bool bare)
 {
     if (bare && term->compare[0] == '\0')
@@ -218,7 +218,7 @@ static int read_bit(const struct reader *reader, const struct term *term, bool b
 
 /* ---- Terms ---------------------------------------------------------------------------------------------------------- */
 
-/* What holds of motor `motor`; `name` is what stands behind "m1.". */
+/* What holds of motor `motor`; `name` is what follows "m1.". */
 static json_t *motor_term(const struct reader *reader, const struct term *term, const char *name, int motor)
 {
     static const struct {
@@ -339,7 +339,7 @@ static const char *unit_of(const char *name, char unit[NAME_MAX_LENGTH])
     return name + length + 2;
 }
 
-/* Say of which unit: also in those that stand for it together (word_term()). */
+/* Put the name of the unit into a term, also into those of which it consists (word_term()). */
 static json_t *add_unit(json_t *json, const char *unit)
 {
     size_t i;

@@ -7,7 +7,7 @@
  *     do3=1               di08=0         var80=1           binary values
  *     message             message=4      host.message=2  one that passes, of any number; who sent it: host, unit, u3
  *     dropped                                              a frame that was dropped
- *     t>=2.5s                                              the line's time, with its unit or in us
+ *     t>=2.5s                                              the time of the bus, with its unit or in us
  *     u3.m1.position=0    u3-2.do1=1                       of unit 3; of the second one with address 3
  *
  * Several beside one another, with "and", "&&" or "," between them or just a blank, have to hold together; of what stands to

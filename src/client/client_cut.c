@@ -14,7 +14,7 @@ struct cutter {
     struct client_cut *cut;
     const char *text;
     size_t length, room;
-    size_t open_block;   /* index of the first `[` behind the last `]` and `\`; NOWHERE: none */
+    size_t open_block;   /* index of the first `[` after the last `]` and `\`; NOWHERE: none */
     size_t released;     /* the piece with a `]` added before that block; NOWHERE: none */
     bool in_comment;
     bool held;  /* an added `[` is open */
@@ -166,7 +166,7 @@ static bool add_gap(struct cutter *c, size_t from, size_t to)
     return true;
 }
 
-/* Let go before a block that stays open. All behind the `]` has to be in the last piece, so it begins one. */
+/* Let go before a block that stays open. All after the `]` has to be in the last piece, so it begins one. */
 static bool release_hold(struct cutter *c)
 {
     c->ended = true;

@@ -28,7 +28,7 @@ struct client_cut {
     size_t pieces;
     struct client_command *command;
     size_t commands;
-    size_t program; /* commands of the program itself that will stand in memory: stored ones behind the last `\` */
+    size_t program; /* commands of the program itself that will be in memory: stored ones after the last `\` */
     size_t places;  /* places they take there, with what was added */
     size_t wrong;   /* offset of what prevents cutting */
 };
@@ -38,7 +38,7 @@ enum client_cut_result {
     CLIENT_CUT_INVALID,      /* at `wrong` stands what the unit would refuse */
     CLIENT_CUT_TOO_MANY,     /* `program` commands and the brackets around them do not fit into memory */
     CLIENT_CUT_LONG_COMMAND, /* the command at `wrong` alone is longer than a message */
-    CLIENT_CUT_OPEN_BLOCK,   /* behind the `[` at `wrong`, which is never closed, stands more than one message */
+    CLIENT_CUT_OPEN_BLOCK,   /* after the `[` at `wrong`, which is never closed, is more than one message */
     CLIENT_CUT_NO_MEMORY
 };
 
@@ -47,7 +47,7 @@ enum client_cut_result {
 /* Cut a text into pieces of up to `room` bytes, >= CLIENT_ROOM_MIN. A text that fits is one piece, as it is. Otherwise:
  * - cuts are at the borders of commands; a comment that is cut is closed and opened again;
  * - a `[` before the first command and after each `\`, and a `]` at the end, hold execution until the last piece is there;
- *   where the text ends with an open block of its own, the `]` stands before that block;
+ *   where the text ends with an open block of its own, the `]` is before that block;
  * - a `]` of the text itself in a piece before the last becomes `[`, which holds now and is passed in the same one slot later;
  * - V, K or C75 is never left alone in a piece, where it would act at once: a `[` joins it.
  * The result is to be given to client_cut_free() in any case. Returns what came of it. */

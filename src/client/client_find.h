@@ -17,8 +17,8 @@ struct client_found {
 /* Find at most CLIENT_FOUND_MAX of them. Returns their number. */
 size_t client_find(struct client_found found[CLIENT_FOUND_MAX]);
 
-/* The one that is meant by who names none. NULL: there is none, or there are several, which is said; `option` is what chooses one
- * ("--port"). */
+/* The one that is meant by who names none. NULL: there is none, or there are several, which is reported; `option` is what
+ * chooses one ("--port"). */
 const struct client_found *client_find_one(const char *option);
 
 /* The one with the bus `port`, or, where `control` is not NULL, with this control socket. Returns false, and reports nothing, if

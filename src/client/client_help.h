@@ -11,7 +11,7 @@ bool client_help_wanted(int argc, char **argv);
 /* Print help for this command. Returns false if there is none of that name. */
 bool client_help_show(const char *command);
 
-/* The name of the i-th command, from 0; NULL behind the last one. */
+/* The name of the i-th command, from 0; NULL after the last one. */
 const char *client_help_name(unsigned i);
 
 #endif

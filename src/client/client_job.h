@@ -20,7 +20,7 @@ struct client_job {
     int line;                 /* -1: not named */
     int timeout_ms;           /* of real time; 0: not given */
     bool json, once, advance, force;
-    const char *const *words; /* behind the name of the command */
+    const char *const *words; /* after the name of the command */
     size_t count;
     bool connected;
     struct client_rpc rpc;

@@ -209,7 +209,7 @@ static void count_unexpected(const struct dialogue *d)
                       memcmp(client->answer, d->request, d->length) == 0;
 }
 
-/* Take what came. Returns true when the answer stands in the buffer. */
+/* Take what came. Returns true when the answer is in the buffer. */
 static bool process_bytes(struct dialogue *d, const uint8_t *bytes, size_t length)
 {
     struct client *client = d->client;

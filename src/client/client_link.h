@@ -52,7 +52,7 @@ struct client {
 /* Send a message of 1..CLIENT_MESSAGE_MAX bytes and wait for its answer: same message number (or 255 and that number), from
  * the unit asked. Whatever else comes is passed over; what came before is dropped. The time limit runs from the moment
  * at which the request has gone out at the line's speed, and again from each byte that comes.
- * Returns the outcome; the answer stands in client->answer. */
+ * Returns the outcome; the answer is in client->answer. */
 enum client_outcome client_exchange(struct client *client, const uint8_t *request, size_t length);
 
 #endif

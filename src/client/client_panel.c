@@ -20,7 +20,7 @@ static void put_character(struct panel *panel, int row, int column, enum panel_s
 static int put_text(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
-/* Put text, of which only printable ASCII is shown as it is. Returns the column behind it. */
+/* Put text, of which only printable ASCII is shown as it is. Returns the column after it. */
 static int put_text(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
 {
     char text[TEXT_MAX];
@@ -36,7 +36,7 @@ static int put_text(struct panel *panel, int row, int column, enum panel_style s
 static int put_whole(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
-/* Put text if all of it has room: part of a number would be another number. Returns the column behind it, beyond the last one if
+/* Put text if all of it has room: part of a number would be another number. Returns the column after it, beyond the last one if
  * it has none: what would follow has none, either. */
 static int put_whole(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
 {
@@ -155,7 +155,7 @@ static void put_field(struct panel *panel, int row, const int column[FIELDS], en
 }
 
 /* What the command waits for, as far as there is room for it: "10 of 5000 steps", "10/5000", or nothing. Returns the column
- * behind it. */
+ * after it. */
 static int put_wait(struct panel *panel, int row, int column, const char *waits_for)
 {
     const char *progress = strstr(waits_for, ": "); /* "the end of R: 10 of 5000 steps done" */

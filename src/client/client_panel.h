@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* client_panel.h: the front panel of a unit as a grid of characters, drawn from the result of `state` (docs/CONTROL.md): for the
- * terminal (client_watch.h) and as text. It is laid out anew for each size: what matters least goes first. */
+ * terminal (client_watch.h) and as text. It is laid out again for each size: what matters least goes first. */
 #ifndef RKM04_CLIENT_PANEL_H
 #define RKM04_CLIENT_PANEL_H
 

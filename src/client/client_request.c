@@ -82,7 +82,7 @@ static enum exit_status read_hex(struct asking *a, const char *text)
     return STATUS_SUCCESS;
 }
 
-/* Look at what stands behind the command. Returns the exit status if it is wrong. */
+/* Check what follows the command. Returns the exit status if it is wrong. */
 static enum exit_status read_words(struct asking *a)
 {
     static const char *const operands[] = {[TEXT_OPERAND] = "a TEXT", [FILE_OPERAND] = "a FILE", [HEX_OPERAND] = "HEX bytes"};
@@ -102,7 +102,7 @@ static enum exit_status read_words(struct asking *a)
     return STATUS_SUCCESS;
 }
 
-/* --port, else RKM04_PORT of the environment, else the bus of the emulator that is running. NULL: said. */
+/* --port, else RKM04_PORT of the environment, else the bus of the emulator that is running. NULL: reported. */
 static const char *port_of(const struct client_request *request)
 {
     const char *named = request->port != NULL ? request->port : getenv("RKM04_PORT");

@@ -14,7 +14,7 @@ struct client_request {
     const struct rkm04_framing *framing;
     unsigned node, motor, timeout_ms, message_max;
     bool json, allow_overflow;
-    const char *const *words; /* behind the name of the command */
+    const char *const *words; /* after the name of the command */
     size_t count;
 };
 

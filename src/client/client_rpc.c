@@ -57,7 +57,7 @@ bool client_rpc_path(const char *path, char found[PATH_MAX])
 
 /* ---- The connection --------------------------------------------------------------------------------------------------- */
 
-/* Say what is wrong with the connection, now or when the caller likes to. */
+/* Report what is wrong with the connection, now or when the caller likes to. */
 static void report(struct client_rpc *rpc, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void report(struct client_rpc *rpc, const char *format, ...)
 {
@@ -184,7 +184,7 @@ static char *next_line(struct client_rpc *rpc)
     return line;
 }
 
-/* Make room behind what is there. */
+/* Make room after what is there. */
 static bool make_room(struct client_rpc *rpc)
 {
     if (rpc->length > 0 && rpc->begin > 0)
@@ -232,7 +232,7 @@ static const char *find_missing(const json_t *object, bool ours)
     return !ours || json_is_object(error != NULL ? error : result) ? NULL : "expected an object as result or error";
 }
 
-/* Look at one object. Returns true if it is the answer to the last request, or an error to no request: *outcome and *json. */
+/* Check one object. Returns true if it is the answer to the last request, or an error to no request: *outcome and *json. */
 static bool handle_line(struct client_rpc *rpc, const char *line, enum client_rpc_outcome *outcome, json_t **json, bool *event)
 {
     json_error_t wrong;

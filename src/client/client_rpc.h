@@ -29,7 +29,7 @@ enum client_rpc_outcome {
     CLIENT_RPC_LOST     /* the emulator has gone, or talks something else (reported) */
 };
 
-/* The socket to talk to: `path`; NULL: the environment's RKM04_CONTROL; without that the one beside the link that
+/* The socket to talk to: `path`; NULL: the environment's RKM04_CONTROL; without that the one next to the link that
  * `rkm04 serve` makes by default. Returns false if the name is too long (reported). */
 bool client_rpc_path(const char *path, char found[PATH_MAX]);
 

@@ -121,7 +121,7 @@ static bool take_answer(struct sending *s)
     return true;
 }
 
-/* The pieces before this one stand in the unit's memory behind a `[`. */
+/* The pieces before this one are in the unit's memory after a `[`. */
 static void explain_rest(const struct sending *s)
 {
     if (s->piece > 0)

@@ -20,7 +20,7 @@ struct client_shell {
     int (*run)(int argc, char **argv);
 };
 
-/* Do all lines. A file ends at the first command that fails; a person goes on. Returns the exit status. */
+/* Do all lines. A file ends at the first command that fails; a person continues. Returns the exit status. */
 enum exit_status client_shell(const struct client_shell *shell);
 
 #endif

@@ -161,7 +161,7 @@ static void draw(const struct watching *w)
     refresh();
 }
 
-/* The terminal has another size. Everything is painted anew: what it showed may be gone, even if the size is what it was. */
+/* The terminal has another size. Everything is painted again: what it showed may be gone, even if the size is what it was. */
 static void resize_screen(const struct watching *w)
 {
     struct winsize size;

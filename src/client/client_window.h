@@ -5,7 +5,7 @@
 
 #include "text/text.h"
 
-/* Run it with the arguments behind the word `window', argv[1]. Returns only if that does not work (reported). */
+/* Run it with the arguments after the word `window', argv[1]. Returns only if that does not work (reported). */
 enum exit_status client_window(char **argv);
 
 #endif

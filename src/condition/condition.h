@@ -7,7 +7,7 @@
  *     {"motor": 1, "led": "blink"} {"motor": 1, "fault": "no_label"} {"motor": 1, "steps": {">": 10}}
  *     {"do": {"3": 1}} {"di": {"08": 0}} {"var": {"80": 1}}
  *     {"message": {"number": 2, "from": "master"}}       one that passes from now on
- *     {"t": "2.5s"}                                      the line's time
+ *     {"t": "2.5s"}                                      the time of the bus
  *     {"all": [ … ]} {"any": [ … ]}                      of several
  *
  * Plain: condition_read(), condition_arm(), then condition_holds() after each step of time; or condition_run(). */

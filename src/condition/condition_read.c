@@ -7,7 +7,7 @@
 #include "condition_term.h"
 #include "text/text.h"
 
-#define TERMS_MAX 256 /* of a condition: each is looked at after everything that happens */
+#define TERMS_MAX 256 /* of a condition: each is checked after everything that happens */
 #define DEPTH_MAX 8 /* of all and any inside one another */
 
 struct reader {
@@ -52,7 +52,7 @@ void term_clear(struct term *term)
 /* Refuse, for readers that return bool. */
 #define REFUSE(...) (refuse(r->refusal, REFUSED_PARAMS, __VA_ARGS__), false)
 
-/* Put a copy of `term` behind the others of `group`, which owns what hangs on it then. */
+/* Put a copy of `term` after the others of `group`, which owns what hangs on it then. */
 static bool add_term(struct reader *r, struct term *group, const struct term *term)
 {
     if (r->terms++ == TERMS_MAX)
@@ -137,7 +137,7 @@ static const char *name_of(const struct device_kind *device, enum term_kind kind
     }
 }
 
-/* The names that may stand there: "idle, ready, …". */
+/* The names that are possible there: "idle, ready, …". */
 static void list_names(const struct device_kind *device, enum term_kind kind, char list[200])
 {
     size_t length = 0;

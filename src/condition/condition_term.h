@@ -8,7 +8,7 @@
 enum term_kind {
     TERM_ALL,      /* of `sub` */
     TERM_ANY,
-    TERM_TIME,     /* the rest compare: the line's time, ticks */
+    TERM_TIME,     /* the rest compare: the time of the bus, ticks */
     TERM_POSITION, /* of a motor: numbers */
     TERM_TRUE_POSITION,
     TERM_STEPS,
@@ -63,7 +63,7 @@ void term_clear(struct term *term);
 const char *term_relation_name(enum term_relation relation);
 bool term_relation_named(const char *name, enum term_relation *relation);
 
-/* Does `is` stand in this relation to `wanted`? */
+/* Is `is` in this relation to `wanted`? */
 bool term_compares(int64_t is, enum term_relation relation, int64_t wanted);
 
 #endif

@@ -20,7 +20,7 @@ static size_t unread_length(const struct bytes *bytes)
     return bytes->length - bytes->at;
 }
 
-/* Make room for `more` bytes behind those there are. Returns false if out of memory. */
+/* Make room for `more` bytes after those there are. Returns false if out of memory. */
 static bool reserve(struct bytes *bytes, size_t more)
 {
     if (bytes->room - bytes->length >= more)

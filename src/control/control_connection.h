@@ -19,7 +19,7 @@
 #define CONNECTION_IN_MAX (CONNECTION_LINE_MAX + 65536u)
 #define CONNECTION_EVENTS_MAX (8u << 20)       /* bytes not yet read beyond which events are dropped */
 #define CONNECTION_QUEUE_MAX (CONNECTION_EVENTS_MAX + (1u << 20)) /* beyond which requests wait */
-#define CONNECTION_QUEUE_SMALL (1u << 20)      /* below which an `advance` goes on */
+#define CONNECTION_QUEUE_SMALL (1u << 20)      /* below which an `advance` continues */
 
 struct connection;
 

@@ -17,7 +17,7 @@
 struct control_call;
 struct subscription;
 
-/* A `restore` of a file that goes on between the turns of the loop. */
+/* A `restore` of a file that continues between the turns of the loop. */
 struct control_restore {
     struct control_client *client; /* NULL: there is none */
     struct bus *bus;
@@ -34,7 +34,7 @@ struct control_client {
     struct control_call *calls;   /* that it waits for (control_time.c, as the next two) */
     unsigned waits;               /* of these, without `advance` */
     struct control_call *advance; /* NULL: none is running */
-    bool restores;                /* a `restore` of it goes on (control_restore.c) */
+    bool restores;                /* a `restore` of it continues (control_restore.c) */
     struct subscription *subscriptions; /* control_subscribe.c, as the next one */
     unsigned subscribed;          /* number of the last subscription */
 };

@@ -123,7 +123,7 @@ static const char *names_of_methods(void)
     return names;
 }
 
-/* A command of the line, at its present tick. What it leads to is looked at at once. */
+/* A command of the line, at its present tick. What it leads to is checked at once. */
 static json_t *command(struct control_context *context, struct refusal *refusal)
 {
     const struct rpc_request *request = context->request;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* restore with a file: its recording is replayed in pieces between the turns of the loop, so that however long it lasts only
- * the client that requests it waits. One goes on at a time. */
+ * the client that requests it waits. One continues at a time. */
 #include "control_inside.h"
 #include "record/record.h"
 
@@ -20,7 +20,7 @@ static struct control_restore detach_restore(struct control *control)
     uv_idle_stop(&control->restoring);
     over.client->restores = false;
     control->restore = (struct control_restore){0};
-    control_schedule_lines(control); /* those who want one, too, and what stands behind this one */
+    control_schedule_lines(control); /* those who want one, too, and what follows this one */
     return over;
 }
 

@@ -11,7 +11,7 @@
 
 #define RPC_DEPTH 64u /* nested lists and objects */
 
-/* Codes of JSON-RPC beside those of command.h. */
+/* Codes of JSON-RPC besides those of command.h. */
 enum rpc_code { RPC_NO_JSON = -32700, RPC_NO_REQUEST = -32600 };
 
 /* A request. All of it belongs to `json`. */

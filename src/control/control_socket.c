@@ -12,7 +12,7 @@
 
 #define RECORD "rkm04 process %ld, control socket %ju:%ju" /* in the lock file: whose it is; device and number of the file */
 
-/* Say in the lock file which socket is ours. */
+/* Report in the lock file which socket is ours. */
 static bool write_record(struct control_socket *control)
 {
     struct stat made;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* wait and advance: answers that come when something has come true.
  *
- * An `advance` of a client that subscribes is done in slices, and goes on only when the client has read what it led to: nothing
+ * An `advance` of a client that subscribes is done in slices, and continues only when the client has read what it led to: nothing
  * is lost however fast time runs. */
 #include <stdlib.h>
 
@@ -36,7 +36,7 @@ static void remove_call(struct control_call *call)
         client->advance = NULL;
     else
         client->waits--;
-    control_schedule_lines(client->control); /* those who wanted to move the same clock, and what stands behind this call */
+    control_schedule_lines(client->control); /* those who wanted to move the same clock, and what follows this call */
 }
 
 static void free_call(struct control_call *call)
@@ -76,7 +76,7 @@ static uint64_t slice_end(const struct sim *sim)
     return from > DEVICE_NEVER - SLICE ? DEVICE_NEVER : from + SLICE;
 }
 
-/* Let time run: to the limit, or to the end of a slice. Returns false if the clock no longer stands. */
+/* Let time run: to the limit, or to the end of a slice. Returns false if the clock is no longer stopped. */
 static bool continue_call(struct control_call *call)
 {
     uint64_t end = call->client->subscriptions ? slice_end(&call->bus->sim) : DEVICE_NEVER;

@@ -214,7 +214,7 @@ static void count_command(struct coverage *coverage, struct rkm04_command comman
     }
 }
 
-/* The text of Set Command: it counts only if all of it is right (P2), and from the last `\` on: what stands before is dropped
+/* The text of Set Command: it counts only if all of it is right (P2), and from the last `\` on: what is before is dropped
  * (C1). */
 static void count_text(struct coverage *coverage, const uint8_t *text, size_t length)
 {

@@ -51,7 +51,7 @@ struct device_config {
     } own;                       /* the kind's; what it points to must stay while the config or a unit with it is used */
 };
 
-/* What happens in a unit, beside steps, direction and outputs. */
+/* What happens in a unit, besides steps, direction and outputs. */
 enum device_event {
     DEVICE_EVENT_MOTION,   /* value 1: a motion begins, 0: it has ended */
     DEVICE_EVENT_COMMAND,  /* value: place from 1 of the command being executed; 0: none */
@@ -100,7 +100,7 @@ struct device_axis {
     uint64_t blink_from; /* us since power-up from which the LED blinks */
     bool lit;          /* is the LED bright now? */
     bool idle;         /* it has nothing more to do */
-    bool running;      /* it goes on of itself: it moves, or time will bring its next command */
+    bool running;      /* it continues by itself: it moves, or time will bring its next command */
     bool moving;
     bool stopping;     /* on a stop ramp */
     bool forward;      /* direction output */
@@ -124,7 +124,7 @@ struct device_counters {
     uint32_t dropped;  /* frames that were none. With each frame that ends one of these three counts up */
 };
 
-/* ---- What a kind may offer beside its units ---------------------------------------------------------------------------- */
+/* ---- What a kind may offer besides its units ---------------------------------------------------------------------------- */
 
 enum device_option_flag {
     DEVICE_OPTION_SWITCH = 1, /* also --NAME VALUE on the command line */
@@ -140,7 +140,7 @@ struct device_option {
     unsigned flags;       /* enum device_option_flag */
     /* Read a value into the config. Returns false and a message that says what was expected. */
     bool (*read)(struct device_config *config, const char *value, char error[DEVICE_ERROR_SIZE]);
-    /* The value is a file: read what stands in it, `text` with a zero behind it. Errors go to `errors`, a line each,
+    /* The value is a file: read its content, `text` with a zero after it. Errors go to `errors`, a line each,
      * NAME:LINE:COLUMN: error: expected …; then false. */
     bool (*read_file)(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors);
     /* The value of a scenario's key. Errors are reported at their nodes (config_error()). NULL: a text for `read`. */
@@ -174,7 +174,7 @@ struct device_readings {
     json_t *(*json)(const struct device_config *config); /* those that are not at their default; NULL: out of memory */
 };
 
-/* How messages stand in bytes on the bus. */
+/* The bytes of messages on the bus. */
 struct device_framing {
     const struct rkm04_framing *link; /* finds messages and makes them */
     int flag, escape;                 /* bytes: every frame begins and ends with `flag`, `escape` before it aborts; -1: none */
@@ -277,7 +277,7 @@ struct device_kind {
     /* Is there a fault, or does the axis wait for what only new commands can bring? Then the text says what. */
     bool (*is_stuck)(const struct device_unit *unit, unsigned axis, char text[DEVICE_ERROR_SIZE]);
 
-    /* Names for people, conditions and traces; NULL behind the last one. */
+    /* Names for people, conditions and traces; NULL after the last one. */
     const char *(*state_name)(unsigned state);
     const char *(*fault_name)(unsigned fault);
     const char *(*led_name)(unsigned led);
@@ -298,11 +298,11 @@ struct device_kind {
     bool (*read_setting)(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
     const char *(*unlike)(const struct device_config *a, const struct device_config *b);
 
-    /* Messages on the wires, for their monitor and a scenario's host: how they stand in bytes. */
+    /* Messages on the wires, for their monitor and a scenario's host: their bytes. */
     const struct device_framing *(*framing)(const struct device_config *config);
     const struct device_words *words; /* NULL: messages are shown as bytes */
 
-    /* Does the state repeat, so that it does for ever? Called again and again with `memory`, `repeat_size` bytes, zero at first.
+    /* Does the state repeat without end? Called again and again with `memory`, `repeat_size` bytes, zero at first.
      * Returns after how many us it has repeated; 0: it has not. repeat_size 0: that is not known. */
     size_t repeat_size;
     uint64_t (*find_repeat)(void *memory, const struct device_unit *unit);

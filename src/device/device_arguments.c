@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The device on a command line: --device NAME, --device-option NAME=VALUE, and those options of kinds that have a name of their
- * own there. Which device it is may be said behind its options, so all of them are read at the end. */
+ * own there. Which device it is may be said after its options, so all of them are read at the end. */
 #include <argp.h>
 #include <errno.h>
 #include <stdio.h>

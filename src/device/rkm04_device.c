@@ -150,7 +150,7 @@ static bool has_answer(const struct device_unit *unit)
     return core_of(unit)->answer.kind != 0;
 }
 
-/* Until the flash is written and the unit can send again: behind the last slot of the store (reading `store-time`). */
+/* Until the flash is written and the unit can send again: after the last slot of the store (reading `store-time`). */
 static uint64_t answer_wait(const struct device_unit *unit)
 {
     const struct rkm04_unit *core = core_of(unit);

@@ -43,7 +43,7 @@ static void begin_walk(struct walk *walk, const struct rkm04_unit *unit, const s
     add_corner(walk);
 }
 
-/* Go on with acceleration `slope` to the corner `to`. */
+/* Continue with acceleration `slope` to the corner `to`. */
 static void walk_leg(struct walk *walk, const struct rkm04_break *to, int32_t slope)
 {
     double way = fmax(0, place_of(to) - walk->place);

@@ -12,7 +12,7 @@ static bool has_absolute_motion(const struct rkm04_motor *motor)
     return false;
 }
 
-/* G+, G-, ) or ( at its constant speed. Nothing comes that could end it: its guards have been looked at, and inputs stay. */
+/* G+, G-, ) or ( at its constant speed. Nothing comes that could end it: its guards have been checked, and inputs stay. */
 static bool is_endless_motion(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
     const struct rkm04_motion *motion = &motor->motion;

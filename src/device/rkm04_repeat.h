@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* rkm04_repeat.h: does a unit's state repeat? Then what it does repeats for ever, as long as nothing comes from outside.
+/* rkm04_repeat.h: does a unit's state repeat? Then what it does repeats without end, as long as nothing comes from outside.
  *
  * States are compared as plain copies of the whole unit (Brent: with a copy that is renewed after 1, 2, 4, … looks). What does
  * not decide what follows is taken out before: times count from the present tick; counters of motors whose programs have no G and
- * no H are left out; of an endless motion at its constant speed nothing is compared but that it goes on. What remains has to be
+ * no H are left out; of an endless motion at its constant speed nothing is compared but that it continues. What remains has to be
  * equal to the byte, so a state that is called the same is the same; one that is the same may be overlooked. */
 #ifndef RKM04_DEVICE_RKM04_REPEAT_H
 #define RKM04_DEVICE_RKM04_REPEAT_H

@@ -103,7 +103,7 @@ static bool is_error_text(const uint8_t *bytes, size_t length)
     return length == strlen(ERROR_TEXT) && memcmp(bytes, ERROR_TEXT, length) == 0;
 }
 
-/* What stands behind the head of an answer. */
+/* What follows the head of an answer. */
 static void put_content(struct wire_text *out, uint8_t number, const uint8_t *bytes, size_t length)
 {
     if (number == SET_COMMAND && length == 2) {

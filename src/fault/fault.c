@@ -42,7 +42,7 @@ uint64_t faults_random(struct faults *faults)
     return z ^ z >> 31;
 }
 
-/* An occasion within the window. Returns whether the fault acts, and counts it. */
+/* An opportunity within the window. Returns whether the fault acts, and counts it. */
 static bool use_opportunity(struct faults *faults, struct fault *fault)
 {
     if (fault->counted && fault->left == 0)
@@ -126,7 +126,7 @@ static void report_begin(const struct faults *faults, const struct fault *fault)
         fault_report(faults, fault, 0, fault->kind == FAULT_BREAK ? "the bus is held at 0" : "the adapter is unplugged");
 }
 
-/* Begin and end the spells of a fault that are due by now. */
+/* Begin and end the intervals of a fault that are due by now. */
 static void update_intervals(struct faults *faults, struct fault *fault)
 {
     uint64_t now = segment_now(faults->segment);
@@ -162,7 +162,7 @@ static void restore_power(struct faults *faults, struct fault *fault)
     faults->calls->power(faults->context, unit, true);
 }
 
-/* Let the line, the adapter and the inputs be as the spells in force want them. */
+/* Let the line, the adapter and the inputs be as the intervals in force want them. */
 static void apply_intervals(struct faults *faults)
 {
     bool unplugged = fault_find_active(faults, FAULT_UNPLUGGED, 0) != NULL;

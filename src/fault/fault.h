@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* fault.h: faults on demand. Each has an optional unit, count, probability (seeded) and window of time. All of it is plain data
+/* fault.h: injected faults. Each has an optional unit, count, probability (seeded) and window of time. All of it is plain data
  * and virtual time: the same faults at the same ticks do the same. docs/FAULTS.md describes every kind.
  *
- * A fault waits for occasions. Those of the faults of bytes are bytes that set out, those of the faults of answers are answers,
- * those of the faults of the flash are its operations. The others have spells (FAULT_BREAK and following): their occasions are
- * the begin of their window, and one every `every` ticks from then on.
+ * A fault waits for opportunities. Those of the faults of bytes are bytes that set out, those of the faults of answers are
+ * answers, those of the faults of the flash are its operations. The others have intervals (FAULT_BREAK and following): their
+ * opportunities are the begin of their window, and one every `every` ticks from then on.
  *
  * What the owner of the bus has to do:
  *   begin:        faults_begin() with the segment, whose config.hooks_context has to be the faults; the hooks are put in with the
  *                 first fault, so that a line without faults pays nothing
  *   each leap:    end at faults_next() at the latest, then faults_update() if that is the present tick
- *   the units' port: faults_flash_read(), faults_flash_erase(), faults_flash_program() stand before the flash
+ *   the units' port: faults_flash_read(), faults_flash_erase(), faults_flash_program() are before the flash
  *   inputs:       faults_hold_inputs() has the last word
  *   snapshots:    struct faults is part of them (struct segment, too), and is put back with faults_restore() */
 #ifndef RKM04_FAULT_H
@@ -36,7 +36,7 @@ enum fault_kind {
     FAULT_CUT,         /* the answer ends after `number` bytes */
     FAULT_FLASH,       /* an operation of the flash fails: one of `operations`; `torn`: it is done in part */
     FAULT_POWER,       /* the unit loses its power in the middle of an erase or program; it comes back after `ticks` */
-    FAULT_BREAK,       /* from here on kinds with spells, `ticks` long. The line is held at 0 */
+    FAULT_BREAK,       /* from here on kinds with intervals, `ticks` long. The line is held at 0 */
     FAULT_UNPLUGGED,   /* the adapter is gone: the pty goes away, later a new one comes under the same link */
     FAULT_CABLE,       /* the cable is cut: silence both ways, the port stays. `unit`: that unit's own cable */
     FAULT_INPUT,       /* input `number` (from 1) is held at `level` */
@@ -65,14 +65,14 @@ struct fault {
     bool torn, level;
     bool counted;        /* `left` counts */
     uint32_t left;       /* times it will still act */
-    uint64_t skip;       /* occasions that it lets pass before */
+    uint64_t skip;       /* opportunities that it lets pass before */
     uint32_t acted;      /* times it has */
     uint32_t millionths; /* probability, 1..1 000 000 */
     uint32_t number;     /* a mask, byte, number of bytes, or input */
     uint64_t from, until; /* window: acts at from <= tick < until; DEVICE_NEVER: no end */
     uint64_t ticks;      /* how long; DEVICE_NEVER: to the end of the window */
-    uint64_t every;      /* spells: from one occasion to the next; 0: there is one only */
-    uint64_t next;       /* spells: tick of the next occasion; DEVICE_NEVER: none */
+    uint64_t every;      /* intervals: from one opportunity to the next; 0: there is one only */
+    uint64_t next;       /* intervals: tick of the next opportunity; DEVICE_NEVER: none */
     uint64_t ends;       /* of the present spell, or when the power comes back; DEVICE_NEVER: open */
     uint8_t victim;      /* FAULT_POWER: the unit that has lost its power; 0: none */
     bool active;         /* a spell is in force */
@@ -165,7 +165,7 @@ extern const struct segment_hooks faults_hooks;
 
 /* ---- Inside: between the parts of this module ------------------------------------------------------------------------- */
 
-/* An occasion: does a fault of this kind act? Counts it. `direction`, `operation`: for kinds that have one, else 0. Returns it
+/* An opportunity: does a fault of this kind act? Counts it. `direction`, `operation`: for kinds that have one, else 0. Returns it
  * (valid until the next call), or NULL. */
 struct fault *fault_apply(struct faults *faults, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation);
 

@@ -59,7 +59,7 @@ static bool apply_to_answer(struct fault_answer *answer, uint8_t *byte)
 
 /* ---- Bytes ---------------------------------------------------------------------------------------------------------- */
 
-/* Does what a station sends get as far as the line? */
+/* Does what a unit sends get as far as the line? */
 static bool is_connected(const struct faults *faults, unsigned station)
 {
     if (station == 0 && fault_find_active(faults, FAULT_UNPLUGGED, 0))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* output_kind.h: kinds of files that are written, and how they are recognised by their first bytes. Pure. Who writes a kind of
- * file describes it; those that several write stand here. */
+ * file describes it; those that several write are here. */
 #ifndef RKM04_FILE_OUTPUT_KIND_H
 #define RKM04_FILE_OUTPUT_KIND_H
 

@@ -10,7 +10,7 @@
 
 struct delivery;
 
-/* Begin to write `text` in one piece. close_it: close the descriptor behind it. Returns NULL if there is no memory or thread. */
+/* Begin to write `text` in one piece. close_it: close the descriptor after it. Returns NULL if there is no memory or thread. */
 struct delivery *delivery_begin(int fd, const char *text, bool close_it);
 
 /* Wait for the end, but at most `milliseconds`; *delivery is not to be used any more. Returns 0 if all is written, or it is

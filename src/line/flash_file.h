@@ -5,7 +5,7 @@
  * for, so a killed emulator loses nothing of what it has done. For a machine that loses its power: operations become lasting in
  * the order in which they were asked for, but for programs that follow one another without a gap, which count as one, and an
  * erase of the block that was written last; what has been read is on the disk. A new image is on the disk with its name before
- * it is used, and one whose making was cut is made anew. */
+ * it is used, and one whose making was cut is made again. */
 #ifndef RKM04_LINE_FLASH_FILE_H
 #define RKM04_LINE_FLASH_FILE_H
 

@@ -49,8 +49,8 @@ struct line {
     int slave;                /* held open, so that the master never sees a hang-up; -1: a device, or a client keeps us out */
     struct line_watch *watch; /* NULL: a device */
     struct line *next;        /* being watched */
-    int mark;                 /* inotify's, for this pty; -1: none, it is looked at now and then */
-    bool left;                /* by a client: its settings have not been looked at yet */
+    int mark;                 /* inotify's, for this pty; -1: none, it is checked now and then */
+    bool left;                /* by a client: its settings have not been checked yet */
     bool doubtful;            /* notices were lost, or came too fast: `clients` may be wrong */
     bool certain;             /* one of `clients` is there for certain: a client that comes now is another one */
     unsigned looks;           /* at this line that are still needed to be certain */
@@ -66,7 +66,7 @@ struct line {
     void *context;
 };
 
-/* Begin to watch; end it. Without inotify (its watches or instances are used up) the lines are looked at ten times a second: who
+/* Begin to watch; end it. Without inotify (its watches or instances are used up) the lines are checked ten times a second: who
  * comes and goes between two looks is not noticed then. Failures are reported. Returns false if it did not work. */
 bool line_watch_open(struct line_watch *watch);
 void line_watch_close(struct line_watch *watch);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The emulator's own pty. It holds one slave descriptor itself, so the master never reports a hang-up (which would make
- * poll() return at once, for ever) and the settings stay within reach; inotify reports who opens and closes it.
+ * poll() return at once, without end) and the settings stay within reach; inotify reports who opens and closes it.
  *
  * inotify merges equal notices that follow each other, so counting them may err when two clients come or go together. Hence
  * whether a client is left is looked up whenever one closes it: with our own slave closed for a moment, the master shows by a
@@ -69,7 +69,7 @@ static bool add_to_watch(struct line_watch *watch, int fd)
     return fd >= 0 && epoll_ctl(watch->fd, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-/* Look at the lines now and then, or no more. Returns false if it does not work (errno). */
+/* Check the lines now and then, or no more. Returns false if it does not work (errno). */
 static bool set_polling(struct line_watch *watch, bool on)
 {
     struct itimerspec spec = {0};

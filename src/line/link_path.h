@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* link_path.h: the stable name of the emulator's pty: a symbolic link, and beside it a lock file "LINK.lock" that says whose
+/* link_path.h: the stable name of the emulator's pty: a symbolic link, and next to it a lock file "LINK.lock" that says whose
  * the link is. The kernel frees the lock however its holder ends, so a link under a free lock of ours is stale. */
 #ifndef RKM04_LINE_LINK_PATH_H
 #define RKM04_LINE_LINK_PATH_H
@@ -19,7 +19,7 @@ struct link_path {
 bool link_path_default(char path[PATH_MAX], const char *name);
 
 /* Take the name `path` (NULL: the default, $XDG_RUNTIME_DIR/rkm04/busNUMBER or a private folder under the temporary directory),
- * and remove a stale link of our own there. Whatever else stands there is left alone, and refused. Failures are reported.
+ * and remove a stale link of our own there. Whatever else is there is left alone, and refused. Failures are reported.
  * Returns false if the name cannot be had. */
 bool link_path_claim(struct link_path *link, const char *path, unsigned number);
 

@@ -23,7 +23,7 @@ static struct {
     pthread_mutex_t lock;
     pthread_cond_t news, done;
     size_t start, end;  /* of what waits, in `text` */
-    uint64_t dropped;   /* lines behind it for which there was no room */
+    uint64_t dropped;   /* lines after it for which there was no room */
     bool writing;
     char text[LOG_QUEUE_SIZE];
 } queue = {.lock = PTHREAD_MUTEX_INITIALIZER, .news = PTHREAD_COND_INITIALIZER, .done = PTHREAD_COND_INITIALIZER};

@@ -196,7 +196,7 @@ static void set_break(struct net_port *port, bool on)
         port->calls->line_break(port->context, on);
 }
 
-/* Follow what the client has commanded, behind the data it sent before. */
+/* Follow what the client has commanded, after the data it sent before. */
 static void apply_event(struct net_port *port, enum rfc2217_event event)
 {
     const struct rfc2217 *set = &port->rfc2217;
@@ -226,7 +226,7 @@ static void queue_reply(struct net_port *port)
     port->replies_length += port->rfc2217.reply_length;
 }
 
-/* Look at the bytes read while there is room for what they bring. Returns true if there were any. */
+/* Check the bytes read while there is room for what they bring. Returns true if there were any. */
 static bool process_input(struct net_port *port)
 {
     size_t before = port->in_at;
@@ -365,7 +365,7 @@ static void refuse_client(struct net_port *port, struct net_connection *connecti
     port->calls->event(port->context, NET_REFUSED, connection->name);
 }
 
-/* The client may have closed its side behind more bytes than have been read. Then those that there is room for are read. */
+/* The client may have closed its side after more bytes than have been read. Then those that there is room for are read. */
 static void check_for_end(struct net_port *port)
 {
     struct net_connection *connection = port->client;

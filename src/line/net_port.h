@@ -92,7 +92,7 @@ struct net_port {
     uint64_t moved;                /* ms of the loop: when bytes last passed */
     struct net_connection *client; /* NULL: none */
     struct net_connection connections[NET_CONNECTIONS];
-    size_t in_at, in_length; /* what has been read of a client's bytes, and not been looked at */
+    size_t in_at, in_length; /* what has been read of a client's bytes, and not been checked */
     uint8_t in[NET_IN];
     size_t to_line_head, to_line_count;
     uint8_t to_line[NET_TO_LINE];

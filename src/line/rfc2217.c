@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Telnet options are agreed after RFC 1143: what is agreed already gets no answer, or two ends might answer one another for ever.
- * Data are eight bits wide whether or not BINARY has been agreed, since clients send them so (pyserial does). */
+/* Telnet options are agreed after RFC 1143: what is agreed already gets no answer, or two ends might answer one another without
+ * end. Data are eight bits wide whether or not BINARY has been agreed, since clients send them so (pyserial does). */
 #include "rfc2217.h"
 
 #include <string.h>

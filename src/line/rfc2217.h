@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 #define RFC2217_REPLY_MAX 64   /* bytes of the longest reply */
-#define RFC2217_COMMAND_MAX 16 /* bytes of a command that are looked at; only signatures are longer */
+#define RFC2217_COMMAND_MAX 16 /* bytes of a command that are checked; only signatures are longer */
 
 /* What a byte of the client meant, besides the reply it may have caused. */
 enum rfc2217_event {
@@ -56,10 +56,10 @@ struct rfc2217 {
     size_t command_length;
 };
 
-/* A client has connected: 19200 baud, 8N1 (U7), DTR and RTS on. The first bytes for it stand in `reply`. */
+/* A client has connected: 19200 baud, 8N1 (U7), DTR and RTS on. The first bytes for it are in `reply`. */
 void rfc2217_begin(struct rfc2217 *port);
 
-/* Take one byte of the client, any. Its reply, if any, stands in `reply` until the next call and is to be sent as it is.
+/* Take one byte of the client, any. Its reply, if any, is in `reply` until the next call and is to be sent as it is.
  * Returns what it meant. */
 enum rfc2217_event rfc2217_receive(struct rfc2217 *port, uint8_t byte);
 

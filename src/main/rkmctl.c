@@ -28,7 +28,7 @@ struct options {
     bool timed, json;
     const char *file;      /* of the shell's commands; NULL: none */
     const char *command;   /* NULL: none */
-    const char **words;    /* behind it */
+    const char **words;    /* after it */
     size_t count;
 };
 

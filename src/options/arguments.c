@@ -14,7 +14,7 @@
 #define SHOWN_MAX 300 /* bytes of an argument with its note */
 
 static bool parsing; /* argp may end the program now */
-static char **arguments; /* of the program; NULL behind the last */
+static char **arguments; /* of the program; NULL after the last */
 
 int arguments_printed(void)
 {
@@ -28,7 +28,7 @@ int arguments_printed(void)
     return 1;
 }
 
-/* The command line was wrong, which has been said: name characters in it that cannot be seen. */
+/* The command line was wrong, which has been reported: name characters in it that cannot be seen. */
 static void note_invisible(void)
 {
     for (char **argument = arguments; *argument != NULL; argument++) {

@@ -22,7 +22,7 @@ struct plant;
 
 enum plant_event {
     PLANT_STALL,    /* steps are being lost: too fast, too steep; text says which motor and where */
-    PLANT_END_STOP, /* the axis stands at an end stop and loses steps */
+    PLANT_END_STOP, /* the axis is at an end stop and loses steps */
     PLANT_JAM,
     PLANT_FREE,     /* steps count again */
     PLANT_LEAD      /* a lead of the motor is missing: it does not turn */
@@ -88,7 +88,7 @@ bool plant_place(struct plant *plant, uint64_t tick, unsigned motor, int64_t pos
 bool plant_jam(struct plant *plant, unsigned motor, bool jammed);
 bool plant_take_lead(struct plant *plant, unsigned motor, bool missing);
 
-/* The plant as it stands, for `state` and plant.get. New reference; NULL: out of memory. No plant (NULL): null. */
+/* The plant as it is, for `state` and plant.get. New reference; NULL: out of memory. No plant (NULL): null. */
 json_t *plant_json(const struct plant *plant);
 
 /* A copy with all times `shift` ticks later, for snapshots. NULL: out of memory. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* plant_read.c: plants as they stand in a file: docs/PLANT.md. */
+/* plant_read.c: plants as they are in a file: docs/PLANT.md. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -121,7 +121,7 @@ static bool read_stall(const struct config_node *motor, struct plant_stall *to)
     return true;
 }
 
-/* Where it stands: the counter and the offset. */
+/* Where it is: the counter and the offset. */
 static bool read_offset(const struct config_node *node, int64_t counter, struct plant_motor *to)
 {
     int64_t offset = 0;
@@ -134,7 +134,7 @@ static bool read_offset(const struct config_node *node, int64_t counter, struct 
                         (long long)to->position, (long long)counter, (long long)offset);
 }
 
-/* `1:` and nothing behind it, or null. */
+/* `1:` and nothing after it, or null. */
 static bool is_nothing(const struct config_node *node)
 {
     const char *text = config_text(node);

@@ -52,7 +52,7 @@ static int64_t square_after(const struct plant_stall *stall, int64_t from, int64
     return from * from + 2 * larger(limit_at(stall, from), limit_at(stall, speed)) * steps;
 }
 
-/* Look at the interval before a pulse: may it have stood in it, or gone so slowly that it follows anything? From `start` it may
+/* Check the interval before a pulse: may it have stood in it, or gone so slowly that it follows anything? From `start` it may
  * have come to this speed within a step: a motion ended, and the next one began. */
 static bool may_be_slow(const struct plant_stall *stall, uint64_t interval)
 {

@@ -20,7 +20,7 @@ struct collector {
  * for who cannot call collector_update() after each advance. */
 void collector_begin(struct collector *collector, struct plot_curves *curves, struct sim *sim, unsigned unit, bool follow);
 
-/* Look at the present plans. To be called after each advance that ended with something happening. */
+/* Read the present plans. To be called after each advance that ended with something happening. */
 void collector_update(struct collector *collector);
 
 /* The run has ended. */

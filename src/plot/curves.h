@@ -68,7 +68,7 @@ void *plot_grow_list(struct plot_curves *curves, void *list, size_t count, size_
 /* Append a corner. One that lies on the straight line between its neighbours is left out. */
 void plot_add_point(struct plot_curves *curves, struct plot_motor *motor, struct plot_point point);
 
-/* Drop what lies behind `us`; there, the curve has the value that it would have had. */
+/* Drop what lies after `us`; there, the curve has the value that it would have had. */
 void plot_cut(struct plot_curves *curves, struct plot_motor *motor, double us);
 
 void plot_add_level(struct plot_curves *curves, enum plot_mask mask, double us, uint32_t value);
@@ -76,7 +76,7 @@ void plot_add_level(struct plot_curves *curves, enum plot_mask mask, double us, 
 /* Begin or end a motion. */
 void plot_mark_motion(struct plot_curves *curves, struct plot_motor *motor, double us, bool begins);
 
-/* The motor is in this state at `us`: the band before goes on, or another one begins. NULL: in none that is shown. */
+/* The motor is in this state at `us`: the band before continues, or another one begins. NULL: in none that is shown. */
 void plot_mark_state(struct plot_curves *curves, struct plot_motor *motor, double us, const char *state, const char *command);
 
 /* Speed and position at `us`. */

@@ -16,7 +16,7 @@ struct plot_view {
     double from, to;     /* us; from < to */
 };
 
-/* An SVG, one that stands alone: light or dark as its reader likes. What goes wrong shows in ferror(). */
+/* A complete SVG file: light or dark as its reader likes. What goes wrong shows in ferror(). */
 void plot_draw_svg(FILE *out, const struct plot_curves *curves, const struct plot_view *view);
 
 /* A page with that picture, which zooms and shows values under the pointer; it loads nothing. */

@@ -16,7 +16,7 @@ static double y_of(const struct plot_scale *scale, double value)
     return scale->size - plot_scale_place(scale, value);
 }
 
-/* The corners that can be seen: the one before the window to the one behind it. */
+/* The corners that can be seen: the one before the window to the one after it. */
 static void visible(const struct plot_motor *motor, const struct plot_scale *time, size_t *first, size_t *last)
 {
     size_t from = plot_find(motor, time->low), to = plot_find(motor, time->high);

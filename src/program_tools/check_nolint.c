@@ -25,7 +25,7 @@ static size_t line_end(const struct program_source *source, size_t at)
     return end == NULL ? source->length : (size_t)(end - source->text);
 }
 
-/* Offset of the first command behind a comment; the end of the text if there is none. */
+/* Offset of the first command after a comment; the end of the text if there is none. */
 static size_t next_command(const struct code *code, const struct code_comment *comment)
 {
     size_t low = 0, high = code->count;

@@ -28,7 +28,7 @@ struct check_printer {
 void check_print_begin(struct check_printer *printer, enum check_format format, FILE *out);
 void check_print(struct check_printer *printer, const struct program_source *sources, const struct diagnostics *found);
 
-/* Print what stands at the end. Returns false if out of memory. */
+/* Print what is at the end. Returns false if out of memory. */
 bool check_print_end(struct check_printer *printer);
 
 /* One diagnostic as an object: file, line, column, offset, length, severity, name, message, hint (null: none). New reference. */

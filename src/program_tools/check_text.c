@@ -31,7 +31,7 @@ static bool hint_digit(const struct rkm04_reader *reader, enum rkm04_read found,
 {
     size_t letter = reader->start;
     if (letter == 0 || !is_digit(reader->text[letter - 1]) || !is_one_of(reader->text[letter], "Ool")) {
-        letter = reader->wrong; /* directly behind its command */
+        letter = reader->wrong; /* directly after its command */
         if (found != RKM04_READ_BAD_VALUE || letter != reader->start + 1 || !is_one_of(byte_at(reader, letter), "OolI"))
             return false;
     }

@@ -27,7 +27,7 @@ struct code {
     size_t source_count;
     struct code_command *commands; /* all that are stored, and `\`; K and C75 are never stored (C3) */
     size_t count;
-    size_t first;                  /* of the program: the command behind the last `\` (C1) */
+    size_t first;                  /* of the program: the command after the last `\` (C1) */
     bool has_reset;
     struct code_comment *comments;
     size_t comment_count;
@@ -35,20 +35,20 @@ struct code {
 };
 
 /* What a reader reports that is no command: errors, K and C75. `found`: RKM04_READ_COMMAND for these two. `next`: the offset
- * at which reading goes on. */
+ * at which reading continues. */
 typedef void code_notice(void *context, size_t source, const struct rkm04_reader *reader, enum rkm04_read found,
                          struct rkm04_command command);
 
 /* Begin with no command. */
 void code_begin(struct code *code, const struct program_source *sources, size_t count);
 
-/* Read source number `source` behind what was read before. `text` is its text, mapped in place (program_text_map_in_place()).
+/* Read source number `source` after what was read before. `text` is its text, mapped in place (program_text_map_in_place()).
  * Returns false if out of memory. */
 bool code_read(struct code *code, size_t source, const char *text, code_notice *notice, void *context);
 
 void code_free(struct code *code);
 
-/* Where a command stands, for a diagnostic: through the end of command `last`, or of the last one in the same source. */
+/* Where a command is, for a diagnostic: through the end of command `last`, or of the last one in the same source. */
 struct diagnostic code_place(const struct code *code, size_t command, size_t last);
 
 /* Bit and label of an I, label of J and '. */

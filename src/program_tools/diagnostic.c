@@ -64,7 +64,7 @@ static int compare(const void *left, const void *right)
     return names != 0 ? names : strcmp(a->message, b->message);
 }
 
-/* A source for all motors is looked at for each: what is the same is reported once. */
+/* A source for all motors is checked for each: what is the same is reported once. */
 static void drop_twins(struct diagnostics *all)
 {
     size_t kept = 0;

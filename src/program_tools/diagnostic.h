@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A program text as it stands in a file. */
+/* A program text as it is in a file. */
 struct program_source {
     const char *name; /* of the file, for messages */
     const char *text; /* need not end with a zero */

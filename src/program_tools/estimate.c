@@ -80,11 +80,11 @@ static enum estimate_result begin(struct estimate_run *run)
 
 /* ---- The run ---------------------------------------------------------------------------------------------------------- */
 
-/* Go on to the next slot in which something is due, at most to `limit`. Returns false if nothing ever is. */
+/* Continue to the next slot in which something is due, at most to `limit`. Returns false if nothing ever is. */
 static bool leap(struct estimate_run *run, uint64_t limit)
 {
     uint64_t end = sim_next_report(&run->sim);
-    if (end >= SIM_TIME_MAX) /* a motor goes on for ever: the state repeats from slot to slot */
+    if (end >= SIM_TIME_MAX) /* a motor continues without end: the state repeats from slot to slot */
         end = sim_next_event(&run->sim);
     if (end >= SIM_TIME_MAX)
         return false;
@@ -149,7 +149,7 @@ static void note_positions(struct estimate_run *run, int64_t positions[RKM04_MOT
             positions[i] = 0;
 }
 
-/* The state of the unit repeats. Does the plant go on all the same, to a switch or a stop? */
+/* The state of the unit repeats. Does the plant continue anyway, to a switch or a stop? */
 static bool drifts(struct estimate_run *run, uint64_t period)
 {
     int64_t before[RKM04_MOTORS], after[RKM04_MOTORS];

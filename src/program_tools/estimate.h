@@ -26,7 +26,7 @@ struct estimate_options {
     FILE *errors;             /* where errors of the plant go */
 };
 
-/* Where a command stands. */
+/* Where a command is. */
 struct estimate_place {
     unsigned motor;           /* 1..4 */
     size_t source, offset, length, line, column;

@@ -14,7 +14,7 @@
 #include "text/text.h"
 #include "token.h"
 
-/* The formats stand in a table of words. */
+/* The formats are in a table of words. */
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
 
 #define TEXT_SIZE 320

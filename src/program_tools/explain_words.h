@@ -7,7 +7,7 @@
 
 #include "explain_language.h"
 
-/* Phrases beside those of the commands. %s and numbers as printf() takes them. */
+/* Phrases besides those of the commands. %s and numbers as printf() takes them. */
 enum explain_phrase {
     PHRASE_FORWARD,
     PHRASE_BACK,

@@ -75,7 +75,7 @@ static uint32_t reach(struct flow *flow, uint32_t context, uint32_t index, uint3
     return FLOW_NO_NODE;
 }
 
-/* The stack with this loop opened: begun anew if it is open already, which closes those inside it (C7). */
+/* The stack with this loop opened: begun again if it is open already, which closes those inside it (C7). */
 static uint32_t open_loop(struct flow *flow, uint32_t stack, uint32_t loop)
 {
     for (uint32_t at = stack; at != 0; at = flow->stacks[at].parent)
@@ -117,7 +117,7 @@ static uint32_t find_context(struct flow *flow, uint32_t entry, uint32_t loops, 
 
 /* ---- Commands ------------------------------------------------------------------------------------------------------- */
 
-/* A node under way: what it is, and the state behind it. */
+/* A node under way: what it is, and the state after it. */
 struct step {
     uint32_t node, context, index, stack;
     struct rkm04_command command;

@@ -3,7 +3,7 @@
  *
  * A node is a command in one situation: the call level with its entry and the number of loops open there (a context), and the
  * loops opened since (a stack). Nodes are found by following the program from its beginning; a subroutine is followed once for
- * each context, not for each call. Where the program stops because of a fault, the flow goes on as if there were none, so that
+ * each context, not for each call. Where the program stops because of a fault, the flow continues as if there were none, so that
  * one mistake is one diagnostic. */
 #ifndef RKM04_PROGRAM_TOOLS_FLOW_H
 #define RKM04_PROGRAM_TOOLS_FLOW_H
@@ -44,7 +44,7 @@ struct flow_context {
     uint32_t entry, loops, calls; /* entry: index of the label; loops open at the call; call level */
     uint32_t callers;             /* first call into it */
     bool returns;
-    struct flow_state out;        /* behind its returns */
+    struct flow_state out;        /* after its returns */
 };
 
 struct flow_stack {
@@ -76,7 +76,7 @@ bool flow_begin(struct flow *flow, const struct code *code, uint16_t settable);
 void flow_end(struct flow *flow);
 
 /* The next node that may follow `node` in time: of a call the subroutine, of a return what is behind the calls. `*cursor`: 0 at
- * first. Returns FLOW_NO_NODE behind the last one. */
+ * first. Returns FLOW_NO_NODE after the last one. */
 uint32_t flow_follower(const struct flow *flow, uint32_t node, uint32_t *cursor);
 
 /* Give all nodes that reach each other the same component. Returns the number of components, 0 if out of memory. */

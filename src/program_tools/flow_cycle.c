@@ -18,7 +18,7 @@ uint32_t flow_follower(const struct flow *flow, uint32_t node, uint32_t *cursor)
         *cursor = caller + 1;
         return flow->nodes[caller].next[1];
     }
-    const unsigned ways = op == '\'' ? 1 : 2; /* the way behind a call leads through its return */
+    const unsigned ways = op == '\'' ? 1 : 2; /* the way after a call leads through its return */
     while (*cursor < ways) {
         uint32_t next = at->next[(*cursor)++];
         if (next != FLOW_NO_NODE)

@@ -130,7 +130,7 @@ bool flow_state_way(const struct flow_state *state, struct rkm04_command command
     return true;
 }
 
-/* The counter behind a motion of so many steps; 32 bits, it wraps (R8). */
+/* The counter after a motion of so many steps; 32 bits, it wraps (R8). */
 static int64_t moved(int64_t position, int64_t steps, bool forward)
 {
     return position == FLOW_UNKNOWN ? position : (int32_t)(uint32_t)(position + (forward ? steps : -steps));

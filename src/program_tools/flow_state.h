@@ -35,7 +35,7 @@ struct flow_state {
 /* A motor after power-up; its position is not known. */
 struct flow_state flow_state_begin(void);
 
-/* The state behind command number `index`. */
+/* The state after command number `index`. */
 void flow_state_execute(struct flow_state *state, struct rkm04_command command, size_t index);
 
 /* Both `*state` and `other` are possible. Returns whether that is news to `*state`. */

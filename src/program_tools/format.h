@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* format.h: the canonical layout of a program text.
  *
- * Every command is written as the unit would (P8), one blank between two. A label stands at the margin in a line of its own;
- * loops, [ ] and the bodies of subroutines are indented by four; a line ends behind a motion, a dwell, a wait, a jump, a Y. Lines
+ * Every command is written as the unit would (P8), one blank between two. A label is at the margin in a line of its own;
+ * loops, [ ] and the bodies of subroutines are indented by four; a line ends after a motion, a dwell, a wait, a jump, a Y. Lines
  * that were separate stay so, one empty line between them stays, comments stay as they are. */
 #ifndef RKM04_PROGRAM_TOOLS_FORMAT_H
 #define RKM04_PROGRAM_TOOLS_FORMAT_H

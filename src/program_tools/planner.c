@@ -46,7 +46,7 @@ size_t planner_read(const uint8_t *answer, size_t length, struct planner_point p
     return count;
 }
 
-/* The text that makes this motion. Returns the number of its commands behind `\`. */
+/* The text that makes this motion. Returns the number of its commands after `\`. */
 static size_t write_motion(char *text, size_t size, uint16_t start_speed, const struct planner_segment *segments, size_t count)
 {
     size_t at = (size_t)snprintf(text, size, "\\C100 S%u ", start_speed);

@@ -33,7 +33,7 @@ size_t planner_ask(struct planner *planner, uint16_t start_speed, const struct p
                    struct planner_point points[PLANNER_POINTS_MAX]);
 void planner_end(struct planner *planner);
 
-/* Read a whole answer of message 6, with ` n;[(s;v),…]` behind its first two bytes. Returns the number of points. */
+/* Read a whole answer of message 6, with ` n;[(s;v),…]` after its first two bytes. Returns the number of points. */
 size_t planner_read(const uint8_t *answer, size_t length, struct planner_point points[PLANNER_POINTS_MAX]);
 
 #endif

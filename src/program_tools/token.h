@@ -30,7 +30,7 @@ struct token_reader {
 /* `text`: mapped in place (program_text_map_in_place()). */
 void token_begin(struct token_reader *tokens, const char *text, size_t length);
 
-/* The next token; TOKEN_END for ever behind the last one. */
+/* The next token; always TOKEN_END after the last one. */
 struct token token_next(struct token_reader *tokens);
 
 #endif

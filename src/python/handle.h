@@ -83,7 +83,7 @@ bool handle_advance_until(struct handle *handle, struct condition *condition, ui
 /* Speed and characters of the host's port. They need not be those of the units: both then receive what comes of it. */
 void handle_host_configure(struct handle *handle, struct line_settings settings);
 
-/* Send bytes from the present tick on, behind those under way. Time passes only while more are under way than the bus takes.
+/* Send bytes from the present tick on, after those under way. Time passes only while more are under way than the bus takes.
  * Returns false if it was paused before all were handed over. */
 bool handle_host_write(struct handle *handle, const uint8_t *bytes, size_t length);
 

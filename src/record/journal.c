@@ -23,7 +23,7 @@ struct journal {
     struct sim *sim;
     struct sim_journal hooks;
     const struct sim_journal *next; /* who was there before us */
-    struct journal_page *page;      /* the present one; NULL: memory was short */
+    struct journal_page *page;      /* the present one; NULL: out of memory */
     bool too_long;
 };
 
@@ -47,7 +47,7 @@ void journal_page_free(struct journal_page *page)
     }
 }
 
-/* A new page behind `before`, whose reference it takes over. */
+/* A new page after `before`, whose reference it takes over. */
 static struct journal_page *new_page(struct journal_page *before)
 {
     struct journal_page *page = calloc(1, sizeof *page);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* journal.h: what has come in, in memory, in the form of a record, for snapshots to files. Coming back to a snapshot takes the
+/* journal.h: what has come in, in memory, in the form of a recording, for snapshots to files. Coming back to a snapshot takes the
  * journal back, too: so it holds what led to the present state and nothing else. */
 #ifndef RKM04_RECORD_JOURNAL_H
 #define RKM04_RECORD_JOURNAL_H
@@ -11,7 +11,7 @@
 struct journal;
 struct journal_page; /* a piece of the past */
 
-/* Begin with the line as it stands, at tick 0. NULL: out of memory. */
+/* Begin with the line as it is, at tick 0. NULL: out of memory. */
 struct journal *journal_begin(struct sim *sim);
 void journal_free(struct journal *journal);
 

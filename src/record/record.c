@@ -10,7 +10,7 @@
 #include "snapshot_store.h"
 #include "tally.h"
 
-#define GAP 2000u      /* ticks: bytes further apart stand in two lines */
+#define GAP 2000u      /* ticks: bytes further apart are in two lines */
 #define GATHERED 256u  /* bytes in a line */
 
 struct record {
@@ -25,7 +25,7 @@ struct record {
     uint8_t bytes[GATHERED];
 };
 
-/* After the first failure nothing is written: what stands in the file can be used. */
+/* After the first failure nothing is written: the content of the file can be used. */
 static void note_written(struct record *record)
 {
     if (fflush(record->out) != 0 && record->error == 0)
@@ -137,7 +137,7 @@ static void on_timed(void *context, uint64_t now, bool timed)
         record->next->timed(record->next->context, now, timed);
 }
 
-/* The file that a restore has read stands before it, line by line, so that the record can be replayed anywhere. */
+/* The file that a restore has read is before it, line by line, so that the recording can be replayed anywhere. */
 static void embed_recording(struct record *record, uint64_t now, const struct sim_snapshots *store)
 {
     size_t length = store->length, lines = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* record.h: a record of a session: the configuration, everything that came in from outside with its tick, and what went out:
+/* record.h: a recording of a session: the configuration, everything that came in from outside with its tick, and what went out:
  * answers as they are, pulses, outputs and bytes on the wires as running digests. `rkm04 replay` does it again and names the
  * first difference. docs/RECORD.md describes the file: JSON, one object a line. */
 #ifndef RKM04_RECORD_H
@@ -28,7 +28,7 @@ struct replay;
 enum replay_end {
     REPLAY_SAME,        /* everything went out as recorded */
     REPLAY_DIFFERENT,   /* it did not: replay_text() says where and how */
-    REPLAY_WRONG,       /* the file is no record or damaged: replay_text() says line, column, what was expected */
+    REPLAY_WRONG,       /* the file is no recording or damaged: replay_text() says line, column, what was expected */
     REPLAY_INTERRUPTED,
     REPLAY_NO_MEMORY
 };
@@ -47,10 +47,10 @@ struct replay_counts {
     uint64_t inputs;              /* bytes and commands, lines with */
     uint64_t bytes_in, bytes_out; /* of the host */
     uint64_t steps;
-    bool whole;                   /* the record has been brought to its end */
+    bool whole;                   /* the recording has been brought to its end */
 };
 
-/* Read the head of a record and power up a sim like the one recorded. NULL: out of memory; otherwise replay_sim() is NULL if
+/* Read the head of a recording and power up a sim like the one recorded. NULL: out of memory; otherwise replay_sim() is NULL if
  * the file is wrong. `name` is for messages; it and `in` must stay until replay_free(). */
 struct replay *replay_open(const char *name, FILE *in);
 struct sim *replay_sim(struct replay *replay);
@@ -59,11 +59,11 @@ struct sim *replay_sim(struct replay *replay);
 void replay_until(struct replay *replay, uint64_t tick);
 
 /* Do it all. Traces may have joined the sim before. `interrupted`: NULL, or looked at before each line, and after each tenth of a
- * second or less of virtual time in which something happens: true makes the replay pause (REPLAY_INTERRUPTED); it goes on with
- * the next call. No file is read or written on behalf of a record. */
+ * second or less of virtual time in which something happens: true makes the replay pause (REPLAY_INTERRUPTED); it continues with
+ * the next call. No file is read or written on behalf of a recording. */
 enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *context), void *context);
 
-/* Look at all lines without obeying them, as far as they can be judged so. Likewise; a replay that was checked cannot be run. */
+/* Check all lines without obeying them, as far as they can be judged so. Likewise; a replay that was checked cannot be run. */
 enum replay_end replay_check(struct replay *replay, bool (*interrupted)(void *context), void *context);
 
 /* Why: "unit 1, motor 2: …". Never NULL. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* record_line.h: the lines of a record about what came in (docs/RECORD.md), each written by a function of its own. */
+/* record_line.h: the lines of a recording about what came in (docs/RECORD.md), each written by a function of its own. */
 #ifndef RKM04_RECORD_LINE_H
 #define RKM04_RECORD_LINE_H
 
@@ -10,7 +10,7 @@
 #define RECORD_VERSION 1
 #define RECORD_SPAN UINT64_C(100000)       /* ticks from digest to digest */
 #define RECORD_LINE_MAX (2u << 20)         /* bytes */
-#define RECORD_EMBEDDED_MAX (16u << 20)    /* bytes of a file within a record, and of the journal */
+#define RECORD_EMBEDDED_MAX (16u << 20)    /* bytes of a file within a recording, and of the journal */
 
 /* The configuration, flash and plant: `outputs` says whether what goes out will be recorded, too. Returns false if memory is
  * short or a flash image cannot be read. */

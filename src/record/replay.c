@@ -174,7 +174,7 @@ static json_t *restore_embedded(struct replay *replay, struct refusal *refusal)
     return restore_put(restore, refusal);
 }
 
-/* No file is touched on behalf of a record: what was read stands in it, what was written is of no concern. */
+/* No file is touched on behalf of a recording: what was read is in it, what was written is of no concern. */
 static json_t *execute_command(struct replay *replay, const char *method, const json_t *params, struct refusal *refusal)
 {
     if (!json_object_get(params, "file"))

@@ -8,9 +8,9 @@
 
 #define SHOWN 24u /* bytes shown in a message */
 
-/* ---- What goes out, kept until the record comes to it ----------------------------------------------------------------- */
+/* ---- What goes out, kept until the recording comes to it ----------------------------------------------------------------- */
 
-/* Make room for one more item behind `count`, after what has been compared (`at`) is dropped. Returns NULL: out of memory. */
+/* Make room for one more item after `count`, after what has been compared (`at`) is dropped. Returns NULL: out of memory. */
 static void *room_for(void *list, size_t *at, size_t *count, size_t *room, size_t size)
 {
     if (*at == *count)

@@ -50,7 +50,7 @@ static int flash_program(void *context, unsigned number, unsigned block, unsigne
     return to ? 0 : 1;
 }
 
-/* The lines with images behind the head. The line behind them is read again. */
+/* The lines with images after the head. The line after them is read again. */
 static bool read_images(struct replay *replay, unsigned units)
 {
     static const char *const keys[] = {"flash", "block", "hex", NULL};

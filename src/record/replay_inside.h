@@ -28,7 +28,7 @@ struct replay {
     uint64_t until;
     bool (*interrupted)(void *context);
     void *context;
-    bool paused;                /* interrupted() has returned true: the present line is executed again when the replay goes on */
+    bool paused;                /* interrupted() returned true: the present line is executed again when the replay continues */
     uint64_t checked;           /* tick of the last line that was checked */
 
     /* The present line. */
@@ -37,9 +37,9 @@ struct replay {
     bool again;                 /* it is to be read once more */
     json_t *json;
     uint8_t *hex;               /* bytes of a value of it */
-    char *embedded;             /* the record for the restore that follows; NULL: none */
+    char *embedded;             /* the recording for the restore that follows; NULL: none */
     size_t embedded_length;
-    struct restore *inner;      /* that restore, while it goes on */
+    struct restore *inner;      /* that restore, while it continues */
 
     /* What has gone out and was not compared yet, in the order of time. */
     bool outputs;               /* it is compared at all */
@@ -56,7 +56,7 @@ struct replay {
     char text[800], note[200];
 };
 
-/* As replay_open(), for a record within `depth` others. */
+/* As replay_open(), for a recording within `depth` others. */
 struct replay *replay_open_within(const char *name, FILE *in, unsigned depth);
 
 /* ---- replay_read.c ---------------------------------------------------------------------------------------------------- */
@@ -98,7 +98,7 @@ bool replay_begin(struct replay *replay);
 void replay_begin_compare(struct replay *replay);
 void replay_end_compare(struct replay *replay);
 
-/* Is there anything before `tick` that the record does not have? `bytes`: so many bytes may come. Returns false if there is: a
+/* Is there anything before `tick` that the recording does not have? `bytes`: so many bytes may come. Returns false if there is: a
  * difference. */
 bool replay_expect_nothing(struct replay *replay, uint64_t tick, size_t bytes);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* restore.c: restoring a file: its lines are checked, then replayed in a sim of their own, both in pieces; at the end the sim
- * becomes like that one. The machine's clock is looked at for limits only. */
+ * becomes like that one. The machine's clock is checked for limits only. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -33,7 +33,7 @@ struct restore {
 
 static const char out_of_memory[] = "out of memory";
 
-/* ---- The record ------------------------------------------------------------------------------------------------------- */
+/* ---- The recording ------------------------------------------------------------------------------------------------------- */
 
 static bool open_replay(struct restore *restore)
 {

@@ -8,7 +8,7 @@
 
 struct snapshot {
     struct segment segment;
-    struct node_list switches; /* S1 of the units, as it stands */
+    struct node_list switches; /* S1 of the units, as it is */
     struct faults faults;
     struct wire_monitor monitor;
     struct sim_unit unit[SEGMENT_UNITS]; /* `plant` is a copy of its own */
@@ -30,7 +30,7 @@ struct look {
     struct look_motor motor[DEVICE_AXES_MAX];
 };
 
-/* ---- Flash: past the faults on demand, which are the unit's --------------------------------------------------------- */
+/* ---- Flash: past the injected faults, which are the unit's --------------------------------------------------------- */
 
 static bool read_flash(struct sim *sim, const struct sim_unit *unit, unsigned block, uint8_t *data)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* snapshot.h: the line as it stands, to come back to: units, bytes under way, inputs, flash, plant, faults.
+/* snapshot.h: the line as it is, to come back to: units, bytes under way, inputs, flash, plant, faults.
  *
- * Coming back does not turn the line's time back: ticks go on, and everything that has a time is moved along, so that what
+ * Coming back does not turn the time of the bus back: ticks continue, and everything that has a time is moved along, so that what
  * follows is what followed then, later by the difference. Only what was taken of another line at a later tick takes the time
- * along: the line's time leaps to that tick. */
+ * along: the time of the bus leaps to that tick. */
 #ifndef RKM04_RECORD_SNAPSHOT_H
 #define RKM04_RECORD_SNAPSHOT_H
 
@@ -18,8 +18,8 @@ struct snapshot *snapshot_take(struct sim *sim);
  * image cannot be written: then nothing is changed but what flash shows. */
 bool snapshot_restore(struct sim *sim, const struct snapshot *snapshot);
 
-/* Move everything that has a time along by `ticks`: the line's time leaps ahead, and nothing happens meanwhile. Returns false if
- * out of memory. */
+/* Move everything that has a time along by `ticks`: the time of the bus leaps ahead, and nothing happens meanwhile. Returns
+ * false if out of memory. */
 bool snapshot_move(struct sim *sim, uint64_t ticks);
 
 /* In what is `sim` unlike another, but for what a command may change: "the framing", …; NULL: in nothing that matters. */
@@ -40,11 +40,11 @@ void snapshot_free(struct snapshot *snapshot);
 struct restore;
 struct refusal; /* command.h */
 
-/* Read the file, and check that it fits. params: as of the command `restore`, with `file`. The sim may go on and change until the
- * end. Returns NULL: refused. */
+/* Read the file, and check that it fits. params: as of the command `restore`, with `file`. The sim may continue and change until
+ * the end. Returns NULL: refused. */
 struct restore *restore_begin(struct sim *sim, const json_t *params, struct refusal *refusal);
 
-/* Check and replay the file until `interrupted` says so, which is looked at as in replay_run(). Returns false if it is to go
+/* Check and replay the file until `interrupted` says so, which is checked as in replay_run(). Returns false if it is to go
  * on. */
 bool restore_go_on(struct restore *restore, bool (*interrupted)(void *context), void *context);
 

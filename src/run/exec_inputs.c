@@ -99,7 +99,7 @@ static bool read_programs(struct exec_inputs *inputs, const struct check *check)
     return is_right;
 }
 
-/* Report what is wrong with a text that stands in the middle of a file, by its place in the file. */
+/* Report what is wrong with a text that is in the middle of a file, by its place in the file. */
 static bool check_set(const struct check *check, const struct stimulus *s, const char *name)
 {
     size_t before = s->line - 1 + s->column - 1;

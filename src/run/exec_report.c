@@ -131,7 +131,7 @@ static json_t *waits_json(struct exec_run *run, enum exec_end end)
     return list;
 }
 
-/* Say on stderr for which of them no stimulus is left. Faults and labels: report_faults(). */
+/* Report on stderr for which of them no stimulus is left. Faults and labels: report_faults(). */
 static void report_waits(struct exec_run *run, const json_t *waits)
 {
     char text[DEVICE_ERROR_SIZE];

@@ -128,7 +128,7 @@ static void deliver_stimulus(struct exec_run *run, const struct stimulus *s)
 static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
 {
     uint64_t end = sim_next_report(&run->sim);
-    if (run->open && end > run->until) /* a motor goes on for ever: the state repeats from slot to slot */
+    if (run->open && end > run->until) /* a motor continues without end: the state repeats from slot to slot */
         end = sim_next_event(&run->sim);
     if (end <= run->until)
         end = (end + run->device->slot - 1) / run->device->slot * run->device->slot + 1;

@@ -13,7 +13,7 @@
 enum exec_end {
     EXEC_DONE,        /* nothing is due any more: every motor idle, stopped, or waiting for what can never come */
     EXEC_UNTIL,       /* the tick of `until` has been done */
-    EXEC_ENDLESS,     /* there is no `until`, and the state has repeated: it would go on for ever */
+    EXEC_ENDLESS,     /* there is no `until`, and the state has repeated: it would continue without end */
     EXEC_INTERRUPTED, /* by exec_run_interrupt() */
     EXEC_NO_TRACE     /* the trace could not be written */
 };

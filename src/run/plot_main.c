@@ -191,7 +191,7 @@ static bool attach_plant(struct sim *sim, const char *path)
     return is_right;
 }
 
-/* What repeats from slot to slot is an endless motion: it is drawn on to where it can be seen to go on. */
+/* What repeats from slot to slot is an endless motion: it is drawn on to where it can be seen to continue. */
 static void run_on(struct exec_run *run)
 {
     uint64_t now = sim_now(&run->sim);

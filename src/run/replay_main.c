@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* `rkm04 replay`: a record, again in virtual time. */
+/* `rkm04 replay`: a recording, again in virtual time. */
 #include <argp.h>
 #include <errno.h>
 #include <inttypes.h>

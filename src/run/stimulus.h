@@ -6,7 +6,7 @@
  *     TIME message HEX      any message of the device
  *     # comment
  *
- * TIME as in time_value.h. The lines may stand in any order; those of one time act in the order of the file. */
+ * TIME as in time_value.h. The lines may be in any order; those of one time act in the order of the file. */
 #ifndef RKM04_RUN_STIMULUS_H
 #define RKM04_RUN_STIMULUS_H
 

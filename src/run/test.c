@@ -196,7 +196,7 @@ static bool run_under_others(struct test_case *test, const struct options *optio
     return false;
 }
 
-/* Returns false if a record could not be written. *wrong: 0, or the errno with which a line could not. */
+/* Returns false if a recording could not be written. *wrong: 0, or the errno with which a line could not. */
 static bool run_all(struct test_case *tests, const struct options *options, int *wrong)
 {
     struct test_progress progress = {.wanted = isatty(STDERR_FILENO) != 0, .count = options->paths};

@@ -13,7 +13,7 @@ enum test_outcome {
     TEST_NOT_RUN,
     TEST_PASSED,
     TEST_FAILED,
-    TEST_BROKEN /* memory was short: it says nothing about the scenario */
+    TEST_BROKEN /* out of memory: it says nothing about the scenario */
 };
 
 #define TEST_NO_READING UINT_MAX
@@ -34,7 +34,7 @@ struct test_variant {
 struct test_readings {
     const struct device_readings *readings; /* of the scenario's device; NULL: it has none */
     size_t planned, runs, passed; /* the first run is counted */
-    bool broken;                  /* memory was short */
+    bool broken;                  /* out of memory */
     size_t variants;
     struct test_variant *variant;
 };
@@ -45,7 +45,7 @@ struct test_case {
     enum test_outcome outcome;
     struct scenario_result result;
     double seconds;           /* of real time */
-    char *record;             /* where the record of the failure is; NULL: nowhere */
+    char *record;             /* where the recording of the failure is; NULL: nowhere */
     struct test_readings *under; /* what came of it under other readings; NULL: it was run once */
 };
 
@@ -62,9 +62,9 @@ struct test_progress {
  * Returns 0, or what the exit status is to be. */
 int test_case_read(struct test_case *test, const char *path, const struct device_arguments *device);
 
-/* Run it. `folder`: where the record of a failure goes; NULL: it is not kept. `flags`: of output_file.h, for the record.
- * `number`: 2, 3, … for the second, third of a run whose files are called alike. A record that cannot be written is reported on
- * stderr: then false. */
+/* Run it. `folder`: where the recording of a failure goes; NULL: it is not kept. `flags`: of output_file.h, for the record.
+ * `number`: 2, 3, … for the second, third of a run whose files are called alike. A recording that cannot be written is reported
+ * on stderr: then false. */
 bool test_case_run(struct test_case *test, const char *folder, unsigned flags, unsigned number, struct test_progress *progress);
 
 /* Run it once more, under the readings that it has now, and keep nothing but *result. */

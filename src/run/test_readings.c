@@ -74,7 +74,7 @@ static void run_singles(struct trial *trial)
         trial->changes[i] = run_under(trial, trial->choice[i], none);
 }
 
-/* A value that changes the result alone is not looked at again: what it does with another one says nothing about that. */
+/* A value that changes the result alone is not checked again: what it does with another one says nothing about that. */
 static void run_pairs(struct trial *trial)
 {
     for (unsigned i = 0; i < trial->choices; i++)

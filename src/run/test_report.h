@@ -21,7 +21,7 @@ void test_report_sum(FILE *out, const struct test_case *tests, size_t count);
 /* All of them as one JSON object. Returns false if it could not be written. */
 bool test_report_json(FILE *out, const struct test_case *tests, size_t count);
 
-/* All of them as JUnit XML: whatever stands in names and texts, it is well formed. `strict`: one that depends on a reading has
+/* All of them as JUnit XML: whatever is in names and texts, it is well formed. `strict`: one that depends on a reading has
  * failed. */
 void test_report_junit(FILE *out, const struct test_case *tests, size_t count, bool strict);
 

@@ -20,8 +20,8 @@ struct scenario_files {
     char *(*read)(void *context, const char *path, size_t *length, const char **why);
     /* Map a program text in place to the bytes that a unit takes. Returns its new length. NULL: it is one already. */
     size_t (*map)(char *text, size_t length);
-    /* Say what a unit would refuse in a mapped program text, a line each: NAME:LINE:COLUMN: error: … Returns how many there are.
-     * NULL: it is not said. */
+    /* Report what a unit would refuse in a mapped program text, a line each: NAME:LINE:COLUMN: error: … Returns how many there
+     * are. NULL: it is not said. */
     int (*diagnose)(const char *name, const char *text, size_t length, FILE *out);
     void *context;
     /* What a scenario is about that names no device, and the settings of that device it begins with. NULL: an RKM04 as it is. */
@@ -58,10 +58,10 @@ struct scenario_result {
     size_t line, column;      /* of a failure: the place in the scenario */
     char *label;              /* of the step that failed; NULL: it has none */
     char *expected, *seen;
-    int record_error;         /* errno with which writing the record has failed; 0: it has not */
+    int record_error;         /* errno with which writing the recording has failed; 0: it has not */
 };
 
-/* Run it from power-up. `record`: where the record goes, which stays the caller's; NULL: not needed. `interrupted`: NULL,
+/* Run it from power-up. `record`: where the recording goes, which stays the caller's; NULL: not needed. `interrupted`: NULL,
  * or asked now and then with the line's tick: true ends the run. */
 enum scenario_end scenario_run(const struct scenario *scenario, FILE *record, bool (*interrupted)(void *context, uint64_t tick),
                                void *context, struct scenario_result *result);

@@ -21,7 +21,7 @@ static void put(struct scenario_bytes *bytes, unsigned byte, bool any)
     bytes->anys = bytes->anys || any;
 }
 
-/* Take what stands at `text`, which is no blank. Returns the characters taken; 0: it is nothing. */
+/* Take what is at `text`, which is no blank. Returns the characters taken; 0: it is nothing. */
 static size_t read_item(struct scenario_bytes *bytes, const char *text)
 {
     if (*text == '"') {

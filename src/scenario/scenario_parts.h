@@ -22,7 +22,7 @@ enum scenario_action {
 };
 
 enum scenario_answer {
-    ANSWER_UNASKED, /* goes on without waiting for it */
+    ANSWER_UNASKED, /* continues without waiting for it */
     ANSWER_NONE,    /* none must come */
     ANSWER_ANY,
     ANSWER_THIS
@@ -107,7 +107,7 @@ void scenario_step_free(struct scenario_step *step);
 /* Check a condition; `waits`: it is waited for, so it may ask for messages, which pass. Returns it as JSON, or NULL: reported. */
 json_t *scenario_condition(struct scenario_reader *reader, const struct config_node *node, unsigned unit, bool waits);
 
-/* Read a file that the scenario names, beside it. *path, where it is, and the text are to be freed; NULL: reported at `node`. */
+/* Read a file that the scenario names, next to it. *path, where it is, and the text are to be freed; NULL: reported at `node`. */
 char *scenario_file(struct scenario_reader *reader, const struct config_node *node, char **path, size_t *length);
 
 /* Power up a line as the scenario has it, with its plant. Returns false if out of memory, or the plant is wrong, which is

@@ -174,7 +174,7 @@ static bool check_all_acted(struct running *running)
 
 /* ---- Time ----------------------------------------------------------------------------------------------------------- */
 
-/* Look at everything at the present tick. */
+/* Check everything at the present tick. */
 static bool check_all(struct running *running)
 {
     if (running->over || !check_faults(running) || !do_stimuli(running) || !check_always(running))

@@ -39,7 +39,7 @@ struct running {
     struct sim *sim;
     struct scenario_result *result;
     enum scenario_end end;
-    bool over;                /* it has failed, or cannot go on */
+    bool over;                /* it has failed, or cannot continue */
     bool (*interrupted)(void *context, uint64_t tick);
     void *context;
     unsigned turns;           /* of time, between two questions whether it is to end */
@@ -53,7 +53,7 @@ struct running {
     struct pulse_count count[SEGMENT_UNITS][DEVICE_AXES_MAX], last[SEGMENT_UNITS][DEVICE_AXES_MAX];
 };
 
-/* The run has failed, at `tick` and because of what stands in `step`. `expected` and `seen` are taken over; NULL: memory was
+/* The run has failed, at `tick` and because of the content of `step`. `expected` and `seen` are taken over; NULL: memory was
  * short. Always returns false. */
 bool running_failed(struct running *running, const struct scenario_step *step, uint64_t tick, char *expected, char *seen);
 bool running_no_memory(struct running *running);
@@ -61,7 +61,7 @@ bool running_no_memory(struct running *running);
 /* printf into a string to be freed. */
 char *running_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Let time go on, up to `limit` at most, but no further than to where `condition` (NULL: none) may have come to hold, or an
+/* Let time continue, up to `limit` at most, but no further than to where `condition` (NULL: none) may have come to hold, or an
  * answer may be there while the host listens. Returns false if the run is over. */
 bool running_advance(struct running *running, uint64_t limit, struct condition *condition);
 

@@ -22,7 +22,7 @@ static const struct {
     step_reader *read;
     uint8_t action;
     bool stimulus; /* may be one, too */
-    const char *extra[EXTRAS_MAX]; /* keys beside it, apart from at and label */
+    const char *extra[EXTRAS_MAX]; /* keys besides it, apart from at and label */
 } actions[] = {
     {"set", read_set, ACTION_SET, false, {"unit", "motor", "flag", "within"}},
     {"program", read_program, ACTION_SET, false, {"unit", "motor", "flag", "within"}},
@@ -423,7 +423,7 @@ static void list_actions(char list[200], bool stimulus)
     }
 }
 
-/* Which action stands in a step; ACTIONS: none, reported. */
+/* Which action is in a step; ACTIONS: none, reported. */
 static size_t find_action(const struct config_node *node, bool stimulus)
 {
     char list[200];

@@ -16,7 +16,7 @@ int notify_fd_read(const char *text);
 
 #define NOTIFY_WAIT_MS 300u /* how long to wait for a failure of the receiver; a reader may take longer */
 
-/* Say that everything is ready: `text` to `fd` in one piece; then it is closed, so that who reads to the end has the text; and
+/* Report that everything is ready: `text` to `fd` in one piece; then it is closed, so that who reads to the end has the text; and
  * READY=1 to the service manager if there is one, with `status` (one line for `systemctl status`; NULL: none).
  * fd: from notify_fd_read; -1: none. text: with line end.
  * Returns false if `fd` cannot take the text (reported); a reader that has gone, or reads later, is no failure. If the service

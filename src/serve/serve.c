@@ -25,10 +25,10 @@
 #include "serve_window.h"
 #include "text/text.h"
 
-#define PLANT_MAX (1u << 20) /* bytes; a record may hold as many */
+#define PLANT_MAX (1u << 20) /* bytes; a recording may hold as many */
 #define FILES_LOOP 8u     /* descriptors: of the event loop */
 #define FILES_WATCH 2u    /* of the watch for clients of ptys */
-#define FILES_SERIAL 3u   /* of a pty or device, beside the timer of its bus */
+#define FILES_SERIAL 3u   /* of a pty or device, besides the timer of its bus */
 #define FILES_CONTROL 2u  /* of the control socket */
 #define FILES_COVERAGE 2u /* of the reports */
 #define FILES_SPARE 8u   /* descriptors that are still free when all is open: for clients, traces, an adapter plugged in again */
@@ -171,7 +171,7 @@ static rlim_t find_limit(rlim_t files)
 }
 
 /* Many lines need more files than a process gets unasked; and without a free descriptor a connection cannot even be refused, and
- * would wake the loop for ever. Nothing has been opened yet. */
+ * would wake the loop without end. Nothing has been opened yet. */
 static bool allow_files(const struct bus_options *options)
 {
     struct rlimit limit;
@@ -244,7 +244,7 @@ static bool start_window(struct serve *serve)
     return serve->window >= 0;
 }
 
-/* The default path of the control socket: beside the link of the first bus; without one a name made of where the bus is, in the
+/* The default path of the control socket: next to the link of the first bus; without one a name made of where the bus is, in the
  * folder of default links. Returns false if there is none (reported). */
 static bool default_control(const struct serve *serve, char path[PATH_MAX])
 {

@@ -210,7 +210,7 @@ static const char *read_path(const char *name, const char *text, struct argp_sta
     return text;
 }
 
-/* A path in which %n and %l may stand. */
+/* A path in which %n and %l may be. */
 static const char *read_pattern(const char *name, const char *text, struct argp_state *state)
 {
     read_path(name, text, state);

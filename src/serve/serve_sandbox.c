@@ -9,7 +9,7 @@
 #include "line/line.h"
 #include "sandbox.h"
 
-/* A name in which %l and %n may stand, also in that of the folder. */
+/* A name in which %l and %n may be, also in that of the folder. */
 static void allow_pattern(struct sandbox *sandbox, const struct bus_options *options, const char *pattern)
 {
     char path[PATH_MAX], name[NODE_NAME_SIZE];

@@ -44,7 +44,7 @@ static uint64_t us_of(const struct sim_unit *unit, uint64_t tick)
     return segment_since(segment, unit->number) + (per_us == 1 ? tick : tick / per_us);
 }
 
-/* The ns behind that us. */
+/* The ns after that us. */
 static uint64_t ns_of(const struct sim_unit *unit, uint64_t tick)
 {
     const unsigned per_us = segment_kind(&unit->sim->segment)->ticks_per_us;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* sim.h: a line with its units and everything around them, in virtual time: inputs, the plant that the motors move, flash,
- * faults on demand, and everybody who watches. No file, no clock, no event loop: `rkm04 serve` drives it by the clock,
+ * injected faults, and everybody who watches. No file, no clock, no event loop: `rkm04 serve` drives it by the clock,
  * `rkm04 test` and `rkm04 replay` as fast as it goes.
  *
  *     sim_begin(&sim, &config);             // units are powered up at tick 0
@@ -100,7 +100,7 @@ void sim_end(struct sim *sim);
 
 uint64_t sim_now(const struct sim *sim);
 
-/* Has time come to its end? It does not go on then; commands are executed. */
+/* Has time come to its end? It does not continue then; commands are executed. */
 bool sim_time_is_over(const struct sim *sim);
 
 /* Do all ticks before `tick`, but none from SIM_TIME_MAX on, move every byte due by then, and hand out what happened before. */
@@ -129,7 +129,7 @@ void sim_queue_bytes(struct sim *sim, const uint8_t *bytes, size_t length, uint6
 size_t sim_purge(struct sim *sim);
 void sim_break(struct sim *sim, bool on);
 
-/* Let bytes take their time on the line, or none, from now on. Bytes under way are moved first: time goes on as far as that
+/* Let bytes take their time on the line, or none, from now on. Bytes under way are moved first: time continues as far as that
  * takes. */
 void sim_set_timed(struct sim *sim, bool timed);
 
@@ -158,7 +158,7 @@ void sim_power(struct sim *sim, unsigned number, bool on);
 /* Inputs set by hand, mask of DI. What the plant drives or a fault holds comes before it. */
 void sim_set_di(struct sim *sim, unsigned number, uint32_t mask);
 
-/* Set the inputs of a unit anew from what is set by hand, driven by the plant, held by a fault. To be called after a change of
+/* Set the inputs of a unit again from what is set by hand, driven by the plant, held by a fault. To be called after a change of
  * one of these. */
 void sim_update_inputs(struct sim *sim, unsigned number);
 
@@ -167,7 +167,7 @@ void sim_update_inputs(struct sim *sim, unsigned number);
  * changed. Returns false then. Inputs follow at once. */
 bool sim_configure_plants(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors);
 
-/* Flash of a unit as it is, without faults on demand. As in struct device_port. */
+/* Flash of a unit as it is, without injected faults. As in struct device_port. */
 int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);
 int sim_flash_erase(struct sim_unit *unit, unsigned block);
 int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length);

@@ -46,7 +46,7 @@ struct wire_message; /* wire_monitor.h */
 
 struct watch_event {
     uint64_t tick;  /* of the line */
-    uint64_t order; /* among those of the tick: watch_ns() in front. For watch_add(): ns behind the tick, 0..999 */
+    uint64_t order; /* among those of the tick: watch_ns() in front. For watch_add(): ns after the tick, 0..999 */
     int32_t value;
     uint8_t kind;   /* enum watch_kind */
     uint8_t unit;   /* 1..16, its number on the line; 0: the line */
@@ -61,7 +61,7 @@ struct watch_event {
 
 #define WATCH_ORDER_NS 54u /* bit of the ns in watch_event.order */
 
-/* ns behind the tick of an event, 0..999: where a unit counts finer than 1 us. */
+/* ns after the tick of an event, 0..999: where a unit counts finer than 1 us. */
 static inline unsigned watch_ns(const struct watch_event *event)
 {
     return (unsigned)(event->order >> WATCH_ORDER_NS);

@@ -28,7 +28,7 @@ struct config_node {
     char *text; /* CONFIG_TEXT */
     size_t count, room;
     struct config_node **item; /* lists and maps */
-    char **key;                /* maps; key[count] may stand there already, waiting for its value */
+    char **key;                /* maps; key[count] is there already, waiting for its value */
     bool waiting;
     size_t pending_line, pending_column; /* of the key that waits */
 };
@@ -385,7 +385,7 @@ static bool whole_number(const char *text, int64_t *value)
     return number_read_signed(text, INT64_MIN, INT64_MAX, value);
 }
 
-/* What stands there, on one line and not too long. */
+/* What is there, on one line and not too long. */
 static const char *found(const struct config_node *node, char buffer[FOUND_SIZE])
 {
     if (node->type != CONFIG_TEXT)

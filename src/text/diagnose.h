@@ -20,7 +20,7 @@ struct text_place {
 /* The beginning of a text. */
 struct text_place text_place_begin(const char *text, size_t length);
 
-/* Go on to `offset`, not before the present place, at most the end of the text. */
+/* Continue to `offset`, not before the present place, at most the end of the text. */
 void text_place_move(struct text_place *place, size_t offset);
 
 /* Bytes of the UTF-8 character at `at` < length; 1 for what is none: texts in the code pages of old are taken, too. */
@@ -29,7 +29,7 @@ size_t text_character_length(const char *text, size_t length, size_t at);
 /* As rkm04_read(), but a wrong character of several bytes is one error. */
 enum rkm04_read diagnose_read(struct rkm04_reader *reader, struct rkm04_command *command);
 
-/* Print what was expected and what was found there, without place and newline, behind an error of diagnose_read(). */
+/* Print what was expected and what was found there, without place and newline, after an error of diagnose_read(). */
 void diagnose_error(const struct rkm04_reader *reader, enum rkm04_read found, FILE *out);
 
 /* Read a whole program text and print one line `NAME:LINE:COLUMN: error: …` to `out` for each command that the unit would

@@ -20,7 +20,7 @@ static const struct {
     {3, "\xE2\x80\x9E"}, /* U+201E */
 };
 
-/* Bytes of the apostrophe that stands here, 0 if none does. */
+/* Bytes of the apostrophe that is here, 0 if there is none. */
 static size_t apostrophe_at(const char *text, size_t left)
 {
     for (size_t i = 0; i < sizeof apostrophes / sizeof apostrophes[0]; i++) {

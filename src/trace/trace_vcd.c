@@ -446,7 +446,7 @@ static uint32_t full_mask(unsigned bits)
     return bits > 0 ? UINT32_MAX >> (32u - bits) : 0;
 }
 
-/* All signals of a unit as they stand. */
+/* All signals of a unit as they are. */
 static void write_unit(struct trace_file *file, unsigned unit)
 {
     const struct device_kind *kind = sim_device(file->sim);

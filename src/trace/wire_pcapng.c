@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* wire_pcapng.c: a capture file for Wireshark (draft-ietf-opsawg-pcapng), link type 250, RTAC serial: every packet begins with 12
- * bytes with time, direction, and the state of the control lines. What the messages mean stands in packet comments. */
+ * bytes with time, direction, and the state of the control lines. What the messages mean is in packet comments. */
 #include <string.h>
 
 #include <rkm04/limits.h>
@@ -72,7 +72,7 @@ static void put_raw(struct wire_text *out, const void *bytes, size_t length)
     out->length += length;
 }
 
-/* A block's length stands at its beginning and at its end. Returns where it began, for end_block(). */
+/* A block's length is at its beginning and at its end. Returns where it began, for end_block(). */
 static size_t begin_block(struct wire_text *out, uint32_t type)
 {
     size_t at = out->length;

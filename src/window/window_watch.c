@@ -70,7 +70,7 @@ static uint64_t sum_of(const char *text, size_t length)
 static void take_state(struct window_watch *watch, unsigned unit, const char *state, size_t length)
 {
     char head[64];
-    const char *motors = strstr(state, "\"motors\""); /* behind the time */
+    const char *motors = strstr(state, "\"motors\""); /* after the time */
     if (motors == NULL || unit >= watch->count)
         return;
     uint64_t sum = sum_of(motors, length - (size_t)(motors - state));

@@ -7,7 +7,7 @@
 #define STOP_BIT (BITS - 1u)
 #define MIDDLE (WIRE_BIT / 2u)         /* of a bit */
 #define DECIDED (STOP_BIT * WIRE_BIT + MIDDLE) /* from the start of a byte to the sample of its stop bit */
-#define HELD_END (DEVICE_NEVER - 1u)    /* of a break that goes on; DEVICE_NEVER stands for none */
+#define HELD_END (DEVICE_NEVER - 1u)    /* of a break that continues; DEVICE_NEVER stands for none */
 
 static uint32_t bit_of(unsigned station)
 {
@@ -64,7 +64,7 @@ static uint64_t line_falls(const struct wire *wire, uint64_t from, bool high)
     return first;
 }
 
-/* The end of what a station sends itself at some time from `from` to before `before`; DEVICE_NEVER: it sends nothing then. */
+/* The end of what a unit sends itself at some time from `from` to before `before`; DEVICE_NEVER: it sends nothing then. */
 static uint64_t end_of_own_signal(const struct wire *wire, unsigned station, uint64_t from, uint64_t before)
 {
     for (unsigned i = 0; i < wire->count; i++) {
@@ -157,7 +157,7 @@ static void add_signal(struct wire *wire, struct wire_signal added)
     find_next_bytes(wire);
 }
 
-/* End what a station sends. */
+/* End what a unit sends. */
 static void cut_signals(struct wire *wire, unsigned station, uint64_t time)
 {
     for (unsigned i = 0; i < wire->count; i++) {

@@ -62,7 +62,7 @@ struct wire_byte {
     bool lost;           /* framing error: reported to the monitor alone, with the bits as they were */
 };
 
-/* An idle wire without stations. */
+/* An idle wire without units. */
 void wire_begin(struct wire *wire);
 
 /* A station listens from `time` on (its power comes), or no more. Both also end what it sends, at `time`. */

@@ -172,7 +172,7 @@ static uint64_t next_start(const struct segment *segment, unsigned *station)
     return start;
 }
 
-/* The host's bytes have to wait until `time`: those behind them, too, as far as there is no gap. */
+/* The host's bytes have to wait until `time`: those after them, too, as far as there is no gap. */
 static void push_queue(struct segment *segment, uint64_t time)
 {
     for (size_t i = 0; i < segment->count; i++) {
@@ -277,7 +277,7 @@ static void advance_timed(struct segment *segment, uint64_t until)
 
 /* ---- Bytes that take no time ---------------------------------------------------------------------------------------- */
 
-/* Let the byte of a station be received by the units in `receivers` (bit n: unit n), the monitor, and the host if it is a
+/* Let the byte of a unit be received by the units in `receivers` (bit n: unit n), the monitor, and the host if it is a
  * unit's. */
 static void pass_byte(struct segment *segment, unsigned station, uint32_t receivers, uint8_t byte)
 {
@@ -300,8 +300,8 @@ static void pass_altered(struct segment *segment, unsigned station, uint32_t rec
         pass_byte(segment, station, receivers, changed.byte[i]);
 }
 
-/* Units that take each other's answers for requests go on for ever, and without time there is no end to how many they are in a
- * second: drop what they have to say. */
+/* Units that take each other's answers for requests continue without end, and without time there is no end to how many they are
+ * in a second: drop what they have to say. */
 static void cut_answers(struct segment *segment)
 {
     uint8_t byte;
@@ -337,8 +337,8 @@ static void pass_answer(struct segment *segment, unsigned station, uint32_t rece
     }
 }
 
-/* Let all who have an answer now send it. Units that take an answer for a request (L2 with the same address twice) go on in the
- * next tick, so that they cannot go on for ever in this one. */
+/* Let all who have an answer now send it. Units that take an answer for a request (L2 with the same address twice) continue in
+ * the next tick, so that they cannot continue without end in this one. */
 static void pass_answers(struct segment *segment)
 {
     uint32_t receivers = 0;

@@ -12,7 +12,7 @@
  * (K4), so byte k of a burst has arrived at ceil(k * 3125 / 6) after its beginning. Gaps stay. The first start bit of an answer
  * follows the end of the request after the turnaround; the bytes of an answer follow one another without a gap.
  *   Every station receives every other one: units receive the answers of other units too, and leave them alone (L1). No station
- * receives while it sends. No station waits for an idle bus: a station that begins while another sends collides with it, and
+ * receives while it sends. No unit waits for an idle bus: a unit that begins while another sends collides with it, and
  * the bytes received come out of the levels, bit by bit (wire.h). So two units of the same address answer at once; where their
  * answers are the same the collision cannot be detected, otherwise the check sum fails at the host.
  *   P10: a request received during a unit's turnaround is taken when the last byte of the answer before has set out. What else
@@ -45,14 +45,14 @@ struct segment_byte {
     uint64_t start;   /* tick at which its start bit began, rounded down */
     uint64_t tick;    /* at which it had passed, rounded up: the present one */
     uint32_t senders; /* bit 0: the host; bit n: unit n; several bits: a collision; none: segment_disturb() */
-    uint8_t byte;     /* as received by a station that sends nothing */
+    uint8_t byte;     /* as received by a unit that sends nothing */
     bool lost;        /* framing error: not received */
 };
 
 /* Gets the bytes that reach the host, at the tick segment_now(). Must not call back into the segment, but for reading. */
 typedef void segment_out(void *context, const uint8_t *bytes, size_t length);
 
-/* Gets every byte on the line when it has passed, after the stations. The same restriction. */
+/* Gets every byte on the line when it has passed, after the units. The same restriction. */
 typedef void segment_monitor(void *context, const struct segment_byte *byte);
 
 #define SEGMENT_CHANGED_MAX 4u /* bytes that may be sent in place of one */
@@ -154,7 +154,7 @@ void segment_end(struct segment *segment);
 /* Add a unit and power it up at the present tick. config, port, context: as for device_kind.begin; all units of a line should
  * have the same framing. The ticks that the port gets are the unit's own: add segment_since(). Several units may have the same
  * address. Returns its number on the line, 1..16 in the order of adding; 0: no place is left, or
- * memory is short. */
+ * memory runs out. */
 unsigned segment_add_unit(struct segment *segment, const struct device_config *config, const struct device_port *port,
                           void *context);
 
@@ -217,7 +217,7 @@ void segment_shift(struct segment *segment, uint64_t ticks);
 
 /* Make `to` like `from`, units included. `to` is zero, or has as many units of the same kind: then its config but for echo and
  * hooks stays, and its ports, and the pointers in its units' settings. For snapshots; segment_end() is due. Returns false if
- * memory is short: then `to` is as it was, or, if it was zero, fit for segment_end() alone. */
+ * memory runs out: then `to` is as it was, or, if it was zero, fit for segment_end() alone. */
 bool segment_copy(struct segment *to, const struct segment *from);
 
 /* A tick before which no byte reaches anybody if the host hands over nothing more: advancing in one go up to it changes nothing

@@ -34,7 +34,7 @@ struct wire_frame {
 struct wire_monitor_calls {
     /* Does a watcher want messages now? NULL: none. */
     bool (*is_wanted)(void *context);
-    /* A message was completed or dropped at `tick`; it is the callee's, from malloc(). NULL: memory was short for it. */
+    /* A message was completed or dropped at `tick`; it is the callee's, from malloc(). NULL: out of memory for it. */
     void (*message)(void *context, uint64_t tick, struct wire_message *message);
     void *context;
 };

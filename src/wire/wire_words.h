@@ -9,7 +9,7 @@
 
 #define WIRE_WORDS_MAX (4u * WIRE_ANSWER_MAX + 512u) /* characters of the longest description, with names and reasons */
 
-/* What the stations are called. */
+/* What the units are called. */
 struct wire_names {
     const char *unit[SEGMENT_UNITS];
     const struct device_framing *framing; /* do answers name their sender? */

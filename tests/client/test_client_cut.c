@@ -206,7 +206,7 @@ static bool is_bracket(struct rkm04_command command)
     return command.op == '[' || command.op == ']';
 }
 
-/* How many commands, brackets apart, can run now: those up to the first `[` behind the last `]`. */
+/* How many commands, brackets apart, can run now: those up to the first `[` after the last `]`. */
 static unsigned free_to_run(const struct tape *tape)
 {
     unsigned last = 0, count = 0;

@@ -175,7 +175,7 @@ START_TEST(what_never_comes_ends_at_the_limit)
     ck_assert_uint_eq(condition_next(condition), RKM04_NEVER);
     ck_assert(!condition_run(condition, 7 * SECOND));
     ck_assert_uint_eq(sim_now(sim), 7 * SECOND);
-    ck_assert(!condition_run(condition, RKM04_NEVER)); /* nothing will ever happen: it does not wait for ever */
+    ck_assert(!condition_run(condition, RKM04_NEVER)); /* nothing will ever happen: it does not wait without end */
     ck_assert_uint_eq(sim_now(sim), 7 * SECOND);
 }
 END_TEST

@@ -70,7 +70,7 @@ struct flash_fake {
 /* A new, erased flash under power. */
 void flash_fake_init(struct flash_fake *flash);
 
-/* Let the n-th (1..) erase or program from now on go wrong; counters begin anew. Same seed, same damage. */
+/* Let the n-th (1..) erase or program from now on go wrong; counters begin again. Same seed, same damage. */
 void flash_fake_arm(struct flash_fake *flash, unsigned n, enum flash_fault fault, uint32_t seed);
 
 /* A second fault, at the n-th (1..) operation since flash_fake_arm. */

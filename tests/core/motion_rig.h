@@ -40,13 +40,13 @@ void motion_want(struct motion_rig *rig, const uint64_t *wanted, size_t count);
 /* Send motor 1 a text at the present tick; it must be taken. */
 void motion_send(struct motion_rig *rig, const char *text);
 
-/* From now on nobody listens to the pulses, or somebody does again; rig->steps goes on where the unit is. */
+/* From now on nobody listens to the pulses, or somebody does again; rig->steps continues where the unit is. */
 void motion_listen(struct motion_rig *rig, bool listen);
 
 /* Do all ticks before this one. */
 void motion_to(struct motion_rig *rig, uint64_t tick);
 
-/* Message 6 (P7) at the present tick: the text behind the motor's digit. Valid until the next call. */
+/* Message 6 (P7) at the present tick: the text after the motor's digit. Valid until the next call. */
 const char *motion_table(struct motion_rig *rig);
 
 /* State of motor 1. */
@@ -65,7 +65,7 @@ uint64_t motion_compound(struct motion_rig *rig, unsigned start_speed, const str
             ck_abort_msg(__VA_ARGS__); \
     } while (0)
 
-/* Say what is being tried; every failure below repeats it. */
+/* Report what is being tried; every failure below repeats it. */
 void motion_trying(const char *format, ...) __attribute__((format(printf, 1, 2)));
 const char *motion_what(void);
 

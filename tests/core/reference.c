@@ -224,7 +224,7 @@ uint64_t ref_single_tick(unsigned s, const struct ref_segment *m, uint64_t k)
 
 double ref_limit_at(unsigned start_speed, const struct ref_segment *segment, unsigned segments, double place)
 {
-    /* Limits stand at the borders; from each the square of the speed may grow by 2A a step to both sides. */
+    /* Limits are at the borders; from each the square of the speed may grow by 2A a step to both sides. */
     double border_at[REF_SEGMENTS + 1] = {0}, limit[REF_SEGMENTS + 1], best = 1e300;
     unsigned here = 0;
     for (unsigned i = 0; i <= segments; i++) {

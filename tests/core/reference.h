@@ -97,7 +97,7 @@ double ref_speed_at(const struct ref_track *track, uint64_t tick);
 /* Place at this tick, for conditions of tests; not exact. */
 double ref_place_at(const struct ref_track *track, uint64_t tick);
 
-/* The text of message 6 behind the motor's digit (P7). `room` >= 1024. */
+/* The text of message 6 after the motor's digit (P7). `room` >= 1024. */
 void ref_table(const struct ref_track *track, char *text, size_t room);
 
 /* Square of the speed at a place by the definition of R4 alone: the smallest of all limits that reach it. For tests of

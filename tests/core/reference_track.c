@@ -102,7 +102,7 @@ static void close_legs(struct ref_track *track, const struct cursor *c)
     end->replanned = false;
 }
 
-/* Go on to a place with one slope. Going nowhere adds no leg. */
+/* Continue to a place with one slope. Going nowhere adds no leg. */
 static void go(struct ref_track *track, struct cursor *c, int slope, const mpf_t to)
 {
     if (compare(to, c->place) <= 0)

@@ -27,7 +27,7 @@ struct rig {
 /* A new unit with an erased flash, at tick 0. config NULL: node 1, everything else as delivered. */
 void rig_power_up(struct rig *rig, const struct rkm04_config *config);
 
-/* Power off and on: tick 0 again, the flash stays, the record begins anew. */
+/* Power off and on: tick 0 again, the flash stays, the record begins again. */
 void rig_power_cycle(struct rig *rig);
 
 void rig_free(struct rig *rig);
@@ -80,7 +80,7 @@ uint64_t rise_ticks(uint64_t s, uint64_t a, uint64_t k);
 /* Run one suite and say how to run a part of it alone. Returns what main returns. */
 int rig_run(Suite *suite, const char *program);
 
-/* The slot in which the command behind a motion with its last pulse at `end` is executed (K4). */
+/* The slot in which the command after a motion with its last pulse at `end` is executed (K4). */
 uint64_t slot_behind(uint64_t end);
 
 #endif

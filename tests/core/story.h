@@ -55,13 +55,13 @@ void story_tell(struct story *story, unsigned seed, uint64_t end, bool slow);
 /* A number below `below` from the dice of the story told last. */
 uint64_t story_draw(uint64_t below);
 
-/* Power a unit up for it. The record begins anew. */
+/* Power a unit up for it. The record begins again. */
 void run_begin(struct run *run, const struct story *story);
 
 /* Do one action at the present tick. */
 void run_act(struct run *run, const struct action *action);
 
-/* Go on until a tick, which is not yet done then. */
+/* Continue until a tick, which is not yet done then. */
 void run_until(struct run *run, const struct story *story, uint64_t until, enum pace pace);
 
 /* Every pulse, output, event and answer, the state and what the unit would answer to questions are the same. Sorts the

@@ -56,7 +56,7 @@ static const struct {
     uint64_t pulses, most;
 } averages[] = {
     {"\\ S100 V16000 A20000 G+", 2 * SECOND, 12 * SECOND, 160000, 491}, /* constant, a whole speed */
-    {"\\ S2000 V3000 A9000 G+", 2 * SECOND, 12 * SECOND, 30000, 492}, /* the same behind a ramp that ends within a tick */
+    {"\\ S2000 V3000 A9000 G+", 2 * SECOND, 12 * SECOND, 30000, 492}, /* the same after a ramp that ends within a tick */
     {"\\ S100 V16000 A20000 F12500 R", 5000, 2 * SECOND, 12500, 941}, /* a triangle */
     {"\\ S1 V16000 A60000 F4000 R", 5000, 2 * SECOND, 4000, 1347}, /* as steep as can be */
     {"\\ S1 V16000 A100 F10000 R", 5000, 60 * SECOND, 10000, 1286}, /* gentle */

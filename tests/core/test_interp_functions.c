@@ -356,7 +356,7 @@ START_TEST(R7_the_direction_is_settled_20_us_before_the_first_pulse)
     for (size_t i = 0; i < rig.record.count; i++) {
         const struct record *record = &rig.record.list[i];
         if (record->kind == RECORD_DIRECTION) {
-            ck_assert_uint_ge(record->tick, pulse + (pulse ? 20 : 0)); /* 10 us of pulse, kept 10 us behind it */
+            ck_assert_uint_ge(record->tick, pulse + (pulse ? 20 : 0)); /* 10 us of pulse, kept 10 us after it */
             direction = record->tick;
             forward = record->value;
         } else if (record->kind == RECORD_STEP) {

@@ -21,7 +21,7 @@ static void expect_steps(size_t steps)
     ck_assert_uint_eq(recorder_steps(&rig.record, 1), steps);
 }
 
-/* A stop at constant speed, S100 V1000 A2000, t ms behind the slot of R: x = 247.5 + t - 450 there, and 247.5 more down to S. */
+/* A stop at constant speed, S100 V1000 A2000, t ms after the slot of R: x = 247.5 + t - 450 there, and 247.5 more down to S. */
 static size_t stop_steps(uint64_t t)
 {
     return (size_t)(t - 450 + 495);

@@ -16,7 +16,7 @@ static void teardown(void)
     rig_free(&rig);
 }
 
-/* The command behind T01 at the latest one slot after `slot`. */
+/* The command after T01 at the latest one slot after `slot`. */
 static void expect_output_about(uint64_t slot)
 {
     uint64_t tick = rig_outputs_became(&rig, 1, 1);
@@ -139,7 +139,7 @@ START_TEST(C3_in_a_wait_K_holds_there)
     rig_to(&rig, 100 * MS);
     rig_expect_state(&rig, 1, RKM04_HELD);
     ck_assert_uint_eq(rig_motor(&rig, 1).index, 1);
-    rig_accept(&rig, '1', "C75"); /* the wait is looked at in this slot */
+    rig_accept(&rig, '1', "C75"); /* the wait is checked in this slot */
     rig_to(&rig, 200 * MS);
     ck_assert_uint_eq(rig_outputs_became(&rig, 1, 1), 101 * MS);
 }

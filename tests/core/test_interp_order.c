@@ -112,7 +112,7 @@ END_TEST
 
 #define LATENCY 5 /* ms */
 
-/* "F5000 R" from slot 2000 at 1000 steps/s; V2000 comes at 1000 ms, behind `before` if there is one, so that it is due with the
+/* "F5000 R" from slot 2000 at 1000 steps/s; V2000 comes at 1000 ms, after `before` if there is one, so that it is due with the
  * K. The rest runs at the speed in force at the hold. */
 static void change_and_hold(const char *before)
 {
@@ -170,7 +170,7 @@ START_TEST(C6_X_fires_before_the_first_command_behind_a_fault)
     rig_accept(&rig, '1', "X04 E");
     rig_input_at(&rig, 100 * MS, 4, true);
     rig_to(&rig, 200 * MS);
-    rig_expect_state(&rig, 1, RKM04_FAULTY); /* without a command to execute X is not looked at */
+    rig_expect_state(&rig, 1, RKM04_FAULTY); /* without a command to execute X is not checked */
     rig_accept(&rig, '1', "T01");
     rig_to(&rig, 300 * MS);
     rig_expect_state(&rig, 1, RKM04_ENDED);

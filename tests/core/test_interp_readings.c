@@ -83,7 +83,7 @@ START_TEST(C3_fault_exit_new_loops_and_calls_of_the_faulty_program_are_dropped)
     rig_accept(&rig, '1', "E");
     rig_to(&rig, 300 * MS);
     expect_fault(RKM04_FAULT_NO_LOOP, 6);
-    ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_CALL, 1)); /* told anew */
+    ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_CALL, 1)); /* told again */
 }
 END_TEST
 
@@ -158,7 +158,7 @@ START_TEST(C5_guard_start_step_a_motion_begins_all_the_same_and_is_stopped_in_th
     rig_input_at(&rig, 0, 4, true);
     rig_accept(&rig, '1', "M04 F1000 R T01 F10 R");
     rig_to(&rig, 5 * SECOND);
-    /* One slot behind its begin the speed is 102/s, so that the ramp to S ends within the first step. */
+    /* One slot after its begin the speed is 102/s, so that the ramp to S ends within the first step. */
     rig_expect_motion_near(&rig, 1, 1, 3 * MS, 3 * MS + 9981, 1, true);
     ck_assert_uint_eq(recorder_steps(&rig.record, 1), 11); /* the guard is used up */
 }
@@ -374,7 +374,7 @@ static void expect_store_time(const uint8_t *request, size_t length)
     ck_assert_uint_gt(recorder_steps(&rig.record, 1), 0);
     ck_assert(rkm04_sending(&rig.unit));
     ck_assert_uint_gt(send_all(bytes, sizeof bytes), 0);
-    ck_assert_uint_ne(rig.record.list[rig.record.count - 1].kind, RECORD_STEP); /* motor 2 goes on */
+    ck_assert_uint_ne(rig.record.list[rig.record.count - 1].kind, RECORD_STEP); /* motor 2 continues */
 }
 
 START_TEST(P6_store_time_delays_the_answer_and_all_commands_but_no_pulse)

@@ -58,7 +58,7 @@ static void setup(void)
     ref_init(&track);
 }
 
-/* R2 lets pulses be a tick off; behind a border they hardly ever are. */
+/* R2 lets pulses be a tick off; after a border they hardly ever are. */
 static void teardown(void)
 {
     motion_expect_few_off();

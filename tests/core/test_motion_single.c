@@ -6,7 +6,7 @@
 #include "motion_rig.h"
 
 #define WANTED_MAX 1200
-#define EVERY_PULSE 3000 /* motions of up to so many steps are looked at pulse by pulse */
+#define EVERY_PULSE 3000 /* motions of up to so many steps are checked pulse by pulse */
 
 static struct motion_rig rig;
 

@@ -131,7 +131,7 @@ START_TEST(P7_a_point_hardly_below_a_whole_step_is_still_of_that_step)
 END_TEST
 
 /* Up for 0.2 s from 1 to 1.2 steps/s at 1 step/s^2 and down again are 0.44 steps, and 2 * 1.2^2 is no finite binary fraction.
- * Here 0.6 s at 1 step/s lie between two such changes, and 0.52 s behind them. */
+ * Here 0.6 s at 1 step/s lie between two such changes, and 0.52 s after them. */
 START_TEST(P7_a_whole_step_is_shown_as_such_behind_two_changes_at_broken_speeds)
 {
     rig_accept(&rig, '1', "S1 A1 V16000 G+");
@@ -145,7 +145,7 @@ START_TEST(P7_a_whole_step_is_shown_as_such_behind_two_changes_at_broken_speeds)
 END_TEST
 
 /* Again 0.44 steps, 0.56 s, and from step 1 a triangle of 1000 steps: p^2 = 1 + 1000 at 501, wherever on the way it is planned
- * anew. */
+ * again. */
 START_TEST(P7_R6_a_peak_at_a_whole_step_is_shown_there_after_changes)
 {
     uint64_t slot = 961 + 37 * (uint64_t)_i;

@@ -131,7 +131,7 @@ START_TEST(a_stop_on_the_way_takes_the_deceleration)
 }
 END_TEST
 
-/* The ramp goes on as it was, but places on it are kept rounded from here on: that makes the way of a stop no step longer. */
+/* The ramp continues as it was, but places on it are kept rounded from here on: that makes the way of a stop no step longer. */
 START_TEST(a_whole_way_of_a_stop_stays_whole_behind_a_goal_on_the_way)
 {
     const uint64_t at = 123457 + 2 * (uint64_t)_i;
@@ -160,7 +160,7 @@ START_TEST(a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on)
 }
 END_TEST
 
-/* Half a step behind the last pulse: from there a stop takes 120.5 steps. */
+/* Half a step after the last pulse: from there a stop takes 120.5 steps. */
 START_TEST(a_place_ahead_must_leave_room_for_the_part_of_a_step_that_is_done)
 {
     cruise(true);
@@ -170,7 +170,7 @@ START_TEST(a_place_ahead_must_leave_room_for_the_part_of_a_step_that_is_done)
 }
 END_TEST
 
-/* Stop behind 120 steps, then from rest to where it was to go. */
+/* Stop after 120 steps, then from rest to where it was to go. */
 static void expect_turn(uint64_t at, int64_t left, bool forward)
 {
     ck_assert(motion.moving);

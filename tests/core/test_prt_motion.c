@@ -159,8 +159,8 @@ START_TEST(P7_R6_a_change_of_speed_on_the_final_ramp_adds_no_corner)
 }
 END_TEST
 
-/* Every change up to S happens at once and adds two corners, before and behind it: of more than the table holds, the oldest are
- * forgotten. G+ begins at 3 ms with `speed`; it is first + by * i behind the i-th change, at 100 + 70 * i ms. Multiples of 10. */
+/* Every change up to S happens at once and adds two corners, before and after it: of more than the table holds, the oldest are
+ * forgotten. G+ begins at 3 ms with `speed`; it is first + by * i after the i-th change, at 100 + 70 * i ms. Multiples of 10. */
 static void expect_newest_corners(unsigned speed, int first, int by)
 {
     enum { CHANGES = RKM04_BREAKS_MAX, KEPT = RKM04_BREAKS_MAX / 2 };

@@ -79,7 +79,7 @@ START_TEST(R1_the_steepest_ramps_from_the_lowest_speeds_are_exact_at_any_rate)
 }
 END_TEST
 
-/* A pulse on the falling leg is due so short behind a tick that the slope of one tick decides. */
+/* A pulse on the falling leg is due so short after a tick that the slope of one tick decides. */
 START_TEST(R1_pulses_just_behind_a_tick_are_not_a_tick_early)
 {
     static const struct {
@@ -119,7 +119,7 @@ END_TEST
 
 /* ---- Blocks --------------------------------------------------------------------------------------------------------- */
 
-#define BOUND 0.0065 /* ticks; what lies within 2^-7 = 0.0078 of a whole tick is worked out anew (docs/DESIGN.md) */
+#define BOUND 0.0065 /* ticks; what lies within 2^-7 = 0.0078 of a whole tick is worked out again (docs/DESIGN.md) */
 
 /* Begin a block at a random place, mostly at a speed that just allows one of its size. Returns false if there is none. */
 static bool begin_block(struct rkm04_ramp *ramp, uint32_t rate)
@@ -140,7 +140,7 @@ static bool begin_block(struct rkm04_ramp *ramp, uint32_t rate)
     return ramp_begin_block(ramp);
 }
 
-/* Ticks from ramp->at to pulse j behind the one there. */
+/* Ticks from ramp->at to pulse j after the one there. */
 static long double time_of(const struct rkm04_ramp *ramp, unsigned j)
 {
     const long double y = (long double)ramp->y.whole + (long double)ramp->y.part / 0x1p64L;

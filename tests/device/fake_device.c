@@ -225,7 +225,7 @@ static size_t exchange(struct device_unit *unit, const uint8_t *message, size_t 
     return answer_length;
 }
 
-/* ---- Framing: how messages stand in bytes ------------------------------------------------------------------------------ */
+/* ---- Framing: the bytes of messages ---------------------------------------------------------------------------------- */
 
 static bool receive_byte(struct rkm04_receiver *receiver, uint8_t byte, uint64_t us, uint8_t *buffer, size_t room)
 {

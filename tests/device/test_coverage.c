@@ -147,7 +147,7 @@ END_TEST
 
 START_TEST(P4_a_message_without_a_right_motor_covers_no_message_of_a_motor)
 {
-    const char number_alone[] = {2}; /* and no zero behind it */
+    const char number_alone[] = {2}; /* and no zero after it */
     ask(number_alone, 1);
     ask("\2" "9D", 3);
     ask("\6" "x", 2);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_fake.c: a second kind of device, behind src/device/device.h alone: bus, time, flash, faults, plants, conditions. */
+/* test_fake.c: a second kind of device, after src/device/device.h alone: bus, time, flash, faults, plants, conditions. */
 #include <check.h>
 #include <stdlib.h>
 #include <string.h>
@@ -167,7 +167,7 @@ START_TEST(flash_outlives_the_power)
 }
 END_TEST
 
-/* ---- Faults on demand ------------------------------------------------------------------------------------------------- */
+/* ---- Injected faults ------------------------------------------------------------------------------------------------- */
 
 START_TEST(faults_of_bytes_and_answers)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* digest.h: the same pulses on every machine. Sessions with a unit, the manual's and random ones, and a digest of each: over
- * every pulse, direction, output and event with its tick, every byte of every answer, every byte that comes to stand in flash,
+ * every pulse, direction, output and event with its tick, every byte of every answer, every byte that comes to be in flash,
  * and what can be seen of the unit at the end.
  *
  * Needs nothing but the core and a compiler: no C library, no heap. One main_*.c a surrounding prints the lines. */

@@ -91,7 +91,7 @@ START_TEST(a_byte_to_the_host_comes_twice_and_the_next_ones_later)
         assert_as(&rig.host, 0, &clean, 0, k + 1);
         ck_assert_mem_eq(rig.host.byte + k + 1, clean.byte + k, ANSWER - k);
         for (unsigned i = k + 1; i < ANSWER; i++)
-            ck_assert_uint_eq(rig.host.tick[i], clean.tick[i]); /* when the byte behind it would have come */
+            ck_assert_uint_eq(rig.host.tick[i], clean.tick[i]); /* when the byte after it would have come */
         ck_assert_uint_eq((rig.host.tick[ANSWER] * 12 - clean.tick[ANSWER - 1] * 12 + 12) / 6250, 1);
         assert_answered();
     }

@@ -149,7 +149,8 @@ static void set_up(int fd, speed_t speed, uint8_t value)
     tcsetattr(fd, TCSANOW, &settings);
 }
 
-/* The system passes bytes on in a thread of its own: wait until they are there, but not for ever: the other end may be full. */
+/* The system passes bytes on in a thread of its own: wait until they are there, but not without end: the other end may be full.
+ * */
 static void wait_for(int fd)
 {
     struct pollfd ready = {.fd = fd, .events = POLLIN};
@@ -245,7 +246,7 @@ static void check_all_ways(void)
         leave(way);
     bus_ports_plug(&bus->ports, true);
     bus_changed(bus);
-    for (unsigned i = 0; i < 80; i++) { /* what was sent before takes its time, and the silence behind it */
+    for (unsigned i = 0; i < 80; i++) { /* what was sent before takes its time, and the silence after it */
         turn(5);
         machine_pass(UINT64_C(200000000));
     }

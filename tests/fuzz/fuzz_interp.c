@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* fuzz_interp.c: random programs with random inputs, messages and times, on a unit whose pulses are looked at as they come
+/* fuzz_interp.c: random programs with random inputs, messages and times, on a unit whose pulses are checked as they come
  * (oracle.h). The same story is lived again with time cut into other pieces and through a snapshot (K3), with pulses skipped
  * over, or by one motor alone: no motor influences another but by VAR, DO and T41, and by what readings add (oracle.h). Get
  * Command answers a text that is the same program (P8).

@@ -43,7 +43,7 @@ static void check_again(const struct rkm04_framing *framing, const struct rkm04_
     FUZZ_CHECK(receiver.bad_check + receiver.malformed + receiver.too_long == 0, "counted as damaged");
 }
 
-/* Make a frame of the input, damage it as the input says, and put it behind what is fed. Returns its length. */
+/* Make a frame of the input, damage it as the input says, and put it after what is fed. Returns its length. */
 static size_t make_frame(const struct rkm04_framing *framing, struct fuzz *fuzz)
 {
     uint8_t to = fuzz_byte(fuzz) & 31, from = fuzz_byte(fuzz), damages = fuzz_byte(fuzz) & 3;

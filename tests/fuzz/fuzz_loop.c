@@ -7,7 +7,7 @@
  * First byte: units, how long bytes take, a pty or none, the clock. Then lines:
  *     A… B… C…   a client sends … and a newline; then everything is done that can be done
  *     a… b… c…   a client sends … alone, its `~` being newlines; nobody looks yet
- *     -A /A      it hangs up; it ends its sending (the next thing it says makes it come anew)
+ *     -A /A      it hangs up; it ends its sending (the next thing it says makes it come again)
  *     !A ?A      it reads no more; it reads again
  *     *AN        it sends N thousand blanks and x
  *     #N         N more connections that say nothing
@@ -358,7 +358,7 @@ static void say_goodbye(bool leave)
         hang_up(&client[i]);
     while (crowd_count > 0)
         close(crowd[--crowd_count]);
-    machine_pass(UINT64_C(1000000000)); /* one that had ended its sending is not heard: it is looked at now and then */
+    machine_pass(UINT64_C(1000000000)); /* one that had ended its sending is not heard: it is checked now and then */
     if (settle(TURNS_AT_END))
         FUZZ_CHECK(control_clients(control) == 0, "%u clients are still there", control_clients(control));
 }

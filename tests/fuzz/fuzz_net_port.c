@@ -128,7 +128,7 @@ static void gather_crowd(unsigned number)
 {
     while (number-- > 0 && crowd_count < CROWD_MAX) {
         crowd_count++;
-        tear(come()); /* gone before it is looked at */
+        tear(come()); /* gone before it is checked */
     }
 }
 

@@ -12,7 +12,7 @@
 static struct rkm04_command commands[COMMANDS_MAX];
 static char canonical[COMMANDS_MAX * (RKM04_COMMAND_TEXT_MAX + 8)];
 
-/* The text of all commands with `between` behind each is read as the same commands. */
+/* The text of all commands with `between` after each is read as the same commands. */
 static void check_canonical(size_t count, const char *between)
 {
     struct rkm04_reader reader;
@@ -44,7 +44,7 @@ static void check_command(struct rkm04_command command)
     FUZZ_CHECK(length >= 1 && length <= sizeof text && (uint8_t)text[0] == command.op, "%.*s", (int)length, text);
 }
 
-/* Reads on behind errors, too. */
+/* Reads on after errors, too. */
 static void read_all(const uint8_t *data, size_t size, size_t *count)
 {
     struct rkm04_reader reader;

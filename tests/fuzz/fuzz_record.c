@@ -33,7 +33,7 @@ static enum replay_end replay(const uint8_t *data, size_t size, FILE *copy)
     return end;
 }
 
-/* A record cannot take down what stands in snapshots only, and has no files. */
+/* A record cannot take down the content of snapshots only, and has no files. */
 static bool can_be_copied(const uint8_t *data, size_t size)
 {
     return !memmem(data, size, "moved", 5) && !memmem(data, size, "file", 4) && !memmem(data, size, "embedded", 8);

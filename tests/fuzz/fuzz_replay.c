@@ -25,7 +25,7 @@ void __asan_on_error(void)
 static bool run_file(const char *path, size_t size)
 {
     FILE *in = fopen(path, "rb");
-    uint8_t *data = malloc(size + (size == 0)); /* of just this size, so that a read behind its end is noticed */
+    uint8_t *data = malloc(size + (size == 0)); /* of just this size, so that a read after its end is noticed */
     bool ok = in && data && fread(data, 1, size, in) == size;
     if (in)
         fclose(in);

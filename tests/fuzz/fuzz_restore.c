@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_restore.c: any bytes as the file that `restore` reads: refused with a reason, and nothing but what flash shows is
- * changed; or the line is as it was, and goes on. The file is one in memory. */
+ * changed; or the line is as it was, and continues. The file is one in memory. */
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>

@@ -6,7 +6,7 @@
 #include "fuzz.h"
 #include "scenario/scenario.h"
 
-#define LOOKS_MAX 40 /* questions whether to go on: a scenario may wait for a week */
+#define LOOKS_MAX 40 /* questions whether to continue: a scenario may wait for a week */
 
 static char *read_file(void *context, const char *path, size_t *length, const char **why)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* loop_machine.h: the machine under the event loop of `rkm04 serve`, as far as it could make a run depend on the moment: its
- * time, which goes on when the caller says so and a little with every look at it; its timers, which are due by that time; its
+ * time, which continues when the caller says so and a little with every look at it; its timers, which are due by that time; its
  * files, which all lie in one temporary folder whatever their names; and the log, which nobody reads.
  *
- * It stands in for uv_hrtime(), timerfd_*(), uv_timer_*(), for what opens files by names that clients give (linked with --wrap),
+ * It is in for uv_hrtime(), timerfd_*(), uv_timer_*(), for what opens files by names that clients give (linked with --wrap),
  * and for log.c. */
 #ifndef RKM04_TESTS_LOOP_MACHINE_H
 #define RKM04_TESTS_LOOP_MACHINE_H

@@ -53,7 +53,7 @@ size_t oracle_exchange(struct oracle *oracle, const uint8_t *message, size_t len
 /* Is it Store Flash, of one motor or of all, and not refused? */
 bool oracle_is_store(const uint8_t *message, size_t length);
 
-/* Go on with a digest. */
+/* Continue with a digest. */
 uint64_t oracle_mix(uint64_t digest, uint64_t value);
 
 #endif

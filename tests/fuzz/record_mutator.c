@@ -124,7 +124,7 @@ static void remove_line(struct lines *lines, size_t at)
     memmove(&lines->line[at], &lines->line[at + 1u], (lines->count - at) * sizeof lines->line[0]);
 }
 
-/* Put a line, which is handed over, behind the head, at the tick of one that is there. */
+/* Put a line, which is handed over, after the head, at the tick of one that is there. */
 static void insert_line(struct lines *lines, json_t *line)
 {
     size_t at = 1u + draw(lines, lines->count);
@@ -326,7 +326,7 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t most, unsigned
     return write_lines(&lines, data, most);
 }
 
-/* The first lines of one, and lines of the other behind them. */
+/* The first lines of one, and lines of the other after them. */
 size_t LLVMFuzzerCustomCrossOver(const uint8_t *one, size_t one_size, const uint8_t *other, size_t other_size, uint8_t *data,
                                  size_t most, unsigned seed)
 {

@@ -12,7 +12,7 @@ extern size_t seen; /* motions of motor 1 that a test has accounted for */
 void setup(void);
 void teardown(void);
 
-/* The next motion of motor 1 began in this slot, at S100 A2000. Returns the slot of the command behind it. */
+/* The next motion of motor 1 began in this slot, at S100 A2000. Returns the slot of the command after it. */
 uint64_t moved(uint64_t slot, uint64_t v, size_t steps, bool forward);
 
 /* The program is at its end, there were no other motions, and the counter shows this. */

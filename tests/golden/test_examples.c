@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* test_examples.c: the example programs of the manual's chapter 9, with their inputs in each state the text describes.
  *
- * Times: a text at tick 0 begins in slot 1000, a command takes a slot, the command behind a motion is executed in the first slot
- * at or after its last pulse + 10 us, the one behind Wn n slots after W (K4). A motion from rest takes move_ticks() (R1). */
+ * Times: a text at tick 0 begins in slot 1000, a command takes a slot, the command after a motion is executed in the first slot
+ * at or after its last pulse + 10 us, the one after Wn n slots after W (K4). A motion from rest takes move_ticks() (R1). */
 #include <check.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static void teardown(void)
     rig_free(&rig);
 }
 
-/* The next motion began in this slot, at S100 A2000. Returns the slot of the command behind it. */
+/* The next motion began in this slot, at S100 A2000. Returns the slot of the command after it. */
 static uint64_t moved(uint64_t slot, uint64_t v, size_t steps, bool forward)
 {
     uint64_t end = slot + move_ticks(100, v, 2000, steps);
@@ -30,7 +30,7 @@ static uint64_t moved(uint64_t slot, uint64_t v, size_t steps, bool forward)
     return slot_behind(end);
 }
 
-/* The next motion began in this slot and was stopped on a ramp, last pulse at `end`. Returns the slot of the command behind. */
+/* The next motion began in this slot and was stopped on a ramp, last pulse at `end`. Returns the slot of the command after. */
 static uint64_t stopped(uint64_t slot, uint64_t end, size_t steps, bool forward)
 {
     rig_expect_motion_near(&rig, 1, ++seen, slot, end, steps, forward);
@@ -101,7 +101,7 @@ START_TEST(M9_2_there_and_back_for_ever)
 }
 END_TEST
 
-/* At S200 V2000 A5000: T = (1800^2 + 2000 * 5000) / (5000 * 2000) = 1.324 s. The input decides anew in each pass. */
+/* At S200 V2000 A5000: T = (1800^2 + 2000 * 5000) / (5000 * 2000) = 1.324 s. The input decides again in each pass. */
 START_TEST(M9_3_input_5_decides_the_direction_of_each_pass)
 {
     static const bool level[] = {false, true, true, false, true, false, false};
@@ -166,7 +166,7 @@ START_TEST(M9_5_the_program_waits_for_input_2_true_and_for_input_5_false)
     rig_to(&rig, 20 * SECOND);
     ck_assert_uint_eq(rig_motor(&rig, 1).index, 7);
     ck_assert_int_eq(rig_motor(&rig, 1).position, 5000);
-    rig_input_at(&rig, 20 * SECOND + 1, 2, true); /* seen in the slot behind, then B, R */
+    rig_input_at(&rig, 20 * SECOND + 1, 2, true); /* seen in the slot after, then B, R */
     rig_to(&rig, 40 * SECOND);
     ck_assert_uint_eq(rig_motor(&rig, 1).index, 10);
     ck_assert_int_eq(rig_motor(&rig, 1).position, -1000);

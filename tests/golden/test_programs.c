@@ -3,7 +3,7 @@
  * printed; where print, prose and figure differ, section 7 of the specification says what counts.
  *
  * All times follow from three rules: a text that arrives at tick 0 begins in slot 1000, each command takes one slot, and the
- * command behind a motion is executed in the first slot at or after its last pulse + 10 us (K4). A motion of N steps takes
+ * command after a motion is executed in the first slot at or after its last pulse + 10 us (K4). A motion of N steps takes
  * 2(V-S)/A + (N - (V^2-S^2)/A)/V seconds, or 2(p-S)/A with p^2 = S^2 + A N where V is not reached (R1): move_ticks(). */
 #include <check.h>
 #include <string.h>
@@ -19,7 +19,7 @@ START_TEST(M4_6_three_motions_with_dwells_and_a_step_count_that_is_not_run)
     for (int pass = 1; pass <= 3; pass++) {
         ck_assert_uint_eq(move_ticks(100, 3000, 2000, 1000), 1317745);
         slot = moved(slot, 3000, 1000, true); /* to W */
-        slot += 200 * MS;                     /* to E, which goes on behind L */
+        slot += 200 * MS;                     /* to E, which continues after L */
         slot += 1 * MS;
     }
     ck_assert_uint_eq(rig_ran(&rig, 9, 1), slot); /* B300 */

@@ -175,7 +175,7 @@ void gets_bytes(int fd, const char *bytes, size_t length)
     ck_assert_mem_eq(got, bytes, length);
 }
 
-/* The client has asked for something that is answered: then all before has been looked at. */
+/* The client has asked for something that is answered: then all before has been checked. */
 void settle(int fd)
 {
     send_all(fd, "\xff\xfa\x2c\x06\xff\xf0", 6);

@@ -53,7 +53,7 @@ void is_heard(const char *text);
 void gets_bytes(int fd, const char *bytes, size_t length);
 #define GETS(fd, text) gets_bytes(fd, text, sizeof text - 1)
 
-/* The client has asked for something that is answered: then all before has been looked at. */
+/* The client has asked for something that is answered: then all before has been checked. */
 void settle(int fd);
 
 /* What the line says to a client of RFC 2217 first. */

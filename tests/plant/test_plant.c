@@ -428,7 +428,7 @@ START_TEST(K3_it_does_not_matter_how_time_is_cut)
 }
 END_TEST
 
-/* The rest of a run after a copy was put in place of the plant; the line's time went on in between. */
+/* The rest of a run after a copy was put in place of the plant; the time of the bus continued in between. */
 START_TEST(a_copy_goes_on_as_the_original_would_have_only_later)
 {
     begin("motors: {1: {jam: {from: 64ms, to: 84ms}}}\nswitches: [{input: 01, motor: 1, at_least: 3, bounce: 50ms}]");

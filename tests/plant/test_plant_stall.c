@@ -146,7 +146,7 @@ START_TEST(a_stalled_motor_stands_until_pulses_come_slowly_enough)
     int64_t steps = lost(plant, "S100 V3000 A10000 F2000 R");
     ck_assert_int_gt(steps, 500);
     ck_assert_uint_eq(rig.news, 2);
-    ck_assert_uint_eq(rig.report[1].what, PLANT_FREE); /* at the end of the ramp it goes on */
+    ck_assert_uint_eq(rig.report[1].what, PLANT_FREE); /* at the end of the ramp it continues */
     char text[PLANT_TEXT_SIZE];
     snprintf(text, sizeof text, "motor 1 moves again, at %lld, after %lld lost steps",
              (long long)true_position(&rig, 1) - 12, (long long)steps);

@@ -56,7 +56,7 @@ START_TEST(P7_a_compound_motion_has_its_duration_peak_and_break_points)
     ck_assert_uint_eq(motion->point_count, 13);
     ck_assert_uint_eq(motion->points[7].step, 12001);
     ck_assert_uint_eq(motion->points[7].speed, 2500);
-    /* R is the 19th command; the motor is idle in the slot behind the motion. */
+    /* R is the 19th command; the motor is idle in the slot after the motion. */
     ck_assert_uint_eq(estimate.duration, 19000 + 24469167 / 1000 * 1000 + 1000);
 }
 END_TEST

@@ -49,7 +49,7 @@ void session_live(struct session *session, unsigned acts, uint64_t ticks, uint64
 /* Forget what was seen; ticks count from now on. */
 void session_forget(struct session *session);
 
-/* What was seen. Valid until the session goes on. */
+/* What was seen. Valid until the session continues. */
 const char *session_seen(struct session *session);
 
 /* What can be asked of all units at the present tick, without ticks, as JSON; to be freed. */

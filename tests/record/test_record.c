@@ -92,7 +92,7 @@ START_TEST(a_session_goes_out_again_as_it_did)
         for (unsigned seed = 0; seed < 12; seed++) {
             struct taken taken;
             live(&taken, seed, &session_kinds[kind], 0);
-            remove(path); /* the record has it */
+            remove(path); /* the recording has it */
             expect(taken.text, taken.length, "same: the same up to tick ");
             ck_assert_ptr_null(strchr(replayed(taken.text, taken.length), '['));
             ck_assert_int_ne(access(path, F_OK), 0); /* and the replay does not write it */
@@ -195,7 +195,7 @@ static void simple_teardown(void)
     free(simple.text);
 }
 
-/* The record with one place replaced. `from` must be there, and is replaced where it is for the first time. */
+/* The recording with one place replaced. `from` must be there, and is replaced where it is for the first time. */
 static void expect_changed(const char *from, const char *to, const char *expected)
 {
     char *text = malloc(simple.length + strlen(to) + 1);

@@ -177,7 +177,7 @@ static bool after_a_while(void *context)
     return ++*steps > 200;
 }
 
-/* What can be made of a record by changing some of its bytes: anything but a crash. */
+/* What can be made of a recording by changing some of its bytes: anything but a crash. */
 START_TEST(damaged_records_harm_nobody)
 {
     static struct session session;

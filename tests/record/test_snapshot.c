@@ -20,7 +20,7 @@ static void teardown(void)
 
 /* ---- The continuation ----------------------------------------------------------------------------------------------- */
 
-/* Live on for a while with the dice as they stand now; what was seen, and the state at the end. Both to be freed. */
+/* Live on for a while with the dice as they are now; what was seen, and the state at the end. Both to be freed. */
 static void live_on(uint64_t dice, char **seen, char **state)
 {
     here.dice = dice;
@@ -336,7 +336,7 @@ static void compare_lines(unsigned seed, const struct session_kind *kind)
     if (kind->timed) /* the tick for which bytes are handed over is the master's, not the line's */
         session_same(seen[0], seen[1], what);
     session_same(state[0], state[1], what);
-    session_command(&here, "snapshot", params); /* a record of a record */
+    session_command(&here, "snapshot", params); /* a recording of a recording */
     session_command(&here, "restore", params);
     session_end(&here);
     for (unsigned i = 0; i < 2; i++) {

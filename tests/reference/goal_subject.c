@@ -6,7 +6,7 @@
  *     TICK stop 0 0 START_SPEED ACCELERATION DECELERATION
  *     TICK end 0 0 0 0 0
  *
- * in the order of ticks; `end` prints TICK POSITION of every pulse up to there, an empty line, and begins anew. */
+ * in the order of ticks; `end` prints TICK POSITION of every pulse up to there, an empty line, and begins again. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +17,7 @@
 #define PULSES_MAX 200000
 
 static struct rkm04_motion motion;
-static struct profile_goal goal; /* of the motion, or of the one behind the turn */
+static struct profile_goal goal; /* of the motion, or of the one after the turn */
 static int64_t target, position;
 static bool turning;
 static unsigned count;

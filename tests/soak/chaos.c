@@ -182,7 +182,7 @@ static void everything_goes_wrong(struct soak *soak, bool flash)
         sim_unwatch(&soak->sim, &watcher);
 }
 
-/* Coming back: jobs that were under way go on as if nothing had been. */
+/* Coming back: jobs that were under way continue as if nothing had been. */
 static void come_back(struct soak *soak)
 {
     struct soak_unit *units = malloc(sizeof soak->unit);

@@ -176,7 +176,7 @@ static void ask_command(struct soak *soak, unsigned unit, unsigned motor)
     expect(soak, unit, wanted, 2 + strlen(text));
 }
 
-/* The text of an answer behind message number and motor. */
+/* The text of an answer after message number and motor. */
 static const char *answer_text(struct soak *soak, uint8_t number, unsigned motor)
 {
     if (soak->heard < 2 || soak->answer[0] != number || soak->answer[1] != '0' + motor || soak->heard >= sizeof soak->answer)

@@ -75,7 +75,7 @@ static void put_parameter(struct maker *maker)
     }
 }
 
-/* An output or a variable of this motor's own: DO m and m + 4, VAR 80 + 4 (m - 1) and the three behind it. */
+/* An output or a variable of this motor's own: DO m and m + 4, VAR 80 + 4 (m - 1) and the three after it. */
 static int own(struct maker *maker)
 {
     int motor = (int)maker->motor;

@@ -110,7 +110,7 @@ static void store(struct soak *soak, unsigned unit)
     soak->stores++;
 }
 
-/* Something happens to a unit, or is asked of it; time goes on. */
+/* Something happens to a unit, or is asked of it; time continues. */
 static void act(struct soak *soak, unsigned unit)
 {
     pass(soak, (uint64_t)dice_scale(&soak->dice, 1, 120 * SECOND));

@@ -50,7 +50,7 @@ struct soak {
     char what[100];          /* is being done: for messages */
 };
 
-/* Say what is wrong, where and how to see it again; ends the program with status 1. */
+/* Report what is wrong, where and how to see it again; ends the program with status 1. */
 _Noreturn void soak_fail(const struct soak *soak, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* ---- The host (host.c): unit 0..15, motor '0'..'4' ------------------------------------------------------------------ */

@@ -8,7 +8,7 @@
 
 #include "text/diagnose.h"
 
-/* What is said about a text, "\n" behind each error; the text is copied to size for the sanitizer to watch its end. */
+/* What is said about a text, "\n" after each error; the text is copied to size for the sanitizer to watch its end. */
 static char *said;
 static int errors;
 

@@ -6,7 +6,7 @@
  *
  * PTY: the line; UNITS: addresses 1..UNITS are there; STEPS: of every motor; SECONDS: of real time, after which it stops anyway.
  * Prints {"polls":…,"answers":…,"wrong":…,"arrived":…,"seconds":…}: how many polls were answered, how many of the answers were
- * wrong, how many motors stand at STEPS. Exits with 0 if every poll was answered and nothing was wrong. */
+ * wrong, how many motors are at STEPS. Exits with 0 if every poll was answered and nothing was wrong. */
 #include <fcntl.h>
 #include <inttypes.h>
 #include <poll.h>

@@ -268,7 +268,7 @@ START_TEST(P10_a_request_during_the_turnaround_is_taken_after_the_answer)
     ck_assert_uint_eq(line_answers(1, 1), 1);
     ck_assert_uint_eq(line_answers(1, 4), 1);
     ck_assert_uint_eq(segment_counters(line).overruns, 0);
-    for (size_t i = 1; i < heard->count; i++) /* one behind the other */
+    for (size_t i = 1; i < heard->count; i++) /* one after the other */
         ck_assert_uint_le(heard->tick[i] - heard->tick[i - 1], 521);
 }
 END_TEST

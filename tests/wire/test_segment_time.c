@@ -52,7 +52,7 @@ START_TEST(without_time_nothing_collides)
     line_begin(&untimed, twins, NULL);
     line_ask(5, VERSION, 1, 0);
     line_settle();
-    ck_assert_uint_eq(line_answers(5, 1), 2); /* one behind the other */
+    ck_assert_uint_eq(line_answers(5, 1), 2); /* one after the other */
     ck_assert_uint_eq(segment_counters(line).collisions, 0);
     ck_assert_uint_eq(line_rig.monitor[line_rig.monitored - 1].senders, 1u << 2);
 }

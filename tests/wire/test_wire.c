@@ -136,7 +136,7 @@ START_TEST(a_byte_that_comes_three_bits_late_is_heard_as_part_of_the_first)
     wire_send(&wire, 2, 0xB9, 3 * BIT);    /*    0 1001 1101 1, so 0 11 0 1001 1 | 101 1 */
     hear(RKM04_NEVER);
     expect(WIRE_HOST, 0, 0, 0xCB, 1u << 1 | 1u << 2); /* 1 1 0 1 0 0 1 1 upwards, then 1 for the stop bit */
-    ck_assert_ptr_nonnull(at(WIRE_HOST, 1));          /* and the 0 behind it passes for one more start bit */
+    ck_assert_ptr_nonnull(at(WIRE_HOST, 1));          /* and the 0 after it passes for one more start bit */
     ck_assert_uint_eq(at(WIRE_HOST, 1)->start, 10 * BIT);
     ck_assert_uint_eq(wire.collisions, 2);
 }

@@ -40,11 +40,11 @@ void wire_rig_send(uint8_t dnode, const void *message, size_t length);
 /* The same, then the line comes to rest. */
 void wire_rig_ask(uint8_t dnode, const void *message, size_t length);
 
-/* Time goes on: until nothing is under way; so many ticks. */
+/* Time continues: until nothing is under way; so many ticks. */
 void wire_rig_settle(void);
 void wire_rig_pass(uint64_t ticks);
 
-/* The next line that was taken down and not looked at yet is this one; and there is none more. */
+/* The next line that was taken down and not checked yet is this one; and there is none more. */
 void wire_rig_says(const char *line);
 void wire_rig_says_no_more(void);
 

@@ -29,7 +29,7 @@ void pulses_put(struct pulses *pulses, unsigned number, uint32_t tick, uint8_t i
     lane->in = in + 1;
 }
 
-/* When does the lane go on? The pin is at 0. */
+/* When does the lane continue? The pin is at 0. */
 static inline void set_next(struct pulse_lane *lane, uint32_t now)
 {
     lane->idle = lane->in == lane->out;

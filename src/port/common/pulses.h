@@ -15,7 +15,7 @@
 
 #define PULSES_LANES 5u  /* motors 1..4, and 0: DO */
 #define PULSES_ROOM 128u /* of a lane; a power of 2. 7 ms at 16 000 steps/s are 112. */
-#define PULSES_FAR 0x40000000u /* us: a lane without anything is looked at again so late */
+#define PULSES_FAR 0x40000000u /* us: a lane without anything is checked again so late */
 #define PULSES_REST 10u  /* us a step pin rests at 0 after a pulse, if what follows is late; also R7's 10 us of the direction */
 #define PULSES_SETTLE 20u /* us between direction and step (R7), if they are late; in time the unit sees to it */
 

@@ -35,7 +35,7 @@ void board_clock_start(void);
  * least once in 71 minutes. */
 uint64_t board_clock(void);
 
-/* The timer interrupt looks at the pulses anew (call it when something has been put there), and wakes the main loop at this
+/* The timer interrupt looks at the pulses again (call it when something has been put there), and wakes the main loop at this
  * tick. */
 void board_play(uint32_t wake);
 

@@ -10,7 +10,7 @@
  * inputs take effect later by as much, and an answer is ahead by as much. */
 #define AHEAD 7000u
 #define AHEAD_LEAST 6000u /* with so much left before the next event it is advanced again */
-#define LED_TICKS 100000u /* how often the LEDs are looked at, at least */
+#define LED_TICKS 100000u /* how often the LEDs are checked, at least */
 
 struct rkm04_unit unit;
 
@@ -19,7 +19,7 @@ static void receive(void)
     const uint8_t *bytes;
     size_t count = uart_poll(&bytes), taken = rkm04_receive(&unit, bytes, count);
     uart_take(taken);
-    if (taken == count && count > 0) { /* the queue may go on at its beginning */
+    if (taken == count && count > 0) { /* the queue may continue at its beginning */
         count = uart_poll(&bytes);
         uart_take(rkm04_receive(&unit, bytes, count));
     }

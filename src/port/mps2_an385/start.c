@@ -22,7 +22,7 @@ _Noreturn void reset(void)
         ;
 }
 
-/* A processor fault: start anew, as after switching on (the programs are in flash). */
+/* A processor fault: start again, as after switching on (the programs are in flash). */
 static void fault(void)
 {
     *(volatile uint32_t *)0xe000ed0c = 0x05fa0004; /* AIRCR: system reset request */

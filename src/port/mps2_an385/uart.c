@@ -25,7 +25,7 @@ static void put(struct queue *queue, uint8_t byte)
 {
     uint32_t in = queue->in;
     queue->byte[in % ROOM] = byte;
-    __atomic_signal_fence(__ATOMIC_SEQ_CST); /* the byte stands there before the other side sees that there is one */
+    __atomic_signal_fence(__ATOMIC_SEQ_CST); /* the byte is there before the other side sees that there is one */
     queue->in = in + 1;
 }
 
@@ -71,7 +71,7 @@ void uart_take(size_t count)
     received.out += (uint32_t)count;
     if (!(MPS2_UART0->control & UART_RECEIVE_INTERRUPT) && used(&received) < ROOM) {
         MPS2_UART0->control = UART_ON;
-        NVIC_PEND = 1u << IRQ_UART0_RECEIVE; /* for the byte that stands in the UART */
+        NVIC_PEND = 1u << IRQ_UART0_RECEIVE; /* for the byte that is in the UART */
     }
 }
 

@@ -171,7 +171,7 @@ static const struct rkm04_port port = {
 
 /* ---- Main loop ------------------------------------------------------------------------------------------------------ */
 
-#define LED_TICKS 10000u /* how often the LEDs are looked at */
+#define LED_TICKS 10000u /* how often the LEDs are checked */
 
 static struct rkm04_unit unit;
 

@@ -26,8 +26,8 @@ static void board_start(struct board *board)
     board->outputs = 0;
 }
 
-/* Microseconds since board_start (of a timer that goes on over a reset take the difference), never going back. 64 bits: a 32-bit
- * timer wraps after 71 minutes, so count its wraps. */
+/* Microseconds since board_start (of a timer that continues over a reset take the difference), never going back. 64 bits: a
+ * 32-bit timer wraps after 71 minutes, so count its wraps. */
 static uint64_t board_clock(void)
 {
     return 0;
@@ -140,7 +140,7 @@ static int on_flash_erase(void *context, unsigned block)
 }
 
 /* Called from rkm04_receive on Store Flash, up to 45 times a motor with at most 80 bytes. offset and length are multiples of 8,
- * no byte is programmed twice between two erases. May block, typically 1 ms. Returns 0 when the bytes stand in the chip (not in
+ * no byte is programmed twice between two erases. May block, typically 1 ms. Returns 0 when the bytes are in the chip (not in
  * a cache), 1 if it reports an error. */
 static int on_flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
 {
@@ -160,7 +160,7 @@ static const struct rkm04_port port = {
 
 /* ---- Main loop ------------------------------------------------------------------------------------------------------ */
 
-#define LED_TICKS 10000u /* how often the LEDs are looked at */
+#define LED_TICKS 10000u /* how often the LEDs are checked */
 
 static struct rkm04_unit unit;
 static struct board board;
