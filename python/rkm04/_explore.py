@@ -14,6 +14,7 @@ import sys
 from dataclasses import dataclass, field
 from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, TypeVar, Union
 
+from ._errors import RefusedError
 from ._message import Message
 from ._ports import clock_of
 from ._time import to_us
@@ -111,8 +112,15 @@ class Options:
     limit: Union[str, int] = "3600s"
 
     def __post_init__(self) -> None:
+        for name in ("late", "limit"):
+            try:
+                to_us(getattr(self, name))
+            except (TypeError, ValueError) as error:
+                raise ValueError(f"{name}: {error}") from None
         for kind in self.faults:
-            if isinstance(kind, str) and kind not in KINDS:
+            if not isinstance(kind, str):
+                _check_fault(kind)
+            elif kind not in KINDS:
                 raise ValueError(f"faults: {kind!r}: expected one of {', '.join(KINDS)}, or a dictionary for fault.inject")
         if self.at not in PLACES:
             raise ValueError(f"at: {self.at!r}: expected one of {', '.join(PLACES)}")
@@ -120,6 +128,21 @@ class Options:
             raise ValueError(f"budget: {self.budget}: expected at least 1 run")
         if "input flickers" in self.faults and not self.inputs:
             raise ValueError("inputs: expected the inputs that flicker, as in inputs=[1, 3]")
+
+
+def _check_fault(fault: Dict[str, Any]) -> None:
+    """Raises ValueError if `fault.inject` refuses it; otherwise each run would fail."""
+    from . import Bus
+
+    if "kind" not in fault:
+        raise ValueError(f"faults: {fault!r}: expected a kind of fault.inject in it")
+    if "unit" in fault:
+        return  # the test says which units there are
+    with Bus() as bus:
+        try:
+            bus.call("fault.inject", **fault)
+        except RefusedError as error:
+            raise ValueError(f"faults: {error}") from None
 
 
 # ---- The places --------------------------------------------------------------------------------------------------------------
@@ -439,6 +462,8 @@ def explore(test: Optional[Callable[..., Any]] = None, *, faults: Sequence[Union
     limit: virtual time after which a run that still waits fails: µs, or a string with a unit.
     bus: makes the bus of each run of a function; None: `Bus()`.
     """
+    if isinstance(faults, str):
+        raise ValueError(f"faults: expected a list of kinds, as in [{faults!r}]")
     options = Options(tuple(faults), at, budget, pairs, late, tuple(inputs), seed, limit)
     if test is None:
         def mark(function: Test) -> Test:

@@ -311,6 +311,11 @@ def test_the_replay_line_is_read_back():
     ({"at": "everywhere"}, "expected one of each message"),
     ({"budget": 0}, "expected at least 1 run"),
     ({"faults": ["input flickers"]}, "expected the inputs that flicker"),
+    ({"faults": "lost byte"}, r"expected a list of kinds, as in \['lost byte'\]"),
+    ({"faults": [{"kind": "nope"}]}, "faults: kind: expected one of drop"),
+    ({"faults": [{"direction": "to_units"}]}, "faults: .*direction.*: expected a kind"),
+    ({"late": "soon"}, "late: expected a time"),
+    ({"limit": "soon"}, "limit: expected a time"),
 ])
 def test_wrong_options_are_refused(options, message):
     with pytest.raises(ValueError, match=message):

@@ -137,7 +137,7 @@ static bool take_row(struct reader *reader, char *line)
     if (!number_read(part[0], 0, TIME_VALUE_MAX, &us))
         return is_wrong(reader, 1, "a time in us");
     if (us < reader->us) {
-        char expected[64];
+        char expected[96];
         snprintf(expected, sizeof expected, "a time of %" PRIu64 " us or later, as in the row before", reader->us);
         return is_wrong(reader, 1, expected);
     }
