@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* condition.h: something to wait for, from JSON: control methods `wait` and `advance`, and scenarios.
+/* condition.h: something to wait for, from JSON: control methods `wait` and `advance`, and scenarios; the face of the room.
+ *
+ *     condition          does it hold, and when may it hold next
+ *     condition_read     a condition from JSON
+ *     condition_term     what a condition consists of, and its relations
+ *     condition_until    parameters and answers of `wait` and `advance`
  *
  *     {"unit": 3, "motor": 1, "position": 5000}          the counter is there; or ">=": {"position": {">=": 5000}}
  *     {"motor": 2, "true_position": {"<=": 0}}           of the plant

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fault.h"
+#include "fault_apply.h"
 
 #include <stdarg.h>
 #include <stdio.h>

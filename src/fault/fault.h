@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* fault.h: injected faults. Each has an optional unit, count, probability (seeded) and window of time. All of it is plain data
- * and virtual time: the same faults at the same ticks do the same. docs/FAULTS.md describes every kind.
+/* fault.h: injected faults; the face of the room.
+ *
+ *     fault          the list of faults: which acts when; breaks, cables, the adapter, inputs
+ *     fault_line     faults of bytes and answers: the hooks of the bus
+ *     fault_flash    faults of the flash, and power lost in the middle of an operation
+ *     fault_apply    does a fault act now; private to the room
+ *
+ * Each has an optional unit, count, probability (seeded) and window of time. All of it is plain data in virtual time, without
+ * JSON: the same faults at the same ticks do the same. docs/FAULTS.md describes every kind.
  *
  * A fault waits for opportunities. Those of the faults of bytes are bytes that set out, those of the faults of answers are
  * answers, those of the faults of the flash are its operations. The others have intervals (FAULT_BREAK and following): their
@@ -159,21 +166,5 @@ const char *fault_kind_name(enum fault_kind kind);
 
 /* Find a kind by its name. Returns FAULT_KINDS if there is none of that name. */
 enum fault_kind fault_kind_named(const char *name);
-
-/* The hooks of a line with faults; their context is the faults. fault_line.c */
-extern const struct segment_hooks faults_hooks;
-
-/* ---- Inside: between the parts of this module ------------------------------------------------------------------------- */
-
-/* An opportunity: does a fault of this kind act? Counts it. `direction`, `operation`: for kinds that have one, else 0. Returns it
- * (valid until the next call), or NULL. */
-struct fault *fault_apply(struct faults *faults, enum fault_kind kind, unsigned unit, unsigned direction, unsigned operation);
-
-/* The next random number. */
-uint64_t faults_random(struct faults *faults);
-
-/* A fault has done something to unit `unit` (0: the line): report it. */
-void fault_report(const struct faults *faults, const struct fault *fault, unsigned unit, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Faults of the flash: operations that fail, and the power that goes in the middle of one. */
-#include "fault.h"
+#include "fault_apply.h"
 
 /* An operation done in part: of the bits that had to change some have. `data`: NULL for an erase. */
 static void write_partly(struct faults *faults, unsigned unit, unsigned block, unsigned offset, const uint8_t *data,

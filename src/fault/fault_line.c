@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Faults of bytes and answers: what the hooks of the segment do on a line with faults. */
-#include "fault.h"
+#include "fault_apply.h"
 
 #include <stdio.h>
 

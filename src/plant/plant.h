@@ -1,7 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* plant.h: what the motors of a unit move: a true mechanical position a motor, which follows the pulses, end stops, and switches
- * that drive inputs. Off unless configured; it never changes what the firmware does, only what happens at its pins.
- * docs/PLANT.md describes the files and the model.
+/* plant.h: what the motors of a unit move: a true position of each motor, which follows the pulses, end stops, and switches
+ * that drive inputs; the face of the room.
+ *
+ *     plant_read     a plant from a YAML map
+ *     plant          the model: pulses in, changes of inputs and reports out
+ *     plant_stall    what a rotor can follow
+ *     plant_json     a plant as JSON
+ *     plant_model    the model's data; private to the room
+ *
+ * Off unless configured; it never changes what the firmware does, only what happens at its pins. docs/PLANT.md describes it.
  *
  * A plant is fed with pulses as they come (each motor's in order of time, T41: none come) and gives changes of inputs back. It
  * lives in ticks of the line. */

@@ -1,7 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* record.h: a recording of a session: the configuration, everything that came in from outside with its tick, and what went out:
- * answers as they are, pulses, outputs and bytes on the wires as running digests. `rkm04 replay` does it again and names the
- * first difference. docs/RECORD.md describes the file: JSON, one object a line. */
+/* record.h: recordings, replays and snapshots of a bus; the face of the room.
+ *
+ *     record, record_line          a recording: the configuration, what comes in with its tick, what goes out
+ *     tally                        what goes out, as bytes and running digests
+ *     replay*                      a recording done again; names the first difference
+ *     snapshot, snapshot_store     a bus as it stands, to come back to; those with names
+ *     snapshot_command, restore    the commands `snapshot` and `restore`
+ *     journal                      what has come in, in memory, for snapshots to files
+ *
+ * docs/RECORD.md describes the file: JSON, one object a line. */
 #ifndef RKM04_RECORD_H
 #define RKM04_RECORD_H
 
