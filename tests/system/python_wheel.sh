@@ -10,6 +10,7 @@ env=$BUILD/python-env
 python=$(sed -n 's/^_\?Python_EXECUTABLE:.*=//p' "$BUILD/CMakeCache.txt" | head -n 1)
 [[ -n $python ]] || skip_all "the extension was not built: there were no headers of Python (Debian: python3-dev)"
 said=$("$root/tools/python-env" "$env" "$python") || { echo "$said"; exit 77; }
+export CFLAGS=-Wpadded # a compiler that warns of more than those that were at hand: no reason not to install
 wheel=$("$root/tools/python-wheel" "$BUILD/python-wheel" "$env/bin/python" | tail -n 1)
 version=$(sed -n 's/.*RKM04_VERSION "\(.*\)".*/\1/p' "$root/include/rkm04/limits.h")
 export PYTHONDONTWRITEBYTECODE=1
