@@ -7,12 +7,13 @@
 
 #include <rkm04/limits.h>
 
+#include "lsp/lsp.h"
 #include "options/options.h"
 #include "program_tools/program_tools.h"
 #include "run/run.h"
 #include "serve/serve.h"
 
-#define NAMES "serve, exec, check, fmt, explain, estimate, test, replay, plot or devices"
+#define NAMES "serve, exec, check, fmt, explain, estimate, lsp, test, replay, plot or devices"
 
 const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
@@ -23,6 +24,7 @@ static const char help[] =
     "  or:  rkm04 fmt [OPTION...] FILE...\n"
     "  or:  rkm04 explain [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 estimate [OPTION...] [M=]FILE...\n"
+    "  or:  rkm04 lsp [OPTION...]\n"
     "  or:  rkm04 test [OPTION...] SCENARIO...\n"
     "  or:  rkm04 replay [OPTION...] RECORDING\n"
     "  or:  rkm04 plot [OPTION...] [M=]FILE...\n"
@@ -35,6 +37,7 @@ static const char help[] =
     "  fmt        format programs\n"
     "  explain    describe in words what programs do\n"
     "  estimate   calculate how long programs take, how far and how fast they move\n"
+    "  lsp        serve editors: errors, labels, completion while a program is written\n"
     "  test       run scenarios in virtual time and report which pass\n"
     "  replay     repeat a recording of `serve' or `test' and compare\n"
     "  plot       draw speed and position over time\n"
@@ -65,6 +68,7 @@ static const struct {
     {"fmt", "rkm04 fmt", fmt_main},
     {"explain", "rkm04 explain", explain_main},
     {"estimate", "rkm04 estimate", estimate_main},
+    {"lsp", "rkm04 lsp", lsp_main},
     {"test", "rkm04 test", test_main},
     {"replay", "rkm04 replay", replay_main},
     {"plot", "rkm04 plot", plot_main},

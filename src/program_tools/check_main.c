@@ -49,15 +49,15 @@ static const char doc[] =
     "\n"
     "Exit status: 0 no error; 1 an error, with --werror also a warning, or a file could not be read; 2 wrong usage.";
 
-static void take_names(struct argp_state *state, struct options *options, const char *text)
+void no_warn_option_read(uint64_t *off, const char *text, struct argp_state *state)
 {
     while (*text != '\0') {
         const size_t length = strcspn(text, ",");
         const enum check_warning warning = check_warning_named(text, length);
         if (warning < CHECK_WARNINGS)
-            options->check.off |= UINT64_C(1) << warning;
+            *off |= UINT64_C(1) << warning;
         else if (length == 3 && strncmp(text, "all", 3) == 0)
-            options->check.off = UINT64_MAX;
+            *off = UINT64_MAX;
         else {
             char name[64];
             snprintf(name, sizeof name, "%.*s", (int)length, text);
@@ -73,7 +73,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     struct options *options = state->input;
     switch (key) {
     case KEY_NO_WARN:
-        take_names(state, options, text);
+        no_warn_option_read(&options->check.off, text, state);
         return 0;
     case KEY_WERROR:
         options->werror = true;

@@ -168,7 +168,8 @@ static bool drifts(struct estimate_run *run, uint64_t period)
 /* Returns the us after which the state repeats, 0: it has come to an end. */
 static uint64_t run_to_the_end(struct estimate_run *run)
 {
-    while (run->commands < ESTIMATE_COMMANDS_MAX && !run->no_memory && !sim_time_is_over(&run->sim)) {
+    const uint32_t most = run->options->commands_max > 0 ? run->options->commands_max : ESTIMATE_COMMANDS_MAX;
+    while (run->commands < most && !run->no_memory && !sim_time_is_over(&run->sim)) {
         if (!leap(run, SIM_TIME_MAX)) {
             if (run->options->pass_inputs && pass_inputs(run))
                 continue;

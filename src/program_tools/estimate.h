@@ -20,6 +20,7 @@
 struct estimate_options {
     struct rkm04_readings readings;
     bool pass_inputs;         /* an input that everything waits for comes at once */
+    uint32_t commands_max;    /* executed, further ones are not followed; 0: ESTIMATE_COMMANDS_MAX */
     const char *plant;        /* YAML text of a plant (docs/PLANT.md); NULL: none */
     size_t plant_length;
     const char *plant_name;   /* for messages */
@@ -66,7 +67,7 @@ enum estimate_end {
     ESTIMATE_WAITS,   /* for what nothing here brings */
     ESTIMATE_ROUND,   /* an endless loop */
     ESTIMATE_ENDLESS, /* a motion without an end */
-    ESTIMATE_LIMIT    /* ESTIMATE_COMMANDS_MAX, or the end of virtual time */
+    ESTIMATE_LIMIT    /* commands_max, or the end of virtual time */
 };
 
 struct estimate {

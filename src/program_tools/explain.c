@@ -32,6 +32,23 @@ const char *explain_command(struct rkm04_command command, enum explain_language 
     return text;
 }
 
+const char *explain_kind(uint8_t op, uint32_t low, enum explain_language language, char *text, size_t size)
+{
+    const char *format = explain_template((struct rkm04_command){op, low}, language);
+    size_t at = 0;
+    while (*format != '\0' && at + 2 < size) {
+        if (*format != '%') {
+            text[at++] = *format++;
+            continue;
+        }
+        text[at++] = 'n';
+        format += strcspn(format, "uds");
+        format += *format != '\0';
+    }
+    text[at] = '\0';
+    return text;
+}
+
 /* ---- Parameters in force -------------------------------------------------------------------------------------------- */
 
 struct writer {

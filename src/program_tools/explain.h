@@ -31,4 +31,8 @@ const struct explanation *explain_at(const struct explanations *all, size_t sour
 /* A command alone, without what precedes it: "wait until input 03 is 1". Returns `text`. */
 const char *explain_command(struct rkm04_command command, enum explain_language language, char *text, size_t size);
 
+/* The same with n in place of its number: "wait until input n is 1". `low`: a number that the command may have; commands mean
+ * different things in different ranges. */
+const char *explain_kind(uint8_t op, uint32_t low, enum explain_language language, char *text, size_t size);
+
 #endif

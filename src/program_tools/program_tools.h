@@ -8,10 +8,10 @@
  *     format        the canonical layout of a text
  *     explain       a program in words; explain_at() for a place
  *     estimate      durations, steps, speeds; estimate_print prints them
+ *     token         a text as commands, comments and errors, read by the core's reader
  *     *_main        rkm04 check, fmt, explain, estimate
  *
  * Inside:
- *     token         a text as commands, comments and errors, read by the core's reader
  *     source_texts  texts as the unit takes them
  *     code          the program of a motor as commands with their places
  *     flow          which command may follow which, and what holds there
@@ -33,6 +33,7 @@
 #include "estimate_print.h"
 #include "explain.h"
 #include "format.h"
+#include "token.h"
 
 /* argv[0] is the name for messages ("rkm04 check"). Each returns the exit status (text/exit_status.h), or ends the program with
  * it. */
@@ -40,5 +41,11 @@ int check_main(int argc, char **argv);
 int fmt_main(int argc, char **argv);
 int explain_main(int argc, char **argv);
 int estimate_main(int argc, char **argv);
+
+struct argp_state;
+
+/* Read a value of the option --no-warn, NAME,...: bit w of *off is set for warning w. What is wrong ends the program with a usage
+ * error. */
+void no_warn_option_read(uint64_t *off, const char *text, struct argp_state *state);
 
 #endif
