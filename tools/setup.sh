@@ -11,8 +11,8 @@ package_packages=(dpkg-dev file)
 # Needed on top of that by the tests.
 test_packages=("${package_packages[@]}" check libgmp-dev valgrind socat procps clang cppcheck g++ python3-serial python3-pyte
     python3-dev python3-venv librsvg2-bin fonts-dejavu-core zsh fish gensio-bin tshark sigrok-cli gtkwave lintian systemd
-    chromium)
-# Needed by the test of node-serialport, if the machine has no node and npm of its own.
+    chromium vim)
+# Needed by the tests with npm packages, if the machine has no node and npm of its own.
 node_packages=(nodejs npm)
 # Needed by the tests that are about another processor than this machine's, which `quick` leaves out.
 foreign_packages=(gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
@@ -97,26 +97,29 @@ setup_packages() {
     }
 }
 
-# setup_serialport FOLDER: node-serialport, as tests/system/node/package-lock.json has it, in the folder; nothing is compiled.
+# setup_node_packages SOURCE FOLDER MODULE: the npm packages of SOURCE/package-lock.json in the folder, MODULE among them; nothing
+# is compiled.
+setup_node_packages() {
+    command -v node >/dev/null && command -v npm >/dev/null || return
+    cmp -s "$1/package-lock.json" "$2/package-lock.json" &&
+        NODE_PATH=$2/node_modules node -e "require('$3')" 2>/dev/null && return
+    mkdir -p "$2" && cp "$1/package.json" "$1/package-lock.json" "$2" &&
+        timeout 120 npm ci --prefix "$2" --no-audit --no-fund --ignore-scripts </dev/null >"$2/npm.log" 2>&1 &&
+        NODE_PATH=$2/node_modules node -e "require('$3')" 2>>"$2/npm.log"
+}
+
+# setup_serialport FOLDER: node-serialport, as tests/system/node/package-lock.json has it, in the folder.
 setup_serialport() {
     local source
     source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/system/node" && pwd) || return
-    command -v node >/dev/null && command -v npm >/dev/null || return
-    cmp -s "$source/package-lock.json" "$1/package-lock.json" &&
-        NODE_PATH=$1/node_modules node -e 'require("serialport")' 2>/dev/null && return
-    mkdir -p "$1" && cp "$source/package.json" "$source/package-lock.json" "$1" &&
-        timeout 120 npm ci --prefix "$1" --no-audit --no-fund --ignore-scripts </dev/null >"$1/npm.log" 2>&1 &&
-        NODE_PATH=$1/node_modules node -e 'require("serialport")' 2>>"$1/npm.log"
+    setup_node_packages "$source" "$1" serialport
 }
 
 # setup_window FOLDER: playwright-core and axe-core, as tests/system/window/package-lock.json has them, in the folder.
 setup_window() {
     local source
     source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/system/window" && pwd) || return
-    command -v node >/dev/null && command -v npm >/dev/null || return
-    cmp -s "$source/package-lock.json" "$1/package-lock.json" && [[ -d $1/node_modules/axe-core ]] && return
-    mkdir -p "$1" && cp "$source/package.json" "$source/package-lock.json" "$1" &&
-        timeout 120 npm ci --prefix "$1" --no-audit --no-fund --ignore-scripts </dev/null >"$1/npm.log" 2>&1
+    setup_node_packages "$source" "$1" axe-core
 }
 
 # list_skips LOG: what the tests in ctest's log have left out, and why, a line each.
