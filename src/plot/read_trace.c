@@ -95,6 +95,9 @@ static bool take_motor(struct reader *reader, const struct row *row, unsigned nu
     if (strcmp(row->event, "step") == 0) {
         take_step(reader, i, row->us, (double)value);
     } else {
+        if (reader->motor[i].since >= 0)
+            end_mean(reader, i, reader->motor[i].last);
+        reader->motor[i].since = -1;
         add_rest(reader, i, row->us);
         reader->motor[i].position = (double)value;
         add_rest(reader, i, row->us);
