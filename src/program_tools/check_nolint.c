@@ -14,9 +14,8 @@ struct nolint {
 
 static size_t line_begin(const struct program_source *source, size_t at)
 {
-    while (at > 0 && source->text[at - 1] != '\n')
-        at--;
-    return at;
+    const char *newline = at > 0 ? memrchr(source->text, '\n', at) : NULL;
+    return newline == NULL ? 0 : (size_t)(newline - source->text) + 1;
 }
 
 static size_t line_end(const struct program_source *source, size_t at)
@@ -58,8 +57,9 @@ static uint64_t read_names(struct check *check, const struct code_comment *comme
             memcpy(name, text + at, kept);
             name[kept] = '\0';
             const struct diagnostic place = {.source = comment->source, .offset = comment->offset + at, .length = length};
+            const bool is_kept = check->found->count < DIAGNOSTICS_MAX; /* a search for the nearest name takes long */
             check_warn_at(check, place, CHECK_UNKNOWN_NOLINT, NULL, "unknown warning `%s'%s", name,
-                          nearest_hint(name, check_warning_names()));
+                          is_kept ? nearest_hint(name, check_warning_names()) : "");
         }
         at += length + 1;
     }
@@ -90,9 +90,9 @@ static void drop_covered(struct diagnostics *found, const struct nolint *nolint)
     size_t kept = 0;
     for (size_t i = 0; i < found->count; i++) {
         struct diagnostic *one = &found->list[i];
-        const enum check_warning warning = check_warning_named(one->name, strlen(one->name));
-        if (warning < CHECK_WARNINGS && (nolint->off >> warning & 1) && one->source == nolint->source &&
-            one->offset >= nolint->from && one->offset <= nolint->to) {
+        const bool is_near = one->source == nolint->source && one->offset >= nolint->from && one->offset <= nolint->to;
+        const enum check_warning warning = is_near ? check_warning_named(one->name, strlen(one->name)) : CHECK_WARNINGS;
+        if (warning < CHECK_WARNINGS && (nolint->off >> warning & 1)) {
             free(one->message);
             free(one->hint);
             found->warnings--;
