@@ -22,6 +22,9 @@ install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN man EXCLUDE)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES packaging/debian/copyright THIRD-PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+# Editor support (docs/EDITORS.md).
+install(DIRECTORY tools/editor DESTINATION share/rkm04)
+
 # The conformance kit finds its cases beside its own place: PREFIX/bin and PREFIX/share/rkm04/conformance.
 file(GLOB KIT CONFIGURE_DEPENDS tests/conformance/*.py tests/conformance/*.json)
 install(PROGRAMS tools/conformance DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME rkm04-conformance)

@@ -6,7 +6,7 @@
 #include "program_tools/program_tools.h"
 
 /* An estimate follows so many commands, which takes less than 5 ms. */
-#define ANALYSIS_COMMANDS_MAX 2500u
+#define ANALYSIS_COMMANDS_MAX 5000u
 
 struct analysis_command {
     struct rkm04_command command;

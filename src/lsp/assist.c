@@ -50,7 +50,7 @@ static void print_lens(FILE *out, const struct estimate *estimate, enum explain_
     print_duration(out, estimate->end == ESTIMATE_ROUND ? estimate->round : estimate->duration);
     fputs(", ", out);
     print_steps(out, estimate->steps[0]);
-    if (estimate->end == ESTIMATE_ENDLESS)
+    if (estimate->end == ESTIMATE_ENDLESS && estimate->wait_count == 0)
         fputs("; then moves without an end", out);
     if (estimate->end == ESTIMATE_STOPPED)
         fputs("; then stops with a fault", out);

@@ -6,6 +6,8 @@
 #include "features.h"
 #include "text/text.h"
 
+#define SYMBOLS_MAX 1000u /* listed of a text */
+
 enum highlight { HIGHLIGHT_READ = 2, HIGHLIGHT_WRITE = 3 };
 enum symbol { SYMBOL_FUNCTION = 12, SYMBOL_KEY = 20 };
 
@@ -186,7 +188,7 @@ json_t *lsp_list_symbols(struct session *session, const json_t *params, struct s
     struct analysis *analysis = &document->analysis;
     bool *called = find_called(analysis);
     json_t *list = called == NULL ? NULL : json_array();
-    for (size_t i = 0; list != NULL && i < analysis->count; i++) {
+    for (size_t i = 0; list != NULL && i < analysis->count && json_array_size(list) < SYMBOLS_MAX; i++) {
         const struct analysis_command *one = &analysis->commands[i];
         if (one->command.op != '@')
             continue;

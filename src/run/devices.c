@@ -58,7 +58,11 @@ int devices_main(int argc, char **argv)
     static const struct argp argp = {
         .options = table,
         .parser = read_option,
-        .doc = "List the devices that `rkm04 serve --device' and scenarios know, a line each. The first one is the default.",
+        .doc = "List the devices that `rkm04 serve --device' and scenarios know, a line each. The first one is the default."
+               "\v"
+               "Examples:\n"
+               "  rkm04 devices\n"
+               "  rkm04 devices --json",
     };
     bool is_json = false;
     const struct device_kind *kind;

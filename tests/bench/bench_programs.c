@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* bench_programs [ROUNDS]: what the tools for programs cost: CPU time of a program of 700 commands and of 1000 programs of 60. */
+/* bench_programs [ROUNDS]: what the tools for programs cost: CPU time of a program of 700 commands and of 1000 programs of 60,
+ * and of what an editor asks for when a character is typed into the large one. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
+#include "lsp/lsp.h"
 #include "program_tools/program_tools.h"
 
 static uint32_t state = 1;
@@ -106,16 +108,85 @@ static void measure(const char *name, void (*tool)(const struct program_source *
     printf("{\"what\": \"%s\", \"bytes\": %zu, \"times\": %u, \"ms\": %.3f}\n", name, source->length, times, 1e3 * least);
 }
 
+/* ---- An editor ------------------------------------------------------------------------------------------------------------ */
+
+static struct lsp_server server;
+static FILE *nowhere;
+
+static void send(json_t *message)
+{
+    char *text = json_dumps(message, 0);
+    lsp_receive(&server, text, strlen(text));
+    free(text);
+    json_decref(message);
+}
+
+static void open_document(const struct program_source *source)
+{
+    static const struct session_options options;
+    nowhere = fopen("/dev/null", "w");
+    lsp_begin(&server, &options, nowhere);
+    send(json_pack("{s:i, s:s, s:{}}", "id", 1, "method", "initialize", "params"));
+    send(json_pack("{s:s, s:{s:{s:s, s:i, s:s%}}}", "method", "textDocument/didOpen", "params", "textDocument", "uri", "p",
+                   "version", 1, "text", source->text, source->length));
+    lsp_report_changes(&server);
+}
+
+static void edit(const char *text, int from, int to)
+{
+    const int line = 100;
+    send(json_pack("{s:s, s:{s:{s:s, s:i}, s:[{s:{s:{s:i, s:i}, s:{s:i, s:i}}, s:s}]}}", "method", "textDocument/didChange",
+                   "params", "textDocument", "uri", "p", "version", 2, "contentChanges", "range", "start", "line", line,
+                   "character", from, "end", "line", line, "character", to, "text", text));
+    lsp_report_changes(&server);
+}
+
+static void ask(const char *method)
+{
+    send(json_pack("{s:i, s:s, s:{s:{s:s}, s:{s:i, s:i}}}", "id", 2, "method", method, "params", "textDocument", "uri", "p",
+                   "position", "line", 100, "character", 1));
+}
+
+/* A character and its diagnostics; it goes again, so two. */
+static void type_two(const struct program_source *source)
+{
+    (void)source;
+    edit("D", 0, 0);
+    edit("", 0, 1);
+}
+
+/* The same with all that an editor asks for then. */
+static void type_and_ask(const struct program_source *source)
+{
+    static const char *const methods[] = {"textDocument/completion", "textDocument/codeLens", "textDocument/documentSymbol",
+                                          "textDocument/documentHighlight", "textDocument/hover"};
+    (void)source;
+    edit("D", 0, 0);
+    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
+        ask(methods[i]);
+    edit("", 0, 1);
+}
+
 int main(int argc, char **argv)
 {
     static char large[32768], small[4096];
     const unsigned rounds = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 5;
     const struct program_source full = {"full.rks", large, write_program(large, sizeof large, 700), 1};
+    static const char loops[] = "L255 L255 L255 F3 R E E E";
+    const struct program_source endless = {"endless.rks", loops, sizeof loops - 1, 1};
     const struct program_source few = {"few.rks", small, write_program(small, sizeof small, 60), 1};
     measure("check, 700 commands", check, &full, 1, rounds);
     measure("fmt, 700 commands", format, &full, 1, rounds);
     measure("explain, 700 commands", explain, &full, 1, rounds);
     measure("estimate, 700 commands", estimate, &full, 1, rounds);
+    open_document(&full);
+    measure("lsp, 2 characters, 700 commands", type_two, &full, 1, rounds);
+    measure("lsp, 2 characters and 5 requests, 700 commands", type_and_ask, &full, 1, rounds);
+    lsp_end(&server);
+    open_document(&endless);
+    measure("lsp, the same, a program too long for an estimate", type_and_ask, &endless, 1, rounds);
+    lsp_end(&server);
+    fclose(nowhere);
     measure("check, 1000 programs of 60 commands", check, &few, 1000, rounds);
     measure("fmt, 1000 programs of 60 commands", format, &few, 1000, rounds);
     return 0;

@@ -267,12 +267,14 @@ START_TEST(a_lens_says_what_a_program_takes)
     holds(ask("codeLens", ""), "a round takes ");
     open_text("W10 G+");
     holds(ask("codeLens", ""), "then moves without an end");
+    open_text("(01");
+    holds(ask("codeLens", ""), "runs 1 ms, 0 steps; then in line 1: move back at start/stop speed until input 01 is 1");
     open_text("E");
     holds(ask("codeLens", ""), "then stops with a fault");
     open_text("O80");
     holds(ask("codeLens", ""), "; then in line 1: wait until variable 80 is 1");
     open_text("L255 L255 L255 F1 R E E E");
-    holds(ask("codeLens", ""), "takes longer than the first 2500 commands");
+    holds(ask("codeLens", ""), "takes longer than the first 5000 commands");
     open_text("q");
     holds(ask("codeLens", ""), "\"result\":[]");
     open_text("");

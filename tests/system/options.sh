@@ -41,10 +41,24 @@ test_the_manual_pages_know_every_option_and_no_other() {
     }
     same "$(for sub in serve exec test replay plot devices; do long_options "$RKM04" "$sub"; done | sort -u)" \
         "$(in_page rkm04.1)" "options in rkm04.1"
-    for sub in check fmt explain estimate; do
+    for sub in check fmt explain estimate lsp; do
         same "$(long_options "$RKM04" "$sub")" "$(in_page "rkm04-$sub.1")" "options in rkm04-$sub.1"
     done
     same "$(long_options "$RKMCTL")" "$(in_page rkmctl.1)" "options in rkmctl.1"
+}
+
+test_help_hint_and_manual_page_name_every_subcommand() {
+    local sub named hint
+    named=$("$RKM04" --help | sed -nE 's/^  ([a-z]+)  .*/\1/p')
+    exits 2 "$RKM04" frobnicate
+    hint=$complained
+    for sub in $named; do
+        [[ $hint =~ \ $sub(,|\ ) ]] || fail "no $sub: $hint"
+        grep -q "^\.B rkm04 $sub\$" "$(dirname "$0")/../../docs/man/rkm04.1" || fail "no rkm04 $sub in rkm04.1"
+        exits 0 "$RKM04" "$sub" --help
+        holds "$said" "Examples:" "examples of $sub"
+    done
+    holds "$named" lsp "subcommands"
 }
 
 test_no_or_an_unknown_subcommand_is_a_usage_error() {
