@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lsp/features.h"
 #include "lsp/lsp.h"
 
 #define URI "file:///p.rks"
@@ -15,7 +16,7 @@ static struct lsp_server server;
 static char *sent;
 static size_t sent_length;
 static FILE *out;
-static char answer[1u << 16]; /* the JSON of the last message, without the frame */
+static char answer[1u << 20]; /* the JSON of the last message, without the frame */
 
 static void set_up(void)
 {
@@ -72,7 +73,7 @@ static void initialize(void)
 /* Open a text, given as the inside of a JSON string. */
 static const char *open_text(const char *text)
 {
-    char message[4096];
+    char message[5000];
     snprintf(message, sizeof message,
              "{\"method\":\"textDocument/didOpen\",\"params\":{\"textDocument\":{\"uri\":\"" URI "\",\"version\":1,"
              "\"text\":\"%s\"}}}",
@@ -269,6 +270,8 @@ START_TEST(a_lens_says_what_a_program_takes)
     holds(ask("codeLens", ""), "then moves without an end");
     open_text("(01");
     holds(ask("codeLens", ""), "runs 1 ms, 0 steps; then in line 1: move back at start/stop speed until input 01 is 1");
+    open_text("(01");
+    holds(ask("codeLens", ""), "runs 1 ms, 0 steps; then in line 1: move back at start/stop speed until input 01 is 1");
     open_text("E");
     holds(ask("codeLens", ""), "then stops with a fault");
     open_text("O80");
@@ -314,6 +317,26 @@ START_TEST(completion_knows_the_place)
     holds(ask("completion", POSITION(0, 36)), "\"label\":\"unused-label\"");
     holds(answer, RANGE(0, 34, 36));
     holds(ask("completion", POSITION(0, 40)), "\"items\":[]");
+}
+END_TEST
+
+START_TEST(an_outline_has_labels_and_subroutines_up_to_a_limit)
+{
+    char text[4000] = "";
+    initialize();
+    open_text("@1 '2 J1 @2 R . W5");
+    holds(ask("documentSymbol", ""), "\"name\":\"@1\",\"detail\":\"label\"");
+    holds(answer, "\"name\":\"@2\",\"detail\":\"subroutine\"");
+    holds(answer, RANGE(0, 9, 15)); /* through its last . */
+    for (size_t at = 0; at + 3 < sizeof text; at += 3)
+        memcpy(text + at, "@1 ", 3);
+    open_text(text);
+    struct session_refusal refusal = {0};
+    json_t *params = json_pack("{s:{s:s}}", "textDocument", "uri", URI);
+    json_t *list = lsp_list_symbols(&server.session, params, &refusal);
+    ck_assert_uint_eq(json_array_size(list), 1000);
+    json_decref(list);
+    json_decref(params);
 }
 END_TEST
 
@@ -494,6 +517,7 @@ int main(void)
     add_case(suite, "answers",
              (const TTest *const[]){labels_are_found_and_renamed, a_label_is_not_renamed_into_one_that_is_jumped_to,
                                     a_lens_says_what_a_program_takes, hover_tells_command_and_motion, completion_knows_the_place,
+                                    an_outline_has_labels_and_subroutines_up_to_a_limit,
                                     layout_changes_only_lines_that_change, NULL});
     add_case(suite, "refused",
              (const TTest *const[]){requests_have_their_order, wrong_parameters_are_named,

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "program_tools/program_tools.h"
 
@@ -322,6 +323,19 @@ START_TEST(programs_made_to_take_long_are_given_up_in_time)
 }
 END_TEST
 
+/* Processor time, which a machine with other work does not stretch. */
+START_TEST(thousands_of_nolint_comments_in_a_line_do_not_take_seconds)
+{
+    static char text[250001];
+    for (size_t at = 0; at + 10 < sizeof text; at += 10)
+        memcpy(text + at, "{nolint x}", 10);
+    const clock_t before = clock();
+    check(text);
+    ck_assert_uint_eq(found.warnings, 25000);
+    ck_assert_msg(clock() - before < 8 * CLOCKS_PER_SEC, "%ld ms", (long)((clock() - before) / (CLOCKS_PER_SEC / 1000)));
+}
+END_TEST
+
 static Suite *check_suite(void)
 {
     Suite *suite = suite_create("check");
@@ -346,6 +360,7 @@ static Suite *check_suite(void)
     tcase_add_checked_fixture(limits, set_up, tear_down);
     tcase_set_timeout(limits, 60);
     tcase_add_test(limits, programs_made_to_take_long_are_given_up_in_time);
+    tcase_add_test(limits, thousands_of_nolint_comments_in_a_line_do_not_take_seconds);
     suite_add_tcase(suite, errors);
     suite_add_tcase(suite, warnings);
     suite_add_tcase(suite, limits);
