@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "window_server.h"
 
+#include <arpa/inet.h>
 #include <err.h>
+#include <errno.h>
 #include <libwebsockets.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +11,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include "options/options.h"
 #include "window_files.h"
 #include "window_inside.h"
 
@@ -249,6 +252,34 @@ static bool make_token(char token[WINDOW_TOKEN_SIZE])
     return true;
 }
 
+/* One address, which a browser can name: it is what Host has to be. */
+static bool is_address(const char *name)
+{
+    struct in6_addr six;
+    struct in_addr four;
+    return (inet_pton(AF_INET, name, &four) == 1 && four.s_addr != INADDR_ANY) ||
+           (inet_pton(AF_INET6, name, &six) == 1 && !IN6_IS_ADDR_UNSPECIFIED(&six));
+}
+
+/* Can the address be listened at now? libwebsockets would wait for an interface that has it. */
+static bool is_free(const char *name, unsigned port)
+{
+    char digits[8];
+    struct addrinfo *found = NULL;
+    snprintf(digits, sizeof digits, "%u", port);
+    if (host_address_find(name, digits, AF_UNSPEC, 0, &found) != NULL)
+        return false;
+    int one = 1, fd = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    bool bound = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one) == 0 &&
+                 bind(fd, found->ai_addr, found->ai_addrlen) == 0;
+    int error = errno;
+    if (fd >= 0)
+        close(fd);
+    freeaddrinfo(found);
+    errno = error;
+    return bound;
+}
+
 bool window_server_begin(struct window *window, const char *address)
 {
     char name[64];
@@ -258,6 +289,14 @@ bool window_server_begin(struct window *window, const char *address)
     if (colon == NULL || !number_read(colon + 1, 0, UINT16_MAX, &number) || colon == address ||
         snprintf(name, sizeof name, "%.*s", (int)(colon - digits - (address[0] == '[')), digits) >= (int)sizeof name) {
         warnx("--http: expected ADDRESS:PORT, like 127.0.0.1:0, found '%s'", address);
+        return false;
+    }
+    if (!is_address(name)) {
+        warnx("--http: expected one address of this machine in digits, like 127.0.0.1, found '%s'", name);
+        return false;
+    }
+    if (!is_free(name, (unsigned)number)) {
+        warn("cannot listen at %s", address);
         return false;
     }
     void *loops[] = {&window->loop};

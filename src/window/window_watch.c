@@ -236,6 +236,7 @@ void window_watch_choose(struct window_watch *watch, const char *path, int bus)
     for (struct page *page = watch->pages->first; page != NULL; page = page->next) {
         window_control_close(page->control);
         page->control = NULL;
+        page_send(page, json_pack("{s:s}", "event", "uncalled")); /* what has not been answered will not be */
     }
     window_watch_pages_changed(watch);
     pages_send(watch->pages, window_watch_json(watch));

@@ -39,6 +39,12 @@ follow_hints() {
     ((${#commands[@]} >= 1)) || fail "no command in the hints"
     for line in "${commands[@]}"; do
         [[ $line == *' watch' ]] && line+=' --once'
+        if [[ $line == *' --open' ]]; then # the window: without a browser, until it has its address
+            start window bash -c "exec ${line% --open}"
+            soon "the window serves" grep -q '^WINDOW http://' "$folder/window.out"
+            kill "$started" && wait "$started" || fail "exit status $? of the window"
+            continue
+        fi
         exits 0 bash -c "$line"
     done
     grep -q OTHER_END "$folder/run.out" && fail "a word to be replaced"

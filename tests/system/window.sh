@@ -8,8 +8,8 @@ client=$(cd "$(dirname "$0")" && pwd)/window_client.py
 
 # open_window OPTION...: starts it; $address is what it prints, $window its process.
 open_window() {
-    "$RKMCTL" window "$@" >"$folder/window.out" 2>"$folder/window.err" &
-    window=$!
+    start window "$RKMCTL" window "$@"
+    window=$started
     soon "the address of the window" grep -q '^WINDOW http://' "$folder/window.out"
     address=$(sed -n 's/^WINDOW //p' "$folder/window.out")
 }
@@ -38,6 +38,13 @@ test_a_port_is_opened_asked_and_stopped() {
     case_of port "$address" "$folder/bus"
 }
 
+test_a_port_over_tcp_is_opened_asked_and_stopped() {
+    start bus "$RKM04" serve --tcp 0 --link "$folder/bus"
+    soon "the unit is ready" ready bus
+    open_window
+    case_of port "$address" "tcp:$(sed -n 's/^READY .*"tcp":"\([^"]*\)".*/\1/p' "$folder/bus.out")"
+}
+
 test_the_program_tools_answer() {
     open_window
     case_of tools "$address"
@@ -54,8 +61,8 @@ test_sigterm_ends_it_within_a_second() {
 }
 
 test_serve_shows_its_units_and_ends_the_window() {
-    "$RKM04" serve --link "$folder/bus" --window >"$folder/serve.out" 2>"$folder/serve.err" &
-    local emulator=$!
+    start serve "$RKM04" serve --link "$folder/bus" --window
+    local emulator=$started
     soon "the address of the window" grep -q '^WINDOW http://' "$folder/serve.out"
     same "READY WINDOW" "$(sed 's/ .*//' "$folder/serve.out" | xargs)" "lines on stdout"
     address=$(sed -n 's/^WINDOW //p' "$folder/serve.out")
@@ -72,6 +79,10 @@ refuses() { ! python3 "$client" tools "$1" 2>/dev/null; }
 test_wrong_usage_is_told() {
     exits 1 "$RKMCTL" window --http nonsense
     holds "$complained" "expected ADDRESS:PORT" "the message"
+    exits 1 "$RKMCTL" window --http 0.0.0.0:0
+    holds "$complained" "one address of this machine" "the message"
+    exits 1 "$RKMCTL" window --http 192.0.2.1:0
+    holds "$complained" "cannot listen" "the message"
     exits 2 "$RKMCTL" window more
     exits 2 "$RKMCTL" -n 1 window
     holds "$complained" "window is the first word" "the message"

@@ -15,7 +15,8 @@ setup_window "$modules" || skip_all "there is no node with npm, or npm cannot in
 
 # open_window OPTION...: starts it; $address is what it prints.
 open_window() {
-    "$RKMCTL" window "$@" >"$folder/window.out" 2>"$folder/window.err" &
+    start window "$RKMCTL" window "$@"
+    export WINDOW_PID=$started
     soon "the address of the window" grep -q '^WINDOW http://' "$folder/window.out"
     address=$(sed -n 's/^WINDOW //p' "$folder/window.out")
 }

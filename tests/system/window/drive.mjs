@@ -260,6 +260,15 @@ const cases = {
         await checkAccess(page, `panel, ${language}, ${theme}`);
       }
     }
+    writeFileSync(folder + "/axis.yaml", "motors:\n  1: {stops: {low: -50, high: 300000}}\nswitches:\n  - {input: 1, motor: 1, at_most: 0}\n");
+    await page.setInputFiles("#plant-file", folder + "/axis.yaml");
+    await shows(page, ".axis input[type=range]");
+    await checkAccess(page, "panel with an axis");
+    await page.click("#tab-service");
+    await write(page, "{ Drill: down, wait for the part, up }\n\\ C100 S200 V4000 A8000\nL20\n    F9000 R\n    T03 W300 C03\n    B9000 R\nE\n");
+    await send(page, "2", "ok");
+    await send(page, "6", "(9000;0)");
+    await page.waitForFunction(() => Number(document.querySelector("#positions td").textContent) > 1000);
     for (const [size, width, height] of [["phone", 390, 844], ["desk", 1366, 900], ["4k", 3840, 2160]]) {
       await page.setViewportSize({ width, height });
       for (const view of ["service", "panel"]) {
@@ -289,6 +298,8 @@ const cases = {
       await says(page, "status", "No port is open.");
       await connect(page);
       await send(page, "1", "01.02,06.03.2009");
+      process.kill(Number(process.env.WINDOW_PID));
+      await says(page, "status", "is lost");
     } finally {
       again.kill();
     }
