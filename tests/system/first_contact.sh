@@ -40,9 +40,11 @@ follow_hints() {
     for line in "${commands[@]}"; do
         [[ $line == *' watch' ]] && line+=' --once'
         if [[ $line == *' --open' ]]; then # the window: without a browser, until it has its address
+            local unit=$started
             start window bash -c "exec ${line% --open}"
             soon "the window serves" grep -q '^WINDOW http://' "$folder/window.out"
             kill "$started" && wait "$started" || fail "exit status $? of the window"
+            started=$unit
             continue
         fi
         exits 0 bash -c "$line"
