@@ -332,7 +332,7 @@ START_TEST(thousands_of_nolint_comments_in_a_line_do_not_take_seconds)
     const clock_t before = clock();
     check(text);
     ck_assert_uint_eq(found.warnings, 25000);
-    ck_assert_msg(clock() - before < 8 * CLOCKS_PER_SEC, "%ld ms", (long)((clock() - before) / (CLOCKS_PER_SEC / 1000)));
+    ck_assert_msg(clock() - before < CLOCKS_PER_SEC, "%ld ms", (long)((clock() - before) / (CLOCKS_PER_SEC / 1000)));
 }
 END_TEST
 
