@@ -151,8 +151,10 @@ export class UnitView {
   }
 
   showAxis(axis, motor, switches) {
-    axis.low = Math.min(axis.low, motor.true_position);
-    axis.high = Math.max(axis.high, motor.true_position);
+    while (motor.true_position < axis.low) // with room beyond, to drag it there
+      axis.low *= 2;
+    while (motor.true_position > axis.high)
+      axis.high *= 2;
     axis.range.min = axis.low;
     axis.range.max = axis.high;
     if (document.activeElement !== axis.range || !axis.range.matches(":active"))
