@@ -3,7 +3,7 @@
  *
  *     record, record_line          a recording: the configuration, what comes in with its tick, what goes out
  *     tally                        what goes out, as bytes and running digests
- *     replay*                      a recording done again; names the first difference
+ *     replay                       a recording done again; names the first difference; replay_state.h has its parts
  *     snapshot, snapshot_store     a bus as it stands, to come back to; those with names
  *     snapshot_command, restore    the commands `snapshot` and `restore`
  *     journal                      what has come in, in memory, for snapshots to files

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "record_line.h"
-#include "replay_inside.h"
+#include "replay_state.h"
 #include "snapshot_store.h"
 #include "text/text.h"
 
@@ -13,9 +13,9 @@
 /* The end of the next step towards `tick`: a span in which nothing happens, or RECORD_SPAN. */
 static uint64_t step_end(struct replay *replay, uint64_t tick)
 {
-    uint64_t end = sim_now(replay->sim) + RECORD_SPAN;
+    uint64_t end = sim_now(replay->head.sim) + RECORD_SPAN;
     if (end < tick) {
-        uint64_t event = sim_next_event(replay->sim), due = sim_due(replay->sim);
+        uint64_t event = sim_next_event(replay->head.sim), due = sim_due(replay->head.sim);
         event = due < event ? due : event;
         if (end <= event)
             end = event == DEVICE_NEVER ? DEVICE_NEVER : event + 1u;
@@ -25,7 +25,7 @@ static uint64_t step_end(struct replay *replay, uint64_t tick)
 
 static void pause_replay(struct replay *replay)
 {
-    snprintf(replay->text, sizeof replay->text, "interrupted at tick %" PRIu64, sim_now(replay->sim));
+    replay_set_text(&replay->result, "interrupted at tick %" PRIu64, sim_now(replay->head.sim));
     replay->paused = true;
 }
 
@@ -40,18 +40,18 @@ static bool is_interrupted(struct replay *replay)
 /* Let time run to `tick`; only `bytes` bytes may come that have not been compared. */
 static bool run_to(struct replay *replay, uint64_t tick, size_t bytes)
 {
-    struct sim *sim = replay->sim;
+    struct sim *sim = replay->head.sim;
     while (sim_now(sim) < tick) {
         if (is_interrupted(replay))
             return false;
         sim_advance(sim, step_end(replay, tick));
-        if (!replay->outputs)
+        if (!replay->outputs.are_compared)
             continue;
-        tally_finish_tick(&replay->tally);
+        replay_collect_before_tick(replay);
         if (!replay_expect_nothing(replay, tick, bytes))
             return false;
     }
-    return !replay->ended;
+    return !replay->result.ended;
 }
 
 /* The tick of the present line is over; `last` is that of the replay. Returns false if it comes before. */
@@ -60,8 +60,7 @@ static bool run_to_line(struct replay *replay, uint64_t tick, size_t bytes)
     if (tick <= replay->until)
         return run_to(replay, tick, bytes);
     if (run_to(replay, replay->until, bytes)) {
-        replay->ended = true;
-        replay->end = REPLAY_SAME;
+        replay_finish(&replay->result, REPLAY_SAME);
     }
     return false;
 }
@@ -69,13 +68,14 @@ static bool run_to_line(struct replay *replay, uint64_t tick, size_t bytes)
 /* Come to a line about what came in: everything before has gone out, and was recorded. */
 static bool run_to_input(struct replay *replay, const char *const *keys, uint64_t *tick)
 {
-    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, tick) ||
+    if (!replay_keys(replay, keys) ||
+        !replay_number(replay, "t", sim_now(replay->head.sim), TIME_VALUE_MAX, DEVICE_NEVER, tick) ||
         !run_to_line(replay, *tick, 0))
         return false;
-    sim_finish_tick(replay->sim);
-    if (!replay->outputs)
+    sim_finish_tick(replay->head.sim);
+    if (!replay->outputs.are_compared)
         return true;
-    tally_finish_tick(&replay->tally);
+    replay_collect_before_tick(replay);
     return replay_expect_nothing(replay, DEVICE_NEVER, 0);
 }
 
@@ -88,13 +88,13 @@ static bool do_bytes(struct replay *replay)
     size_t length, room;
     if (!run_to_input(replay, keys, &tick) || !replay_number(replay, "at", tick, TIME_VALUE_MAX, tick, &at))
         return false;
-    room = sim_room(replay->sim);
+    room = sim_room(replay->head.sim);
     const uint8_t *bytes = replay_bytes(replay, "in", room < SEGMENT_ROOM ? room : SEGMENT_ROOM, &length);
     if (!bytes)
         return false;
     replay->counts.inputs++;
     replay->counts.bytes_in += length;
-    sim_queue_bytes(replay->sim, bytes, length, at);
+    sim_queue_bytes(replay->head.sim, bytes, length, at);
     return true;
 }
 
@@ -105,7 +105,7 @@ static bool do_purge(struct replay *replay)
     if (!run_to_input(replay, keys, &tick))
         return false;
     replay->counts.inputs++;
-    sim_purge(replay->sim);
+    sim_purge(replay->head.sim);
     return true;
 }
 
@@ -117,7 +117,7 @@ static bool do_break(struct replay *replay)
     if (!replay_flag(replay, "break", false, &on) || !run_to_input(replay, keys, &tick))
         return false;
     replay->counts.inputs++;
-    sim_break(replay->sim, on);
+    sim_break(replay->head.sim, on);
     return true;
 }
 
@@ -129,7 +129,7 @@ static bool do_timed(struct replay *replay)
     if (!replay_flag(replay, "timed", false, &timed) || !run_to_input(replay, keys, &tick))
         return false;
     replay->counts.inputs++;
-    sim_set_timed(replay->sim, timed);
+    sim_set_timed(replay->head.sim, timed);
     return true;
 }
 
@@ -149,7 +149,8 @@ static bool do_embedded(struct replay *replay)
 
 static bool report_refused(struct replay *replay, const char *method, const struct refusal *refusal)
 {
-    struct replay_difference difference = {.what = "the control", .from = sim_now(replay->sim), .until = sim_now(replay->sim)};
+    const uint64_t now = sim_now(replay->head.sim);
+    struct replay_difference difference = {.what = "the control", .from = now, .until = now};
     if (refusal->code == REFUSED_MEMORY)
         return replay_no_memory(replay);
     snprintf(difference.recorded, sizeof difference.recorded, "success of `%.60s'", method);
@@ -161,8 +162,8 @@ static bool report_refused(struct replay *replay, const char *method, const stru
 static json_t *restore_embedded(struct replay *replay, struct refusal *refusal)
 {
     if (!replay->inner)
-        replay->inner = restore_open(replay->sim, "the embedded recording", replay->embedded, replay->embedded_length,
-                                     replay->depth + 1u, refusal);
+        replay->inner = restore_open(replay->head.sim, "the embedded recording", replay->lines.embedded,
+                                     replay->lines.embedded_length, replay->depth + 1u, refusal);
     if (!replay->inner)
         return NULL;
     if (!restore_go_on(replay->inner, replay->interrupted, replay->context)) {
@@ -178,14 +179,14 @@ static json_t *restore_embedded(struct replay *replay, struct refusal *refusal)
 static json_t *execute_command(struct replay *replay, const char *method, const json_t *params, struct refusal *refusal)
 {
     if (!json_object_get(params, "file"))
-        return sim_command(replay->sim, method, params, refusal);
+        return sim_command(replay->head.sim, method, params, refusal);
     return strcmp(method, "restore") == 0 ? restore_embedded(replay, refusal) : json_object();
 }
 
 static bool do_command(struct replay *replay)
 {
     static const char *const keys[] = {"t", "command", "params", NULL};
-    const json_t *params = json_object_get(replay->json, "params");
+    const json_t *params = json_object_get(replay->lines.json, "params");
     const char *method = replay_string(replay, "command");
     struct refusal refusal = {0};
     uint64_t tick;
@@ -193,20 +194,18 @@ static bool do_command(struct replay *replay)
         return false;
     if (!json_is_object(params))
         return replay_wrong(replay, "params", "expected \"params\", an object");
-    if (!sim_has_command(replay->sim, method))
+    if (!sim_has_command(replay->head.sim, method))
         return replay_wrong(replay, "command", "expected \"command\", one that rkm04 " RKM04_VERSION " knows");
     bool restore = strcmp(method, "restore") == 0 && json_object_get(params, "file");
-    if (restore && !replay->embedded)
+    if (restore && !replay->lines.embedded)
         return replay_wrong(replay, "command", "expected a line \"embedded\" with the restored file before this line");
     json_t *result = execute_command(replay, method, params, &refusal);
     json_decref(result);
     if (replay->paused)
         return false;
     replay->counts.inputs++;
-    if (restore) {
-        free(replay->embedded);
-        replay->embedded = NULL;
-    }
+    if (restore)
+        replay_drop_embedded(replay);
     return result || report_refused(replay, method, &refusal);
 }
 
@@ -217,14 +216,15 @@ static bool do_moved(struct replay *replay)
 {
     static const char *const keys[] = {"t", "moved", NULL};
     uint64_t tick, by;
-    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
+    if (!replay_keys(replay, keys) ||
+        !replay_number(replay, "t", sim_now(replay->head.sim), TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
         !replay_number(replay, "moved", 0, TIME_VALUE_MAX - tick, DEVICE_NEVER, &by))
         return false;
-    if (replay->outputs)
+    if (replay->outputs.are_compared)
         return replay_wrong(replay, "moved", "expected {\"outputs\":false} before this line");
     if (tick + by > replay->until)
         return run_to_line(replay, DEVICE_NEVER, 0);
-    return run_to_line(replay, tick, 0) && (snapshot_move(replay->sim, by) || replay_no_memory(replay));
+    return run_to_line(replay, tick, 0) && (snapshot_move(replay->head.sim, by) || replay_no_memory(replay));
 }
 
 static bool do_outputs(struct replay *replay)
@@ -243,7 +243,8 @@ static bool do_outputs(struct replay *replay)
 
 static bool expects_outputs(struct replay *replay, const char *key)
 {
-    return replay->outputs || replay_wrong(replay, key, "expected no outputs: the recording declares that it has none");
+    return replay->outputs.are_compared ||
+           replay_wrong(replay, key, "expected no outputs: the recording declares that it has none");
 }
 
 static bool do_out(struct replay *replay)
@@ -258,8 +259,8 @@ static bool do_out(struct replay *replay)
     const uint8_t *bytes = replay_bytes(replay, "out", SEGMENT_ROOM, &length);
     if (!bytes || !run_to_line(replay, until, length))
         return false;
-    sim_finish_tick(replay->sim);
-    tally_finish_tick(&replay->tally);
+    sim_finish_tick(replay->head.sim);
+    replay_collect_before_tick(replay);
     return replay_expect_nothing(replay, from, 0) && replay_compare_bytes(replay, from, until, bytes, length);
 }
 
@@ -276,10 +277,10 @@ static bool read_digest(struct replay *replay, uint64_t *digest)
 static bool read_span(struct replay *replay, struct replay_span *span)
 {
     uint64_t unit, motor;
-    json_int_t position = json_integer_value(json_object_get(replay->json, "position"));
+    json_int_t position = json_integer_value(json_object_get(replay->lines.json, "position"));
     if (!replay_number(replay, "t", 0, TIME_VALUE_MAX, DEVICE_NEVER, &span->tick) ||
-        !replay_number(replay, "unit", 0, sim_units(replay->sim), DEVICE_NEVER, &unit) ||
-        !replay_number(replay, "motor", 0, unit > 0 ? sim_device(replay->sim)->axes : 0, DEVICE_NEVER, &motor) ||
+        !replay_number(replay, "unit", 0, sim_units(replay->head.sim), DEVICE_NEVER, &unit) ||
+        !replay_number(replay, "motor", 0, unit > 0 ? sim_device(replay->head.sim)->axes : 0, DEVICE_NEVER, &motor) ||
         !replay_number(replay, "events", 0, INT64_MAX, DEVICE_NEVER, &span->stream.events) ||
         !replay_number(replay, "steps", 0, INT64_MAX, 0, &span->stream.steps) || !read_digest(replay, &span->stream.digest))
         return false;
@@ -300,10 +301,10 @@ static bool do_digest(struct replay *replay)
         !replay_flag(replay, "partial", false, &partial) || !run_to_line(replay, span.tick, 0))
         return false;
     if (partial) {
-        sim_finish_tick(replay->sim);
-        tally_finish(&replay->tally);
+        sim_finish_tick(replay->head.sim);
+        replay_collect_all(replay);
     } else {
-        tally_finish_tick(&replay->tally);
+        replay_collect_before_tick(replay);
     }
     return replay_expect_nothing(replay, span.tick, 0) && replay_compare_stream(replay, &span, partial);
 }
@@ -312,14 +313,15 @@ static bool do_end(struct replay *replay)
 {
     static const char *const keys[] = {"t", "end", NULL};
     uint64_t tick;
-    if (!replay_keys(replay, keys) || !replay_number(replay, "t", sim_now(replay->sim), TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
+    if (!replay_keys(replay, keys) ||
+        !replay_number(replay, "t", sim_now(replay->head.sim), TIME_VALUE_MAX, DEVICE_NEVER, &tick) ||
         !run_to_line(replay, tick, 0))
         return false;
-    sim_finish_tick(replay->sim);
+    sim_finish_tick(replay->head.sim);
     replay->counts.whole = true;
-    if (!replay->outputs)
+    if (!replay->outputs.are_compared)
         return true;
-    tally_finish(&replay->tally);
+    replay_collect_all(replay);
     return replay_compare_rest(replay);
 }
 
@@ -344,7 +346,7 @@ static bool unknown_line(struct replay *replay)
 static bool do_line(struct replay *replay)
 {
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
-        if (json_object_get(replay->json, kinds[i].key))
+        if (json_object_get(replay->lines.json, kinds[i].key))
             return kinds[i].obey(replay);
     return unknown_line(replay);
 }
@@ -354,7 +356,7 @@ static bool check_line(struct replay *replay)
 {
     const char *key = NULL;
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0] && !key; i++)
-        if (json_object_get(replay->json, kinds[i].key))
+        if (json_object_get(replay->lines.json, kinds[i].key))
             key = kinds[i].key;
     if (!key)
         return unknown_line(replay);
@@ -374,37 +376,37 @@ static bool for_each_line(struct replay *replay, bool (*deal)(struct replay *rep
     replay->paused = false;
     while (replay_next_line(replay) && !is_interrupted(replay) && deal(replay))
         continue;
-    replay->again = replay->paused;
+    if (replay->paused)
+        replay_return_line(replay);
     return !replay->paused;
 }
 
 enum replay_end replay_check(struct replay *replay, bool (*interrupted)(void *context), void *context)
 {
-    if (replay->ended)
-        return replay->end;
+    if (replay->result.ended)
+        return replay->result.end;
     if (!for_each_line(replay, check_line, interrupted, context))
         return REPLAY_INTERRUPTED;
-    return replay->ended ? replay->end : REPLAY_SAME;
+    return replay->result.ended ? replay->result.end : REPLAY_SAME;
 }
 
 enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *context), void *context)
 {
-    if (replay->ended)
-        return replay->end;
-    if (replay->outputs && !replay->tally.sim)
+    if (replay->result.ended)
+        return replay->result.end;
+    if (replay->head.outputs && !replay->outputs.have_begun)
         replay_begin_compare(replay);
     if (!for_each_line(replay, do_line, interrupted, context))
         return REPLAY_INTERRUPTED;
-    if (!replay->ended) {
-        replay->end = REPLAY_SAME;
-        if (!replay->counts.whole && replay->note[0] == '\0')
-            snprintf(replay->note, sizeof replay->note, "no \"end\" line: the recording process was killed or is still running");
+    if (!replay->result.ended) {
+        replay_finish(&replay->result, REPLAY_SAME);
+        if (!replay->counts.whole && replay->result.note[0] == '\0')
+            replay_set_note(&replay->result, "no \"end\" line: the recording process was killed or is still running");
     }
-    replay->ended = true;
-    if (replay->end == REPLAY_SAME)
-        snprintf(replay->text, sizeof replay->text, "the same up to tick %" PRIu64, sim_now(replay->sim));
+    if (replay->result.end == REPLAY_SAME)
+        replay_set_text(&replay->result, "the same up to tick %" PRIu64, sim_now(replay->head.sim));
     replay_end_compare(replay);
-    return replay->end;
+    return replay->result.end;
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
@@ -414,12 +416,11 @@ struct replay *replay_open_within(const char *name, FILE *in, unsigned depth)
     struct replay *replay = calloc(1, sizeof *replay);
     if (!replay)
         return NULL;
-    replay->name = name;
-    replay->in = in;
+    replay_lines_begin(replay, name, in);
     replay->depth = depth;
     replay->until = DEVICE_NEVER;
     replay->begun = replay_begin(replay);
-    if (!replay->begun && !replay->ended)
+    if (!replay->begun && !replay->result.ended)
         replay_no_memory(replay);
     return replay;
 }
@@ -431,7 +432,7 @@ struct replay *replay_open(const char *name, FILE *in)
 
 struct sim *replay_sim(struct replay *replay)
 {
-    return replay->begun ? replay->sim : NULL;
+    return replay->begun ? replay->head.sim : NULL;
 }
 
 void replay_until(struct replay *replay, uint64_t tick)
@@ -441,45 +442,35 @@ void replay_until(struct replay *replay, uint64_t tick)
 
 const char *replay_text(const struct replay *replay)
 {
-    return replay->text;
+    return replay->result.text;
 }
 
 const char *replay_note(const struct replay *replay)
 {
-    return replay->note[0] != '\0' ? replay->note : NULL;
+    return replay->result.note[0] != '\0' ? replay->result.note : NULL;
 }
 
 const struct replay_difference *replay_difference(const struct replay *replay)
 {
-    return replay->differs ? &replay->difference : NULL;
+    return replay->result.differs ? &replay->result.difference : NULL;
 }
 
 struct replay_counts replay_counts(const struct replay *replay)
 {
     struct replay_counts counts = replay->counts;
+    counts.lines = replay->lines.count;
+    counts.bytes_out = replay->outputs.bytes_out;
     for (unsigned unit = 1; unit < TALLY_UNITS; unit++)
         for (unsigned motor = 1; motor < TALLY_MOTORS; motor++)
-            counts.steps += replay->tally.stream[unit][motor].steps;
+            counts.steps += replay->outputs.tally.stream[unit][motor].steps;
     return counts;
 }
 
 void replay_free(struct replay *replay)
 {
     restore_cancel(replay->inner);
-    if (replay->sim) {
-        if (replay->outputs && replay->tally.sim)
-            tally_end(&replay->tally);
-        sim_end(replay->sim);
-    }
-    free(replay->sim);
-    free(replay->flash);
-    json_decref(replay->settings);
-    free(replay->program);
-    free(replay->line);
-    free(replay->hex);
-    free(replay->embedded);
-    free(replay->bytes);
-    free(replay->spans);
-    json_decref(replay->json);
+    replay_outputs_free(replay);
+    replay_head_free(replay);
+    replay_lines_free(replay);
     free(replay);
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "record_line.h"
-#include "replay_inside.h"
+#include "replay_state.h"
 
 #define SHOWN 24u /* bytes shown in a message */
 
@@ -27,27 +27,29 @@ static void *room_for(void *list, size_t *at, size_t *count, size_t *room, size_
 static void on_byte(void *context, const struct tally_byte *byte)
 {
     struct replay *replay = context;
+    struct replay_outputs *out = &replay->outputs;
     struct tally_byte *bytes =
-        room_for(replay->bytes, &replay->bytes_at, &replay->bytes_count, &replay->bytes_room, sizeof *bytes);
-    replay->counts.bytes_out++;
+        room_for(out->bytes, &out->bytes_at, &out->bytes_count, &out->bytes_room, sizeof *bytes);
+    out->bytes_out++;
     if (!bytes) {
         replay_no_memory(replay);
         return;
     }
-    replay->bytes = bytes;
-    bytes[replay->bytes_count++] = *byte;
+    out->bytes = bytes;
+    bytes[out->bytes_count++] = *byte;
 }
 
 static void keep_span(struct replay *replay, uint64_t tick, unsigned unit, unsigned motor)
 {
+    struct replay_outputs *out = &replay->outputs;
     struct replay_span *spans =
-        room_for(replay->spans, &replay->spans_at, &replay->spans_count, &replay->spans_room, sizeof *spans);
+        room_for(out->spans, &out->spans_at, &out->spans_count, &out->spans_room, sizeof *spans);
     if (!spans) {
         replay_no_memory(replay);
         return;
     }
-    replay->spans = spans;
-    spans[replay->spans_count++] = (struct replay_span){tick, unit, motor, replay->tally.stream[unit][motor]};
+    out->spans = spans;
+    spans[out->spans_count++] = (struct replay_span){tick, unit, motor, out->tally.stream[unit][motor]};
 }
 
 static void on_span(void *context, uint64_t tick)
@@ -55,53 +57,51 @@ static void on_span(void *context, uint64_t tick)
     struct replay *replay = context;
     for (unsigned unit = 0; unit < TALLY_UNITS; unit++)
         for (unsigned motor = 0; motor < TALLY_MOTORS; motor++)
-            if (replay->tally.stream[unit][motor].changed)
+            if (replay->outputs.tally.stream[unit][motor].changed)
                 keep_span(replay, tick, unit, motor);
 }
 
 void replay_begin_compare(struct replay *replay)
 {
     static const struct tally_calls calls = {.byte = on_byte, .span = on_span};
-    tally_begin(&replay->tally, replay->sim, &calls, replay);
+    replay->outputs.have_begun = replay->outputs.are_compared = true;
+    tally_begin(&replay->outputs.tally, replay->head.sim, &calls, replay);
 }
 
 void replay_end_compare(struct replay *replay)
 {
-    if (!replay->outputs)
+    if (!replay->outputs.are_compared)
         return;
-    replay->outputs = false;
-    tally_end(&replay->tally);
-    replay->bytes_at = replay->bytes_count = replay->spans_at = replay->spans_count = 0;
+    replay->outputs.are_compared = false;
+    tally_end(&replay->outputs.tally);
+    replay->outputs.bytes_at = replay->outputs.bytes_count = replay->outputs.spans_at = replay->outputs.spans_count = 0;
+}
+
+void replay_outputs_free(struct replay *replay)
+{
+    replay_end_compare(replay);
+    free(replay->outputs.bytes);
+    free(replay->outputs.spans);
+}
+
+void replay_collect_before_tick(struct replay *replay)
+{
+    tally_finish_tick(&replay->outputs.tally);
+}
+
+void replay_collect_all(struct replay *replay)
+{
+    tally_finish(&replay->outputs.tally);
 }
 
 /* ---- Differences ---------------------------------------------------------------------------------------------------- */
 
 bool replay_differs(struct replay *replay, const struct replay_difference *difference)
 {
-    struct replay_difference *first = &replay->difference;
-    char where[60], when[80];
-    *first = *difference;
-    if (first->unit >= 1 && first->unit <= sim_units(replay->sim))
-        memcpy(first->name, replay->sim->unit[first->unit - 1u].name, sizeof first->name);
-    if (first->motor > 0)
-        snprintf(where, sizeof where, "unit %s, motor %u", first->name, first->motor);
-    else if (first->unit > 0)
-        snprintf(where, sizeof where, "unit %s", first->name);
-    else
-        snprintf(where, sizeof where, "%s", first->what);
-    if (first->from == first->until)
-        snprintf(when, sizeof when, "tick %" PRIu64, first->from);
-    else
-        snprintf(when, sizeof when, "ticks %" PRIu64 " to %" PRIu64, first->from, first->until);
-    int length = snprintf(replay->text, sizeof replay->text, "%s, %s: recorded %s; came %s", where, when, first->recorded,
-                          first->came);
-    if (replay->program && strcmp(replay->program, "rkm04 " RKM04_VERSION) != 0 && length > 0 &&
-        (size_t)length < sizeof replay->text)
-        snprintf(replay->text + length, sizeof replay->text - (size_t)length,
-                 " (recorded by %.60s, this is rkm04 " RKM04_VERSION ")", replay->program);
-    replay->ended = replay->differs = true;
-    replay->end = REPLAY_DIFFERENT;
-    return false;
+    struct replay_difference first = *difference;
+    if (first.unit >= 1 && first.unit <= sim_units(replay->head.sim))
+        memcpy(first.name, replay->head.sim->unit[first.unit - 1u].name, sizeof first.name);
+    return replay_finish_different(&replay->result, &first, replay->head.program);
 }
 
 static void format_bytes(char *text, size_t size, const uint8_t *bytes, size_t length)
@@ -116,11 +116,12 @@ static void format_bytes(char *text, size_t size, const uint8_t *bytes, size_t l
 /* The bytes that have come and were not compared, up to `until`. */
 static void format_arrived(const struct replay *replay, char *text, size_t size, uint64_t until)
 {
+    const struct replay_outputs *out = &replay->outputs;
     uint8_t bytes[SHOWN];
     size_t count = 0;
-    for (size_t i = replay->bytes_at; i < replay->bytes_count && replay->bytes[i].tick <= until; i++, count++)
+    for (size_t i = out->bytes_at; i < out->bytes_count && out->bytes[i].tick <= until; i++, count++)
         if (count < SHOWN)
-            bytes[count] = replay->bytes[i].byte;
+            bytes[count] = out->bytes[i].byte;
     snprintf(text, size, "nothing");
     if (count > 0)
         format_bytes(text, size, bytes, count);
@@ -160,7 +161,7 @@ static bool streams_differ(struct replay *replay, uint64_t tick, unsigned unit, 
 
 static bool report_extra_byte(struct replay *replay, uint64_t tick)
 {
-    const struct tally_byte *first = &replay->bytes[replay->bytes_at];
+    const struct tally_byte *first = &replay->outputs.bytes[replay->outputs.bytes_at];
     struct replay_difference difference = {
         .what = "the host",
         .from = first->tick,
@@ -173,14 +174,15 @@ static bool report_extra_byte(struct replay *replay, uint64_t tick)
 
 bool replay_expect_nothing(struct replay *replay, uint64_t tick, size_t bytes)
 {
-    if (replay->ended)
+    struct replay_outputs *out = &replay->outputs;
+    if (replay->result.ended)
         return false;
-    if (replay->spans_at < replay->spans_count && replay->spans[replay->spans_at].tick < tick) {
-        const struct replay_span *span = &replay->spans[replay->spans_at];
+    if (out->spans_at < out->spans_count && out->spans[out->spans_at].tick < tick) {
+        const struct replay_span *span = &out->spans[out->spans_at];
         return streams_differ(replay, span->tick, span->unit, span->motor, NULL, &span->stream);
     }
-    if (replay->bytes_count - replay->bytes_at > bytes && replay->bytes[replay->bytes_at + bytes].tick < tick) {
-        replay->bytes_at += bytes;
+    if (out->bytes_count - out->bytes_at > bytes && out->bytes[out->bytes_at + bytes].tick < tick) {
+        out->bytes_at += bytes;
         return report_extra_byte(replay, tick);
     }
     return true;
@@ -188,24 +190,25 @@ bool replay_expect_nothing(struct replay *replay, uint64_t tick, size_t bytes)
 
 bool replay_compare_bytes(struct replay *replay, uint64_t from, uint64_t until, const uint8_t *bytes, size_t length)
 {
+    struct replay_outputs *out = &replay->outputs;
     for (size_t i = 0; i < length; i++) {
-        size_t at = replay->bytes_at + i;
-        bool same = at < replay->bytes_count && replay->bytes[at].byte == bytes[i] && replay->bytes[at].tick <= until &&
-                    (i > 0 || replay->bytes[at].tick == from) && (i + 1u < length || replay->bytes[at].tick == until);
+        size_t at = out->bytes_at + i;
+        bool same = at < out->bytes_count && out->bytes[at].byte == bytes[i] && out->bytes[at].tick <= until &&
+                    (i > 0 || out->bytes[at].tick == from) && (i + 1u < length || out->bytes[at].tick == until);
         if (same)
             continue;
         struct replay_difference difference = {.what = "the host", .from = from, .until = until};
-        bool late = at < replay->bytes_count && replay->bytes[at].byte == bytes[i];
+        bool late = at < out->bytes_count && out->bytes[at].byte == bytes[i];
         snprintf(difference.recorded, sizeof difference.recorded, "as byte %zu of ", i + 1u);
         size_t used = strlen(difference.recorded);
         format_bytes(difference.recorded + used, sizeof difference.recorded - used, bytes, length);
         if (late)
-            snprintf(difference.came, sizeof difference.came, "it at tick %" PRIu64, replay->bytes[at].tick);
+            snprintf(difference.came, sizeof difference.came, "it at tick %" PRIu64, out->bytes[at].tick);
         else
             format_arrived(replay, difference.came, sizeof difference.came, until);
         return replay_differs(replay, &difference);
     }
-    replay->bytes_at += length;
+    out->bytes_at += length;
     return true;
 }
 
@@ -216,8 +219,9 @@ static bool is_same(const struct tally_stream *a, const struct tally_stream *b)
 
 bool replay_compare_stream(struct replay *replay, const struct replay_span *recorded, bool partial)
 {
-    struct tally_stream *present = &replay->tally.stream[recorded->unit][recorded->motor];
-    const struct replay_span *span = replay->spans_at < replay->spans_count ? &replay->spans[replay->spans_at] : NULL;
+    struct replay_outputs *out = &replay->outputs;
+    struct tally_stream *present = &out->tally.stream[recorded->unit][recorded->motor];
+    const struct replay_span *span = out->spans_at < out->spans_count ? &out->spans[out->spans_at] : NULL;
     if (partial && !span) {
         if (!is_same(present, &recorded->stream))
             return streams_differ(replay, recorded->tick, recorded->unit, recorded->motor, &recorded->stream, present);
@@ -233,7 +237,7 @@ bool replay_compare_stream(struct replay *replay, const struct replay_span *reco
         return streams_differ(replay, recorded->tick, recorded->unit, recorded->motor, &recorded->stream, NULL);
     if (!is_same(&span->stream, &recorded->stream))
         return streams_differ(replay, recorded->tick, recorded->unit, recorded->motor, &recorded->stream, &span->stream);
-    replay->spans_at++;
+    out->spans_at++;
     return true;
 }
 
@@ -243,7 +247,8 @@ bool replay_compare_rest(struct replay *replay)
         return false;
     for (unsigned unit = 0; unit < TALLY_UNITS; unit++)
         for (unsigned motor = 0; motor < TALLY_MOTORS; motor++)
-            if (replay->tally.stream[unit][motor].changed)
-                return streams_differ(replay, sim_now(replay->sim), unit, motor, NULL, &replay->tally.stream[unit][motor]);
+            if (replay->outputs.tally.stream[unit][motor].changed)
+                return streams_differ(replay, sim_now(replay->head.sim), unit, motor, NULL,
+                                      &replay->outputs.tally.stream[unit][motor]);
     return true;
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "record_line.h"
-#include "replay_inside.h"
+#include "replay_state.h"
 #include "text/text.h"
 
 #define TEXT_MAX 255u               /* bytes of a version text */
@@ -17,10 +17,10 @@
 static uint8_t *flash_at(void *context, unsigned number, unsigned block, unsigned offset, unsigned length)
 {
     const struct replay *replay = context;
-    const unsigned blocks = replay->device->flash_blocks, size = replay->device->flash_block_size;
+    const unsigned blocks = replay->head.device->flash_blocks, size = replay->head.device->flash_block_size;
     if (block >= blocks || offset > size || length > size - offset)
         return NULL;
-    return replay->flash + ((number - 1u) * blocks + block) * size + offset;
+    return replay->head.flash + ((number - 1u) * blocks + block) * size + offset;
 }
 
 static int flash_read(void *context, unsigned number, unsigned block, unsigned offset, void *data, unsigned length)
@@ -35,9 +35,9 @@ static int flash_read(void *context, unsigned number, unsigned block, unsigned o
 static int flash_erase(void *context, unsigned number, unsigned block)
 {
     const struct replay *replay = context;
-    uint8_t *at = flash_at(context, number, block, 0, replay->device->flash_block_size);
+    uint8_t *at = flash_at(context, number, block, 0, replay->head.device->flash_block_size);
     if (at)
-        memset(at, 0, replay->device->flash_block_size);
+        memset(at, 0, replay->head.device->flash_block_size);
     return at ? 0 : 1;
 }
 
@@ -57,44 +57,44 @@ static bool read_images(struct replay *replay, unsigned units)
     while (replay_next_line(replay)) {
         uint64_t number, block;
         size_t length;
-        if (!json_object_get(replay->json, "flash")) {
-            replay->again = true;
+        if (!json_object_get(replay->lines.json, "flash")) {
+            replay_return_line(replay);
             return true;
         }
         if (!replay_keys(replay, keys) || !replay_number(replay, "flash", 1, units, DEVICE_NEVER, &number) ||
-            !replay_number(replay, "block", 0, replay->device->flash_blocks - 1u, DEVICE_NEVER, &block))
+            !replay_number(replay, "block", 0, replay->head.device->flash_blocks - 1u, DEVICE_NEVER, &block))
             return false;
-        const uint8_t *bytes = replay_bytes(replay, "hex", replay->device->flash_block_size, &length);
+        const uint8_t *bytes = replay_bytes(replay, "hex", replay->head.device->flash_block_size, &length);
         if (!bytes || flash_program(replay, (unsigned)number, (unsigned)block, 0, bytes, (unsigned)length) != 0)
             return false;
     }
-    return !replay->ended;
+    return !replay->result.ended;
 }
 
 /* ---- Head ----------------------------------------------------------------------------------------------------------- */
 
 static bool read_nodes(struct replay *replay, struct node_list *nodes)
 {
-    const json_t *list = json_object_get(replay->json, "nodes"), *node;
+    const json_t *list = json_object_get(replay->lines.json, "nodes"), *node;
     size_t i;
     bool ok = json_is_array(list) && json_array_size(list) >= 1 && json_array_size(list) <= NODE_LIST_MAX;
     nodes->count = ok ? (unsigned)json_array_size(list) : 0;
     json_array_foreach((json_t *)list, i, node) {
         ok = ok && json_is_integer(node) && json_integer_value(node) >= 1 &&
-               json_integer_value(node) <= replay->device->addresses;
+               json_integer_value(node) <= replay->head.device->addresses;
         if (ok)
             nodes->node[i] = (uint8_t)json_integer_value(node);
     }
     return ok || replay_wrong(replay, "nodes", "expected \"nodes\", a list of 1 to %u addresses from 1 to %u", NODE_LIST_MAX,
-                              replay->device->addresses);
+                              replay->head.device->addresses);
 }
 
 /* Recordings that name no device are an RKM04's. */
 static bool read_device(struct replay *replay, struct sim_config *config)
 {
-    const char *name = json_object_get(replay->json, "device") ? replay_string(replay, "device") : rkm04_device.name;
-    config->device = replay->device = name ? device_kind_named(name) : NULL;
-    return replay->device || !name ||
+    const char *name = json_object_get(replay->lines.json, "device") ? replay_string(replay, "device") : rkm04_device.name;
+    config->device = replay->head.device = name ? device_kind_named(name) : NULL;
+    return replay->head.device || !name ||
            replay_wrong(replay, "device", "expected \"device\", one of those that rkm04 devices lists");
 }
 
@@ -102,20 +102,20 @@ static bool read_device(struct replay *replay, struct sim_config *config)
 static bool read_own(struct replay *replay, struct device_config *config)
 {
     char error[DEVICE_ERROR_SIZE], hex_name[KEY_SIZE];
-    replay->settings = json_object();
-    for (const char *const *name = replay->device->settings; *name; name++) {
-        json_t *value = json_object_get(replay->json, *name);
+    replay->head.settings = json_object();
+    for (const char *const *name = replay->head.device->settings; *name; name++) {
+        json_t *value = json_object_get(replay->lines.json, *name);
         char *text;
         snprintf(hex_name, sizeof hex_name, "%s_hex", *name);
-        if (json_object_get(replay->json, hex_name)) {
+        if (json_object_get(replay->lines.json, hex_name)) {
             if (!replay_text_of(replay, *name, TEXT_MAX, &text))
                 return false;
-            json_object_set_new_nocheck(replay->settings, *name, json_string_nocheck(text));
+            json_object_set_new_nocheck(replay->head.settings, *name, json_string_nocheck(text));
             free(text);
         } else if (value) {
-            json_object_set(replay->settings, *name, value);
+            json_object_set(replay->head.settings, *name, value);
         }
-        if (!replay->device->read_setting(config, *name, json_object_get(replay->settings, *name), error))
+        if (!replay->head.device->read_setting(config, *name, json_object_get(replay->head.settings, *name), error))
             return replay_wrong(replay, *name, "%s", error);
     }
     return true;
@@ -134,7 +134,7 @@ static bool read_settings(struct replay *replay, struct sim_config *config)
     bool ok = read_nodes(replay, &config->nodes) && read_own(replay, &config->unit) &&
                 replay_flag(replay, "timed", true, &config->timed) &&
                 replay_number(replay, "turnaround", 0, SEGMENT_TURNAROUND_MAX, 0, &turnaround) &&
-                read_seed(replay, &config->seed) && replay_flag(replay, "outputs", false, &replay->outputs);
+                read_seed(replay, &config->seed) && replay_flag(replay, "outputs", false, &replay->head.outputs);
     if (!ok)
         return false;
     config->turnaround = (uint32_t)turnaround;
@@ -147,7 +147,7 @@ static bool has_known_keys(struct replay *replay)
                                    "plant_hex", "outputs"};
     char hex[KEYS_MAX][KEY_SIZE];
     size_t count = 10;
-    for (const char *const *name = replay->device->settings; *name && count < KEYS_MAX - 2u; name++) {
+    for (const char *const *name = replay->head.device->settings; *name && count < KEYS_MAX - 2u; name++) {
         snprintf(hex[count], KEY_SIZE, "%s_hex", *name);
         names[count + 1u] = *name;
         names[count] = hex[count];
@@ -160,12 +160,12 @@ static bool read_head(struct replay *replay, struct sim_config *config, char **p
 {
     uint64_t version;
     if (!replay_next_line(replay))
-        return replay->ended || replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
-    if (!json_object_get(replay->json, "rkm04_record"))
+        return replay->result.ended || replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
+    if (!json_object_get(replay->lines.json, "rkm04_record"))
         return replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
     if (!replay_number(replay, "rkm04_record", RECORD_VERSION, RECORD_VERSION, DEVICE_NEVER, &version) ||
         !read_device(replay, config) || !has_known_keys(replay) ||
-        !replay_text_of(replay, "program", TEXT_MAX, &replay->program) || !read_settings(replay, config))
+        !replay_text_of(replay, "program", TEXT_MAX, &replay->head.program) || !read_settings(replay, config))
         return false;
     return replay_text_of(replay, "plant", PLANT_MAX, plant);
 }
@@ -175,7 +175,7 @@ static bool set_plant(struct replay *replay, const char *plant)
     char *messages = NULL;
     size_t size;
     FILE *errors = open_memstream(&messages, &size);
-    bool ok = errors && sim_configure_plants(replay->sim, "plant", plant, strlen(plant), errors);
+    bool ok = errors && sim_configure_plants(replay->head.sim, "plant", plant, strlen(plant), errors);
     if (errors)
         fclose(errors);
     if (!ok) {
@@ -188,8 +188,8 @@ static bool set_plant(struct replay *replay, const char *plant)
 
 static bool power_up(struct replay *replay, const struct sim_config *config, const char *plant)
 {
-    replay->sim = calloc(1, sizeof *replay->sim);
-    if (!replay->sim || !sim_begin(replay->sim, config) || !snapshots_attach(replay->sim))
+    replay->head.sim = calloc(1, sizeof *replay->head.sim);
+    if (!replay->head.sim || !sim_begin(replay->head.sim, config) || !snapshots_attach(replay->head.sim))
         return replay_no_memory(replay);
     return !plant || set_plant(replay, plant);
 }
@@ -200,12 +200,23 @@ bool replay_begin(struct replay *replay)
         .flash = {.read = flash_read, .erase = flash_erase, .program = flash_program, .context = replay},
     };
     char *plant = NULL;
-    bool ok = read_head(replay, &config, &plant) && !replay->ended;
+    bool ok = read_head(replay, &config, &plant) && !replay->result.ended;
     if (ok) {
-        replay->flash = calloc(config.nodes.count, replay->device->flash_blocks * replay->device->flash_block_size + 1u);
-        ok = replay->flash ? read_images(replay, config.nodes.count) : replay_no_memory(replay);
+        const struct device_kind *kind = replay->head.device;
+        replay->head.flash = calloc(config.nodes.count, kind->flash_blocks * kind->flash_block_size + 1u);
+        ok = replay->head.flash ? read_images(replay, config.nodes.count) : replay_no_memory(replay);
     }
     ok = ok && power_up(replay, &config, plant);
     free(plant);
     return ok;
+}
+
+void replay_head_free(struct replay *replay)
+{
+    if (replay->head.sim)
+        sim_end(replay->head.sim);
+    free(replay->head.sim);
+    free(replay->head.flash);
+    json_decref(replay->head.settings);
+    free(replay->head.program);
 }

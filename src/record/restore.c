@@ -9,7 +9,7 @@
 #include <time.h>
 
 #include "record_line.h"
-#include "replay_inside.h"
+#include "replay_state.h"
 #include "snapshot_store.h"
 
 #define SECOND UINT64_C(1000000) /* us */
