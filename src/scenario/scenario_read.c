@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "record/record.h"
-#include "scenario_parts.h"
+#include "scenario_model.h"
 #include "text/text.h"
 
 #define TIMEOUT 60000000u /* ticks */

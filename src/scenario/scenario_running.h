@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* scenario_running.h: a scenario while it runs. Inside: scenario_run.c has time and stimuli, scenario_do.c the steps,
- * scenario_host.c what the host sends and receives. */
+/* scenario_running.h: a scenario while it runs. Private to the room: scenario_run.c has time and stimuli, scenario_do.c the steps
+ * (it writes `last` alone), scenario_host.c what the host sends and receives (it writes `host` alone). */
 #ifndef RKM04_SCENARIO_RUNNING_H
 #define RKM04_SCENARIO_RUNNING_H
 
-#include "scenario_parts.h"
+#include "scenario_model.h"
 
 #define ANSWER_ROOM 16384 /* the longest answer, a full memory, has 9101 bytes */
 

@@ -6,7 +6,7 @@
 
 #include "condition/condition.h"
 #include "file/file.h"
-#include "scenario_parts.h"
+#include "scenario_model.h"
 
 #define SILENCE 1000000u /* ticks: how long `answer: none` listens */
 #define EXTRAS_MAX 5

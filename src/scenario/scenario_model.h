@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* scenario_parts.h: what a scenario is made of. Inside: scenario_read.c and scenario_step.c build it, scenario_run.c and
+/* scenario_model.h: what a scenario is made of. Inside: scenario_read.c and scenario_step.c build it, scenario_run.c and
  * scenario_do.c do it. */
-#ifndef RKM04_SCENARIO_PARTS_H
-#define RKM04_SCENARIO_PARTS_H
+#ifndef RKM04_SCENARIO_MODEL_H
+#define RKM04_SCENARIO_MODEL_H
 
 #include "condition/condition.h"
 #include "scenario.h"
