@@ -40,7 +40,9 @@ struct port_job {
 struct window_port {
     struct pages *pages;
     struct client client;   /* of the thread while a job is under way */
-    char name[PATH_MAX];    /* of the open port; empty: none */
+    char name[PATH_MAX];    /* of the open port; empty: none. Of the thread, too; after a job copied to: */
+    char shown[PATH_MAX];
+    const struct rkm04_framing *framing;
     int cancel;             /* eventfd: readable while the job under way is to end */
     struct port_job *first, *last, *present;
     unsigned waiting;

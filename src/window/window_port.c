@@ -32,9 +32,9 @@ void port_job_free(struct port_job *job)
 
 json_t *window_port_json(const struct window_port *port)
 {
-    json_t *name = port->name[0] != '\0' ? json_string(port->name) : NULL;
+    json_t *name = port->shown[0] != '\0' ? json_string(port->shown) : NULL;
     return json_pack("{s:s, s:o, s:s?}", "event", "port", "port", name != NULL ? name : json_null(), "framing",
-                     port->client.framing != NULL ? port->client.framing->name : NULL);
+                     port->framing != NULL ? port->framing->name : NULL);
 }
 
 /* ---- Jobs ------------------------------------------------------------------------------------------------------------- */
@@ -60,7 +60,7 @@ static void report_job(const struct window_port *port, struct port_job *job)
         page_answer(page, job->request, answer);
     else
         json_decref(answer);
-    if (job->kind == PORT_OPEN || job->kind == PORT_CLOSE || port->client.fd < 0)
+    if (job->kind == PORT_OPEN || job->kind == PORT_CLOSE || port->shown[0] == '\0')
         pages_send(port->pages, window_port_json(port));
 }
 
@@ -76,6 +76,8 @@ static void on_done(uv_work_t *work, int status)
     struct port_job *job = port->present;
     (void)status;
     port->present = NULL;
+    strcpy(port->shown, port->name);
+    port->framing = port->client.framing;
     report_job(port, job);
     port_job_free(job);
     start_next(port);
