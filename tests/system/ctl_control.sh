@@ -313,7 +313,7 @@ test_the_default_is_the_emulator_started_without_a_link() {
     unset RKM04_CONTROL
     export XDG_RUNTIME_DIR=$folder/run TMPDIR=$folder/tmp
     mkdir "$XDG_RUNTIME_DIR" "$TMPDIR"
-    exits 1 control state
+    exits 1 alone "$RKMCTL" state
     start default "$RKM04" serve --clock stepped
     soon "it is ready" ready default
     exits 0 control watch --once

@@ -52,6 +52,13 @@ exits() {
     [[ $status == "$wanted" ]] || fail "'$*': expected exit status $wanted, got $status; it said '$said' '$complained'"
 }
 
+# alone COMMAND...: in a network namespace of its own, where rkmctl finds no emulator of another test.
+alone() {
+    local map=()
+    [[ $(id -u) == 0 ]] || map=(--map-root-user)
+    unshare --net "${map[@]}" "$@"
+}
+
 # soon WHAT COMMAND...: the command succeeds before the time limit.
 soon() {
     local what=$1 end=$((SECONDS + limit))
