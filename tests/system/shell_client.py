@@ -29,6 +29,24 @@ def read_until(terminal, shown, part):
     return True
 
 
+def wait_for_end(child, terminal, shown, key):
+    """Wait until the shell has ended, reading what it still shows. `key`: is pressed again if nothing happens for a second: the
+    terminal turns a ^D into a 00 that comes between the prompt and the mode in which lines are edited."""
+    end = time.monotonic() + LIMIT
+    while time.monotonic() < end:
+        if not select.select([terminal], [], [], 1)[0]:
+            os.write(terminal, key)
+            continue
+        try:
+            piece = os.read(terminal, 4096)
+        except OSError:
+            piece = b""
+        if not piece:
+            return os.waitpid(child, 0)[1]
+        shown += piece
+    sys.exit(f"the shell has not ended within {LIMIT:g} s; shown: {bytes(shown)!r}")
+
+
 def main():
     child, terminal = pty.fork()
     if child == 0:
@@ -53,7 +71,7 @@ def main():
         for _ in range(2 if "\\t" in line else 1):  # a completed line is drawn anew, with its prompt
             if not stays:
                 read_until(terminal, shown, PROMPT)
-    _, status = os.waitpid(child, 0)
+    status = wait_for_end(child, terminal, shown, b"\x04" if line == "^D" else b"")
     sys.stdout.write(shown.decode(errors="replace"))
     sys.exit(os.waitstatus_to_exitcode(status))
 
