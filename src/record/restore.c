@@ -2,11 +2,13 @@
 /* restore.c: restoring a file: its lines are checked, then replayed in a sim of their own, both in pieces; at the end the sim
  * becomes like that one. The machine's clock is checked for limits only. */
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "record_line.h"
 #include "replay_state.h"
@@ -132,22 +134,37 @@ static uint64_t real_time(void)
     return (uint64_t)now.tv_sec * SECOND + (uint64_t)now.tv_nsec / 1000u;
 }
 
+/* Open a regular file. What it is is looked at when it is open: nobody can put a pipe there in between, which would wait for its
+ * writer. Returns NULL: refused. */
+static FILE *open_regular(const char *path, struct refusal *refusal)
+{
+    struct stat status;
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (fd >= 0 && fstat(fd, &status) == 0 && !S_ISREG(status.st_mode)) {
+        close(fd);
+        refuse(refusal, REFUSED_STATE, "file: %.160s is not a regular file: expected a recording or a snapshot", path);
+        return NULL;
+    }
+    FILE *in = fd >= 0 ? fdopen(fd, "r") : NULL;
+    if (in == NULL)
+        refuse(refusal, REFUSED_STATE, "file: cannot read %.160s: %s", path, strerror(errno));
+    if (in == NULL && fd >= 0)
+        close(fd);
+    return in;
+}
+
 /* Read a whole file. Returns false: refused. */
 static bool read_file(struct restore *restore, struct refusal *refusal)
 {
-    struct stat status;
     const char *path = restore->name;
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
-        refuse(refusal, REFUSED_STATE, "file: %.160s is not a regular file: expected a recording or a snapshot", path);
+    FILE *in = open_regular(path, refusal);
+    if (in == NULL)
         return false;
-    }
-    FILE *in = fopen(path, "re");
-    char *text = in ? malloc(RECORD_EMBEDDED_MAX + 1u) : NULL;
+    char *text = malloc(RECORD_EMBEDDED_MAX + 1u);
     size_t length = text ? fread(text, 1, RECORD_EMBEDDED_MAX + 1u, in) : 0;
     int error = errno;
     bool ok = text && !ferror(in) && length <= RECORD_EMBEDDED_MAX;
-    if (in)
-        fclose(in);
+    fclose(in);
     if (ok) {
         restore->text = text;
         restore->length = length;
