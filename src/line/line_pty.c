@@ -69,6 +69,18 @@ static bool add_to_watch(struct line_watch *watch, int fd)
     return fd >= 0 && epoll_ctl(watch->fd, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
+/* Returns false if it does not work (errno). */
+static bool make_timer(struct line_watch *watch)
+{
+    if (watch->timer >= 0)
+        return true;
+    watch->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    if (add_to_watch(watch, watch->timer))
+        return true;
+    close_descriptor(&watch->timer);
+    return false;
+}
+
 /* Check the lines now and then, or no more. Returns false if it does not work (errno). */
 static bool set_polling(struct line_watch *watch, bool on)
 {
@@ -77,13 +89,8 @@ static bool set_polling(struct line_watch *watch, bool on)
         return true;
     if (on)
         spec.it_interval.tv_nsec = spec.it_value.tv_nsec = LOOK_MS * 1000000l;
-    if (watch->timer < 0) {
-        watch->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-        if (!add_to_watch(watch, watch->timer)) {
-            close_descriptor(&watch->timer);
-            return false;
-        }
-    }
+    if (!make_timer(watch))
+        return false;
     watch->looking = timerfd_settime(watch->timer, 0, &spec, NULL) == 0 ? on : watch->looking;
     return watch->looking == on;
 }
@@ -104,7 +111,7 @@ bool line_watch_open(struct line_watch *watch)
     watch->fd = epoll_create1(EPOLL_CLOEXEC);
     watch->notices = watch->fd < 0 ? -1 : inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     if (watch->notices >= 0 && add_to_watch(watch, watch->notices))
-        return true;
+        return make_timer(watch); /* at once: the number of the emulator's files does not change by what clients do */
     int why = errno;
     if (watch->fd >= 0 && set_polling(watch, true)) {
         log_error("cannot use inotify: %s (fs.inotify.max_user_instances?); checking every %d ms for clients", strerror(why),

@@ -27,7 +27,7 @@
 
 #define PLANT_MAX (1u << 20) /* bytes; a recording may hold as many */
 #define FILES_LOOP 8u     /* descriptors: of the event loop */
-#define FILES_WATCH 2u    /* of the watch for clients of ptys */
+#define FILES_WATCH 3u    /* of the watch for clients of ptys */
 #define FILES_SERIAL 3u   /* of a pty or device, besides the timer of its bus */
 #define FILES_CONTROL 2u  /* of the control socket */
 #define FILES_COVERAGE 2u /* of the reports */
