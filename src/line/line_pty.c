@@ -110,8 +110,9 @@ bool line_watch_open(struct line_watch *watch)
     watch->looking = false;
     watch->fd = epoll_create1(EPOLL_CLOEXEC);
     watch->notices = watch->fd < 0 ? -1 : inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (watch->notices >= 0 && add_to_watch(watch, watch->notices))
-        return make_timer(watch); /* at once: the number of the emulator's files does not change by what clients do */
+    /* The timer at once: the number of the emulator's files does not change by what clients do. */
+    if (watch->notices >= 0 && add_to_watch(watch, watch->notices) && make_timer(watch))
+        return true;
     int why = errno;
     if (watch->fd >= 0 && set_polling(watch, true)) {
         log_error("cannot use inotify: %s (fs.inotify.max_user_instances?); checking every %d ms for clients", strerror(why),
