@@ -339,6 +339,11 @@ static enum exit_status do_person(struct state *state)
         read_history(history);
     signal(SIGINT, SIG_IGN); /* ends the command */
     puts("help lists the commands, Ctrl-D ends the shell");
+    fflush(stdout);
+    /* Where no line is being edited the terminal turns Ctrl-D into 00, to which libedit gives a binding of its own when it
+     * first prepares the terminal: it would quote the next key. */
+    rl_prep_terminal(1);
+    rl_parse_and_bind("bind ^@ em-delete-or-list");
     while (!state->is_over) {
         put_prompt(state, prompt);
         if ((line = readline(prompt)) == NULL)

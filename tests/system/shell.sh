@@ -92,4 +92,10 @@ test_an_interrupt_ends_the_command_and_not_the_shell() {
     [[ $shown != *unknown* ]] || fail "events had not begun"
 }
 
+test_the_end_may_be_pressed_while_a_command_runs() {
+    serve bus
+    person 'events step count=1...' 'wait for listening' '^D...' "! '$RKMCTL' -p '$folder/bus' set 'F1 R'"
+    holds "$shown" "step" "the event"
+}
+
 run_cases "$@"

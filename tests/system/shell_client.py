@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 """A person at `rkmctl shell`: shell_client.py RKMCTL ARGUMENT...: types what stands on standard input, a line for each line that
 comes back with a prompt (behind one that ends with ... none comes), and prints all that was
-shown. \\t is Tab, ^C the interrupt, ^D the end."""
+shown. \\t is Tab, ^C the interrupt, ^D the end; ! COMMAND is done elsewhere."""
 import os
 import pty
 import select
+import subprocess
 import sys
 import time
 
@@ -29,13 +30,11 @@ def read_until(terminal, shown, part):
     return True
 
 
-def wait_for_end(child, terminal, shown, key):
-    """Wait until the shell has ended, reading what it still shows. `key`: is pressed again if nothing happens for a second: the
-    terminal turns a ^D into a 00 that comes between the prompt and the mode in which lines are edited."""
+def wait_for_end(child, terminal, shown):
+    """Wait until the shell has ended, reading what it still shows."""
     end = time.monotonic() + LIMIT
     while time.monotonic() < end:
         if not select.select([terminal], [], [], 1)[0]:
-            os.write(terminal, key)
             continue
         try:
             piece = os.read(terminal, 4096)
@@ -59,8 +58,11 @@ def main():
         keys = line.removesuffix("...").replace("\\t", "\t").encode()
         if line == "^C":
             os.write(terminal, b"\x03")
-        elif line == "^D":
+        elif keys == b"^D":
             os.write(terminal, b"\x04")
+        elif line.startswith("! "):
+            subprocess.run(line[2:], shell=True, check=True, stdout=subprocess.DEVNULL)
+            continue
         elif line.startswith("wait for "):
             read_until(terminal, shown, line[9:].encode())
             continue
@@ -71,7 +73,7 @@ def main():
         for _ in range(2 if "\\t" in line else 1):  # a completed line is drawn anew, with its prompt
             if not stays:
                 read_until(terminal, shown, PROMPT)
-    status = wait_for_end(child, terminal, shown, b"\x04" if line == "^D" else b"")
+    status = wait_for_end(child, terminal, shown)
     sys.stdout.write(shown.decode(errors="replace"))
     sys.exit(os.waitstatus_to_exitcode(status))
 
