@@ -113,7 +113,7 @@ def test_refusals_have_the_text_and_the_code_of_the_control_socket(bus):
 
 @pytest.mark.parametrize("options", [
     {"units": 0}, {"units": "1-99"}, {"device": "rkm05"}, {"framing": "token-ring"}, {"seed": -1}, {"turnaround": "2s"},
-    {"readings": {"no-such": 1}}, {"plant": {"motors": 5}},
+    {"seed": 2**70}, {"readings": {"no-such": 1}}, {"plant": {"motors": 5}},
 ])
 def test_wrong_options_are_refused(options):
     with pytest.raises(rkm04.RefusedError, match="expected|unknown"):

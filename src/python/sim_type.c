@@ -93,9 +93,16 @@ static json_t *load(const char *text)
 {
     json_error_t error;
     json_t *json = json_loads(text, JSON_REJECT_DUPLICATES | JSON_ALLOW_NUL, &error);
-    if (!json)
+    if (json)
+        return json;
+    if (json_error_code(&error) == json_error_numeric_overflow) {
+        struct refusal refusal;
+        refuse(&refusal, REFUSED_PARAMS, "expected numbers below 2^63, found a %s", error.text);
+        refuse_call(&refusal);
+    } else {
         PyErr_Format(PyExc_ValueError, "expected JSON: %s", error.text);
-    return json;
+    }
+    return NULL;
 }
 
 static PyObject *dump(json_t *json)

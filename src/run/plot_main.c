@@ -407,6 +407,8 @@ static bool write_to_file(const struct plot_curves *curves, const struct options
 
 static bool write_output(const struct plot_curves *curves, const struct options *options)
 {
+    if ((double)options->from >= fmax(curves->end, 1))
+        return is_wrong("--from", "expected a time before the end of what is drawn");
     if (options->output == NULL)
         return write_picture(stdout, curves, options) && (fflush(stdout) == 0 || is_wrong("standard output", strerror(errno)));
     FILE *picture = tmpfile(); /* what is at the place already is overwritten by a whole picture only */

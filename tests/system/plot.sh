@@ -135,6 +135,8 @@ test_refusals_name_their_place_and_write_nothing() {
     exits 1 "$RKM04" plot -o "$folder/a.rks" --format svg "$folder/a.rks"
     holds "$complained" "cannot write" "over its own input"
     exits 2 "$RKM04" plot --from 2s --until 1s -o "$folder/a.svg" "$folder/a.rks"
+    exits 1 "$RKM04" plot --from 100s -o "$folder/a.svg" "$folder/a.rks"
+    holds "$complained" "--from: expected a time before the end of what is drawn" "a part after the end"
     [[ ! -e $folder/a.svg ]] || fail "a picture was begun"
 }
 
