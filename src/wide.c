@@ -30,8 +30,11 @@ static uint32_t next_digit(uint64_t *left, uint32_t next, uint64_t divisor)
 uint64_t wide_divide(struct wide number, uint64_t divisor, uint64_t *rest)
 {
     unsigned shift = 0;
-    for (; !(divisor >> 63); divisor <<= 1)
-        shift++;
+    for (unsigned bits = 32; bits > 0; bits >>= 1)
+        if (!(divisor >> (64 - bits))) {
+            divisor <<= bits;
+            shift += bits;
+        }
     if (shift > 0)
         number = wide_shifted(number, shift);
     uint64_t left = number.high, high = next_digit(&left, (uint32_t)(number.low >> 32), divisor);
