@@ -253,6 +253,18 @@ START_TEST(K3_a_long_motion_that_nobody_sees_is_done_in_few_reports)
 }
 END_TEST
 
+START_TEST(P9_K3_an_endless_motion_at_its_speed_has_nothing_more_to_report)
+{
+    const struct rkm04_config config = {.node = 1};
+    struct reports none = {0};
+    rkm04_init(&unseen, &config, &reporting, &none);
+    rkm04_init(&seen, &config, &reporting, &none);
+    both_set("\\ S1 V16000 A60000 G+");
+    rkm04_advance(&unseen, 1000000);
+    ck_assert_uint_gt(rkm04_next_report(&unseen), RKM04_NEVER / 2);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("unit_skip");
@@ -265,6 +277,7 @@ int main(void)
     tcase_add_test(one, C12_an_output_comes_on_at_its_pulse_however_many_are_passed_over);
     tcase_add_loop_test(one, K3_nothing_is_reported_before_the_next_report, 0, 300);
     tcase_add_loop_test(one, K3_C12_an_output_amid_a_leg_is_a_report_of_its_own, 0, 4);
+    tcase_add_test(one, P9_K3_an_endless_motion_at_its_speed_has_nothing_more_to_report);
     tcase_add_test(one, K3_a_long_motion_that_nobody_sees_is_done_in_few_reports);
     suite_add_tcase(suite, one);
     SRunner *runner = srunner_create(suite);
