@@ -131,6 +131,13 @@ class Motor:
         bus, and takes its time."""
         return self._unit.exchange(request("Get Command", self.number)).text
 
+    @property
+    def commands(self) -> List[str]:
+        """The commands in memory, oldest first, without asking the unit over the bus: no time passes."""
+        told = self._unit.bus.call("motor.program", motor=self.number, **_unit(self._unit.name))
+        commands: List[str] = told["commands"]
+        return commands
+
     def set(self, text: str) -> Message:
         """Send a program text with a Set Command and wait for the answer. Returns the answer.
 
@@ -307,6 +314,11 @@ class Faults:
         """Each with its kind, its parameters, and how often it has `acted`."""
         faults: List[Dict[str, Any]] = self._bus.call("fault.list")["faults"]
         return faults
+
+    def kinds(self) -> Dict[str, Any]:
+        """What inject() takes: `kinds`, each with its `parameters`, and those that all have, `common`."""
+        told: Dict[str, Any] = self._bus.call("fault.kinds")
+        return told
 
     def __iter__(self) -> Iterator[Dict[str, Any]]:
         return iter(self.list())

@@ -7,7 +7,7 @@ import re
 import pytest
 
 import rkm04
-from rkm04._parts import Faults, Inputs, Plant, Power
+from rkm04._parts import Faults, Inputs, Motor, Plant, Power
 
 CONTROL = pathlib.Path(__file__).resolve().parents[2] / "docs" / "CONTROL.md"
 
@@ -15,6 +15,7 @@ COUNTERPARTS = {
     "units": rkm04.Bus.units,
     "ready": rkm04.Bus.ready,
     "state": rkm04.Unit.state,
+    "motor.program": Motor.commands,
     "di.set": Inputs.set,
     "reset": rkm04.Unit.reset,
     "power": Power.__call__,
@@ -31,6 +32,7 @@ COUNTERPARTS = {
     "fault.inject": Faults.inject,
     "fault.clear": Faults.clear,
     "fault.list": Faults.list,
+    "fault.kinds": Faults.kinds,
     "snapshot": rkm04.Bus.snapshot,
     "restore": rkm04.Bus.restore,
     "shutdown": rkm04.Bus.close,

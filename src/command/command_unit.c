@@ -38,6 +38,28 @@ static json_t *command_state(struct sim *sim, const json_t *params, struct refus
     return state ? state : refuse(refusal, REFUSED_MEMORY, "out of memory");
 }
 
+static json_t *command_motor_program(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {"motor", "unit", NULL};
+    const struct device_kind *kind = sim_device(sim);
+    unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
+    int64_t motor;
+    if (number == 0 || !param_integer(params, "motor", 1, kind->axes, &motor, refusal))
+        return NULL;
+    if (!kind->program_of)
+        return refuse(refusal, REFUSED_STATE, "the motors of a device `%s' have no programs of their own", kind->name);
+    json_t *result = kind->program_of(sim_core(sim, number), (unsigned)motor), *more;
+    more = json_pack("{s:I, s:I, s:I}", "t_us", (json_int_t)sim_now(sim), "motor", (json_int_t)motor, "of",
+                     (json_int_t)kind->program);
+    if (result && more && json_object_update(result, more) == 0) {
+        json_decref(more);
+        return result;
+    }
+    json_decref(result);
+    json_decref(more);
+    return refuse(refusal, REFUSED_MEMORY, "out of memory");
+}
+
 /* ---- Inputs --------------------------------------------------------------------------------------------------------- */
 
 /* Read the inputs named in `di` into `given`, and their levels. */
@@ -166,6 +188,7 @@ static json_t *command_units(struct sim *sim, const json_t *params, struct refus
 const struct command_method unit_methods[] = {
     {"units", command_units, false},
     {"state", command_state, false},
+    {"motor.program", command_motor_program, false},
     {"di.set", command_di_set, true},
     {"reset", command_reset, true},
     {"power", command_power, true},

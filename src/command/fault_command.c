@@ -1,39 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "fault_parameters.h"
 #include "methods.h"
 
 #define SURE 1000000u        /* millionths */
 #define COUNT_MAX UINT32_MAX
 #define EVERY_MIN 1000u /* us */
 
-/* What a kind of fault can be given besides kind, count, skip, probability, after and for. */
-enum { UNIT = 1, DIRECTION = 2, DURATION = 4, EVERY = 8 };
-
 typedef bool read_function(const json_t *params, struct fault *fault, struct refusal *refusal);
 
 static read_function read_no_members, read_mask, read_byte, read_delay, read_bytes, read_flash, read_power, read_input;
 
-static const struct kind {
-    unsigned takes;
-    const char *own[3]; /* further parameters */
-    read_function *read;
-} kinds[FAULT_KINDS] = {
-    [FAULT_DROP] = {UNIT | DIRECTION, {NULL}, read_no_members},
-    [FAULT_FLIP] = {UNIT | DIRECTION, {"mask"}, read_mask},
-    [FAULT_DUPLICATE] = {UNIT | DIRECTION, {NULL}, read_no_members},
-    [FAULT_INSERT] = {UNIT | DIRECTION, {"byte"}, read_byte},
-    [FAULT_ECHO] = {0, {NULL}, read_no_members},
-    [FAULT_DELAY] = {UNIT, {"delay"}, read_delay},
-    [FAULT_NO_ANSWER] = {UNIT, {NULL}, read_no_members},
-    [FAULT_WRONG_FCS] = {UNIT, {NULL}, read_no_members},
-    [FAULT_CUT] = {UNIT, {"bytes"}, read_bytes},
-    [FAULT_FLASH] = {UNIT, {"operation", "torn"}, read_flash},
-    [FAULT_POWER] = {UNIT | DURATION, {"operation"}, read_power},
-    [FAULT_BREAK] = {DURATION | EVERY, {NULL}, read_no_members},
-    [FAULT_UNPLUGGED] = {DURATION | EVERY, {NULL}, read_no_members},
-    [FAULT_CABLE] = {UNIT | DURATION | EVERY, {NULL}, read_no_members},
-    [FAULT_INPUT] = {UNIT | DURATION | EVERY, {"input", "level"}, read_input},
+/* What a kind has of its own; its parameters' names are those of fault_parameters.c. */
+static read_function *const readers[FAULT_KINDS] = {
+    [FAULT_DROP] = read_no_members,      [FAULT_FLIP] = read_mask,           [FAULT_DUPLICATE] = read_no_members,
+    [FAULT_INSERT] = read_byte,          [FAULT_ECHO] = read_no_members,     [FAULT_DELAY] = read_delay,
+    [FAULT_NO_ANSWER] = read_no_members, [FAULT_WRONG_FCS] = read_no_members, [FAULT_CUT] = read_bytes,
+    [FAULT_FLASH] = read_flash,          [FAULT_POWER] = read_power,         [FAULT_BREAK] = read_no_members,
+    [FAULT_UNPLUGGED] = read_no_members, [FAULT_CABLE] = read_no_members,    [FAULT_INPUT] = read_input,
 };
 
 /* ---- Reading: one kind's own ---------------------------------------------------------------------------------------- */
@@ -99,20 +84,14 @@ static bool read_boolean(const json_t *params, const char *name, int missing, bo
 
 static bool read_flash(const json_t *params, struct fault *fault, struct refusal *refusal)
 {
-    static const struct {
-        const char *name;
-        uint8_t operations;
-    } choices[] = {
-        {"write", FAULT_ERASE | FAULT_PROGRAM}, {"erase", FAULT_ERASE}, {"program", FAULT_PROGRAM}, {"read", FAULT_READ},
-    };
     const char *name = "write";
     if (!read_boolean(params, "torn", 0, &fault->torn, refusal))
         return false;
     if (json_object_get(params, "operation") && !(name = param_string(params, "operation", refusal)))
         return false;
-    for (size_t i = 0; i < sizeof choices / sizeof choices[0]; i++)
-        if (strcmp(choices[i].name, name) == 0)
-            fault->operations = choices[i].operations;
+    for (size_t i = 0; fault_operation_names[i]; i++)
+        if (strcmp(fault_operation_names[i], name) == 0)
+            fault->operations = fault_operation_sets[i];
     if (fault->operations != 0)
         return true;
     refuse(refusal, REFUSED_PARAMS, "operation: expected \"write\" (an erase or a program), \"erase\", \"program\" or \"read\"");
@@ -154,20 +133,14 @@ static bool read_kind(const json_t *params, struct fault *fault, struct refusal 
     return false;
 }
 
-static bool check_names(const json_t *params, const struct kind *kind, struct refusal *refusal)
+static bool check_names(const json_t *params, enum fault_kind kind, struct refusal *refusal)
 {
-    const char *names[16] = {"kind", "count", "skip", "probability", "after", "for"};
-    unsigned count = 6;
-    for (unsigned i = 0; i < 3 && kind->own[i]; i++)
-        names[count++] = kind->own[i];
-    if (kind->takes & UNIT)
-        names[count++] = "unit";
-    if (kind->takes & DIRECTION)
-        names[count++] = "direction";
-    if (kind->takes & DURATION)
-        names[count++] = "duration";
-    if (kind->takes & EVERY)
-        names[count++] = "every";
+    const char *names[16] = {"kind"};
+    unsigned count = 1;
+    for (const struct fault_parameter *common = fault_common_parameters; common->name; common++)
+        names[count++] = common->name;
+    for (const struct fault_parameter *own = fault_parameters(kind); own->name; own++)
+        names[count++] = own->name;
     names[count] = NULL;
     return params_known(params, names, refusal);
 }
@@ -215,9 +188,9 @@ static bool read_window(const struct sim *sim, const json_t *params, struct faul
     return true;
 }
 
-static bool read_interval(const json_t *params, unsigned takes, struct fault *fault, struct refusal *refusal)
+static bool read_interval(const json_t *params, struct fault *fault, struct refusal *refusal)
 {
-    if (!(takes & DURATION))
+    if (!fault_takes(fault->kind, "duration"))
         return true;
     bool given = json_object_get(params, "duration") != NULL;
     fault->ticks = DEVICE_NEVER;
@@ -240,13 +213,12 @@ static bool read_interval(const json_t *params, unsigned takes, struct fault *fa
 }
 
 /* Which unit, and which way: bytes of the host cannot be those of one unit. Without a unit: all of them. */
-static bool read_unit_and_direction(struct sim *sim, const json_t *params, unsigned takes, struct fault *fault,
-                                    struct refusal *refusal)
+static bool read_unit_and_direction(struct sim *sim, const json_t *params, struct fault *fault, struct refusal *refusal)
 {
-    static const char *const ways[] = {[FAULT_TO_UNITS] = "to_units", [FAULT_TO_HOST] = "to_master", [FAULT_BOTH] = "both"};
-    if ((takes & UNIT) && json_object_get(params, "unit") && !(fault->unit = (uint8_t)param_unit(sim, params, refusal)))
+    if (fault_takes(fault->kind, "unit") && json_object_get(params, "unit") &&
+        !(fault->unit = (uint8_t)param_unit(sim, params, refusal)))
         return false;
-    if (!(takes & DIRECTION))
+    if (!fault_takes(fault->kind, "direction"))
         return true;
     fault->direction = fault->unit > 0 ? FAULT_TO_HOST : FAULT_BOTH;
     if (!json_object_get(params, "direction"))
@@ -254,7 +226,7 @@ static bool read_unit_and_direction(struct sim *sim, const json_t *params, unsig
     const char *way = json_string_value(json_object_get(params, "direction"));
     fault->direction = 0;
     for (uint8_t i = FAULT_TO_UNITS; way && i <= FAULT_BOTH; i++)
-        if (strcmp(ways[i], way) == 0)
+        if (strcmp(fault_direction_names[i - FAULT_TO_UNITS], way) == 0)
             fault->direction = i;
     if (fault->direction == 0)
         refuse(refusal, REFUSED_PARAMS, "direction: expected \"to_units\", \"to_master\" or \"both\"");
@@ -273,10 +245,9 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
     struct fault fault = {0};
     if (!read_kind(params, &fault, refusal))
         return NULL;
-    const struct kind *kind = &kinds[fault.kind];
-    if (!check_names(params, kind, refusal) || !read_opportunities(params, &fault, refusal) ||
-        !read_window(sim, params, &fault, refusal) || !read_interval(params, kind->takes, &fault, refusal) ||
-        !read_unit_and_direction(sim, params, kind->takes, &fault, refusal) || !kind->read(params, &fault, refusal))
+    if (!check_names(params, fault.kind, refusal) || !read_opportunities(params, &fault, refusal) ||
+        !read_window(sim, params, &fault, refusal) || !read_interval(params, &fault, refusal) ||
+        !read_unit_and_direction(sim, params, &fault, refusal) || !readers[fault.kind](params, &fault, refusal))
         return NULL;
     if (fault.kind == FAULT_INPUT && !read_number(params, "input", 1, sim_device(sim)->inputs, -1, &fault, refusal))
         return NULL;
@@ -324,16 +295,10 @@ static const char *fault_state(const struct fault *fault, uint64_t now)
 
 static const char *fault_operation_name(const struct fault *fault)
 {
-    switch (fault->operations) {
-    case FAULT_READ:
-        return "read";
-    case FAULT_ERASE:
-        return "erase";
-    case FAULT_PROGRAM:
-        return "program";
-    default:
-        return "write";
-    }
+    unsigned i = 0;
+    while (fault_operation_names[i + 1u] && fault_operation_sets[i] != fault->operations)
+        i++;
+    return fault_operation_names[i];
 }
 
 /* What the kind has of its own. */
@@ -370,7 +335,6 @@ static void put_kind_members(json_t *object, const struct fault *fault)
 
 static json_t *fault_json(const struct sim *sim, const struct fault *fault)
 {
-    static const char *const ways[] = {NULL, "to_units", "to_master", "both"};
     json_t *object = json_object();
     put_member(object, "id", json_integer((json_int_t)fault->id));
     put_member(object, "kind", json_string(fault_kind_name((enum fault_kind)fault->kind)));
@@ -383,7 +347,7 @@ static json_t *fault_json(const struct sim *sim, const struct fault *fault)
     put_time(object, "until_us", fault->until);
     put_member(object, "unit", fault->unit > 0 ? json_string(sim->unit[fault->unit - 1u].name) : json_null());
     if (fault->direction != 0)
-        put_member(object, "direction", json_string(ways[fault->direction]));
+        put_member(object, "direction", json_string(fault_direction_names[fault->direction - FAULT_TO_UNITS]));
     if (fault->kind >= FAULT_POWER)
         put_time(object, "duration_us", fault->ticks);
     if (fault->kind >= FAULT_BREAK)
@@ -403,9 +367,17 @@ static json_t *command_fault_list(struct sim *sim, const json_t *params, struct 
     return json_pack("{s:o}", "faults", list);
 }
 
+static json_t *command_fault_kinds(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const names[] = {NULL};
+    (void)sim;
+    return params_known(params, names, refusal) ? fault_kinds_json() : NULL;
+}
+
 const struct command_method fault_methods[] = {
     {"fault.inject", command_fault_inject, true},
     {"fault.clear", command_fault_clear, true},
     {"fault.list", command_fault_list, false},
+    {"fault.kinds", command_fault_kinds, false},
     {NULL, NULL, false},
 };

@@ -266,6 +266,11 @@ struct device_kind {
      * no program. */
     size_t (*command_text)(const struct device_unit *unit, unsigned axis, char text[DEVICE_COMMAND_SIZE]);
 
+    /* The program of an axis: {first, commands}, the texts of its commands, the oldest first, and the place of that one from 1;
+     * those that follow have the next places, after place `program` comes 1. New reference; NULL: out of memory. Itself NULL: an
+     * axis has no program. */
+    json_t *(*program_of)(const struct device_unit *unit, unsigned axis);
+
     /* A text from `set` or from the key `program:`, for an axis (0: all), at the present us. Returns 0; or a flag from 1, and a
      * message; DEVICE_TEXT_OVERFLOWS: it is taken, and fills the memory. NULL: it takes no texts. */
     int (*set_text)(struct device_unit *unit, unsigned axis, const char *text, size_t length, char error[DEVICE_ERROR_SIZE]);

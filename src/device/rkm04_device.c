@@ -358,6 +358,11 @@ static json_t *describe(const struct device_unit *unit, uint64_t t_us)
     return rkm04_json_describe(core_of(unit), t_us);
 }
 
+static json_t *program_of(const struct device_unit *unit, unsigned motor)
+{
+    return rkm04_json_program(core_of(unit), motor);
+}
+
 static void begin_coverage(struct coverage *coverage, const struct device_config *config)
 {
     const struct rkm04_config settings = rkm04_settings(config);
@@ -407,6 +412,7 @@ const struct device_kind rkm04_device = {
     .axis = axis,
     .plan = plan,
     .command_text = command_text,
+    .program_of = program_of,
     .set_text = set_text,
     .check_text = check_text,
     .is_stuck = is_stuck,

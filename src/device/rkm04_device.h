@@ -24,6 +24,7 @@ struct rkm04_unit *rkm04_of(struct device_unit *unit);
 
 json_t *rkm04_json_state(const struct rkm04_unit *unit, uint64_t tick);
 json_t *rkm04_json_describe(const struct rkm04_unit *unit, uint64_t tick);
+json_t *rkm04_json_program(const struct rkm04_unit *unit, unsigned motor);
 
 /* What motor 1..4 of `unit` waits for, in words. Returns a new reference: a string, or JSON null if it waits for nothing; NULL:
  * out of memory. */

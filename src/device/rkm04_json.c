@@ -186,3 +186,15 @@ json_t *rkm04_json_describe(const struct rkm04_unit *unit, uint64_t tick)
     put(state, "counters", counters_json(unit));
     return state;
 }
+
+/* ---- The program ---------------------------------------------------------------------------------------------------- */
+
+json_t *rkm04_json_program(const struct rkm04_unit *unit, unsigned number)
+{
+    const struct rkm04_motor *motor = &unit->motor[number - 1];
+    uint64_t written = motor->program.written, oldest = written > RKM04_PROGRAM_MAX ? written - RKM04_PROGRAM_MAX : 0;
+    json_t *commands = json_array();
+    for (uint64_t at = oldest; at < written; at++)
+        json_array_append_new(commands, command_json(motor, (unsigned)place_of(at)));
+    return json_pack("{s:i, s:o}", "first", place_of(oldest), "commands", commands);
+}

@@ -212,6 +212,42 @@ START_TEST(U5_the_state_shows_what_is_in_flash)
 }
 END_TEST
 
+/* ---- The program ---------------------------------------------------------------------------------------------------- */
+
+START_TEST(C2_the_program_of_a_motor_is_told_with_the_place_of_its_first_command)
+{
+    ck_assert_str_eq(command("motor.program", "{\"motor\":2}"),
+                     "{\"commands\":[],\"first\":1,\"motor\":2,\"of\":700,\"t_us\":0}");
+    program("S100 V1000F5 R L17");
+    ck_assert_str_eq(command("motor.program", "{\"motor\":1}"),
+                     "{\"commands\":[\"S100\",\"V1000\",\"F5\",\"R\",\"L17\"],\"first\":1,\"motor\":1,\"of\":700,\"t_us\":0}");
+    ck_assert_str_eq(command("motor.program", "{\"motor\":0}"), "-32602 motor: expected a whole number from 1 to 4");
+    ck_assert_str_eq(command("motor.program", "{}"), "-32602 motor: expected a whole number from 1 to 4");
+    ck_assert_str_eq(command("motor.program", "{\"motor\":1,\"place\":1}"),
+                     "-32602 unknown parameter `place': expected motor, unit");
+}
+END_TEST
+
+/* The place of what is executed is found in the list, however often the ring has been filled. */
+START_TEST(C10_the_first_command_of_a_full_memory_is_the_oldest_one)
+{
+    for (unsigned i = 0; i < 800; i++) {
+        rkm04_set_command(rkm04_of(sim_core(&rig.sim, 1)), '1', i < 799 ? "T01" : "O05", 3, NULL); /* from 701 on: flag 3 */
+        run(2000);
+    }
+    ck_assert_str_eq(motor("command"), "\"O05\"");
+    struct refusal refusal;
+    json_t *params = json_pack("{s:i}", "motor", 1), *told = sim_command(&rig.sim, "motor.program", params, &refusal);
+    const json_t *commands = json_object_get(told, "commands");
+    long long first = json_integer_value(json_object_get(told, "first")), index = atoll(motor("index"));
+    ck_assert_uint_eq(json_array_size(commands), 700);
+    ck_assert_int_eq(first, 101);
+    ck_assert_str_eq(json_string_value(json_array_get(commands, (size_t)((index - first + 700) % 700))), "O05");
+    json_decref(params);
+    json_decref(told);
+}
+END_TEST
+
 /* ---- Inputs --------------------------------------------------------------------------------------------------------- */
 
 static const struct {
@@ -336,6 +372,8 @@ int main(void)
     tcase_add_test(seen, P7_a_request_that_waits_is_not_obeyed_by_looking);
     tcase_add_test(seen, the_state_shows_counter_and_true_position_side_by_side);
     tcase_add_test(seen, U5_the_state_shows_what_is_in_flash);
+    tcase_add_test(seen, C2_the_program_of_a_motor_is_told_with_the_place_of_its_first_command);
+    tcase_add_test(seen, C10_the_first_command_of_a_full_memory_is_the_oldest_one);
     tcase_add_checked_fixture(hands, setup, teardown);
     tcase_add_loop_test(hands, U2_inputs_are_set_one_or_several, 0, (int)COUNT(inputs_given));
     tcase_add_test(hands, inputs_not_named_stay);

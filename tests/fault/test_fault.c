@@ -298,6 +298,68 @@ START_TEST(a_wrong_fault_is_refused_with_what_was_expected)
 }
 END_TEST
 
+/* ---- What is told of kinds ------------------------------------------------------------------------------------------ */
+
+/* A value that a parameter takes. */
+static json_t *sample(const json_t *parameter)
+{
+    const char *type = json_string_value(json_object_get(parameter, "type"));
+    const json_t *choices = json_object_get(parameter, "choices");
+    ck_assert_ptr_nonnull(type);
+    if (strcmp(type, "choice") == 0) {
+        ck_assert_uint_gt(json_array_size(choices), 1);
+        return json_incref(json_array_get(choices, 1)); /* to_master: with a unit, too */
+    }
+    if (strcmp(type, "time") == 0)
+        return json_string(strcmp(json_string_value(json_object_get(parameter, "name")), "every") == 0 ? "2ms" : "1ms");
+    if (strcmp(type, "flag") == 0)
+        return json_true();
+    ck_assert(strcmp(type, "number") == 0 || strcmp(type, "unit") == 0);
+    return json_integer(1);
+}
+
+/* Is the fault refused with these of the kind's parameters? `but`: not that one; -1: all; `all` false: only what is required. */
+static bool is_refused(const json_t *kind, const json_t *common, int but, bool all)
+{
+    json_t *params = json_pack("{s:O}", "kind", json_object_get(kind, "kind"));
+    const json_t *lists[] = {json_object_get(kind, "parameters"), common};
+    struct refusal refusal;
+    for (unsigned list = 0; list < 2; list++)
+        for (size_t i = 0; i < json_array_size(lists[list]); i++) {
+            const json_t *parameter = json_array_get(lists[list], i);
+            if ((all || json_is_true(json_object_get(parameter, "required"))) && !(list == 0 && (int)i == but))
+                json_object_set_new(params, json_string_value(json_object_get(parameter, "name")), sample(parameter));
+        }
+    json_t *result = sim_command(&rig.sim, "fault.inject", params, &refusal);
+    bool refused_it = result == NULL;
+    json_decref(params);
+    json_decref(result);
+    return refused_it;
+}
+
+START_TEST(fault_kinds_tells_what_fault_inject_takes_and_requires)
+{
+    rig_begin(true, 2);
+    json_t *told = run_command("fault.kinds", "{}");
+    const json_t *kinds = json_object_get(told, "kinds"), *common = json_object_get(told, "common");
+    ck_assert_uint_eq(json_array_size(kinds), FAULT_KINDS);
+    ck_assert_uint_eq(json_array_size(common), 5);
+    for (size_t i = 0; i < FAULT_KINDS; i++) {
+        const json_t *kind = json_array_get(kinds, i), *parameters = json_object_get(kind, "parameters");
+        const char *name = json_string_value(json_object_get(kind, "kind"));
+        ck_assert_msg(!is_refused(kind, common, -1, true), "%s with all its parameters", name);
+        /* A break needs a duration or an end of its own. */
+        ck_assert_msg(is_refused(kind, common, -1, false) == (strcmp(name, "break") == 0), "%s with what is required", name);
+        for (size_t at = 0; at < json_array_size(parameters); at++)
+            if (json_is_true(json_object_get(json_array_get(parameters, at), "required")))
+                ck_assert_msg(is_refused(kind, common, (int)at, true), "%s without a required parameter", name);
+    }
+    ck_assert_str_eq(refused("fault.kinds", "{'kind': 'drop'}"), "-32602 unknown parameter `kind': expected none");
+    json_decref(told);
+    rig_end();
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("fault");
@@ -314,6 +376,7 @@ int main(void)
     tcase_add_test(list, all_times_move_along_when_a_snapshot_comes_back);
     tcase_add_test(list, a_snapshot_brings_faults_back_as_they_were);
     tcase_add_test(refusal, a_wrong_fault_is_refused_with_what_was_expected);
+    tcase_add_test(refusal, fault_kinds_tells_what_fault_inject_takes_and_requires);
     suite_add_tcase(suite, occasion);
     suite_add_tcase(suite, list);
     suite_add_tcase(suite, refusal);

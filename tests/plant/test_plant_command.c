@@ -31,10 +31,11 @@ START_TEST(plant_get_has_counter_and_true_position_side_by_side)
     ck_assert_command("plant.get", NULL,
                       "{\"plant\":{\"levels\":0,\"mask\":2,\"motors\":["
                       "{\"angle\":null,\"hold\":\"end_stop\",\"jammed\":false,\"lost\":15,\"missing_lead\":false,\"motor\":1,"
-                      "\"position\":60,\"true_position\":50},"
+                      "\"position\":60,\"stops\":{\"high\":50,\"low\":0},\"true_position\":50,\"turn\":null},"
                       "{\"angle\":13,\"hold\":null,\"jammed\":false,\"lost\":0,\"missing_lead\":false,\"motor\":3,"
-                      "\"position\":-7,\"true_position\":-7}],"
-                      "\"switches\":[{\"actuated\":false,\"bouncing\":false,\"input\":2,\"motor\":1}]},\"t_us\":1000000}");
+                      "\"position\":-7,\"stops\":{\"high\":null,\"low\":null},\"true_position\":-7,\"turn\":20}],"
+                      "\"switches\":[{\"actuated\":false,\"bouncing\":false,\"from\":null,\"input\":2,\"motor\":1,\"to\":4}]},"
+                      "\"t_us\":1000000}");
 }
 END_TEST
 
