@@ -66,37 +66,11 @@ static struct rkm04_instant after_way(struct rkm04_instant start, struct rkm04_p
 
 /* ---- Legs --------------------------------------------------------------------------------------------------------- */
 
-/* w of a speed given as 2 * speed^2 * 2^34. ramp->exact becomes false if it is irrational. */
-static struct rkm04_fixed w_of(struct rkm04_ramp *ramp, uint64_t speed2)
-{
-    uint64_t square = speed2 >> (RAMP_SPEED2_BITS + 1);
-    uint32_t speed = wide_root_of((uint32_t)square);
-    if (square << (RAMP_SPEED2_BITS + 1) == speed2 && (uint64_t)speed * speed == square)
-        return (struct rkm04_fixed){ramp_speed_unit(ramp) * (int64_t)speed, 0};
-    /* w = sqrt(step * speed2 / 2^34), with 64 places: sqrt(step * speed2 * 4^47). */
-    bool inexact;
-    struct wide root = wide_root(wide_product((uint64_t)ramp->step, speed2), 47, &inexact);
-    ramp->exact = ramp->exact && !inexact;
-    return (struct rkm04_fixed){(int64_t)root.high, root.low};
-}
-
 /* y of the part of a step in a place. */
 static struct rkm04_fixed y_of_part(const struct rkm04_ramp *ramp, struct rkm04_place place)
 {
     struct wide places = {place.high << 32 | place.low >> 32, place.low << 32};
     return fixed_sum(scaled((uint64_t)ramp->step, places), ROUND_UP);
-}
-
-static bool is_leg_open(const struct rkm04_profile *profile)
-{
-    return profile->endless && profile->leg + 1 == profile->count;
-}
-
-/* No pulse is left behind the present leg. */
-static bool is_last_leg(const struct rkm04_profile *profile)
-{
-    return !profile->endless &&
-           ramp_step_of(profile->point[profile->leg + 1].at) == ramp_step_of(profile->point[profile->count - 1].at);
 }
 
 /* y and w at ramp->at for a leg that began at `start` at `place` with speed w. */
@@ -135,13 +109,13 @@ static void compute_from_end(struct rkm04_ramp *ramp, struct rkm04_place place, 
     ramp->w = fixed_sum(fixed_sum(w_whole, scaled(2 * fall, places)), LAST_PLACE);
 }
 
-static void begin_pulses(struct rkm04_ramp *ramp, const struct rkm04_profile *profile)
+static void begin_pulses(struct rkm04_ramp *ramp)
 {
     ramp->block = ramp->sent = 0;
     if (ramp->left > 0)
         ramp_find_first(ramp);
     else
-        ramp->next = is_last_leg(profile) ? RKM04_NEVER : tick_from(ramp->end);
+        ramp->next = ramp->last ? RKM04_NEVER : tick_from(ramp->end);
 }
 
 /* How the leg's pulses are worked out. */
@@ -153,52 +127,41 @@ static void set_slope(struct rkm04_ramp *ramp, int32_t slope, struct rkm04_fixed
     ramp->fast = ramp_fast_from((uint32_t)size_of(slope), ramp->rate);
 }
 
-/* w at the end of a leg that begins with w. */
-static struct rkm04_fixed w_at_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_fixed w)
+/* How long the leg takes from `start`, and how many pulses it has. */
+static void set_end(struct rkm04_ramp *ramp, const struct ramp_leg *leg, struct rkm04_instant start)
 {
-    return is_leg_open(profile) ? w : w_of(ramp, profile->point[profile->leg + 1].speed2);
-}
-
-/* How long the leg takes from `start`, with speed w there and w_end at its end. */
-static void set_end(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_instant start,
-                    struct rkm04_fixed w, struct rkm04_fixed w_end)
-{
-    const struct rkm04_break *from = &profile->point[profile->leg], *to = from + 1;
-    if (is_leg_open(profile)) {
+    ramp->last = leg->last;
+    if (leg->open) {
         ramp->end.tick = RKM04_NEVER;
         ramp->left = UINT32_MAX;
         return;
     }
-    ramp->left = ramp_step_of(to->at) - ramp_step_of(from->at);
-    if (from->slope > 0)
-        ramp->end = after_slope(start, fixed_difference(w_end, w), (uint32_t)from->slope);
-    else if (from->slope < 0)
-        ramp->end = after_slope(start, fixed_difference(w, w_end), (uint32_t)-from->slope);
+    ramp->left = ramp_step_of(leg->to) - ramp_step_of(leg->from);
+    if (leg->slope > 0)
+        ramp->end = after_slope(start, fixed_difference(leg->w_end, leg->w), (uint32_t)leg->slope);
+    else if (leg->slope < 0)
+        ramp->end = after_slope(start, fixed_difference(leg->w, leg->w_end), (uint32_t)-leg->slope);
     else /* a speed that is no whole number is taken as higher: the end must not come before ramp->end */
-        ramp->end = after_way(start, from->at, to->at, (uint32_t)((w.whole - 1) / ramp_speed_unit(ramp)) + 1, ramp->rate);
+        ramp->end = after_way(start, leg->from, leg->to, (uint32_t)((leg->w.whole - 1) / ramp_speed_unit(ramp)) + 1, ramp->rate);
 }
 
-static void begin_leg(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_instant start)
+void ramp_begin_leg(struct rkm04_ramp *ramp, const struct ramp_leg *leg, struct rkm04_instant start)
 {
-    const struct rkm04_break *from = &profile->point[profile->leg];
-    struct rkm04_fixed w = w_of(ramp, from->speed2);
-    set_slope(ramp, from->slope, w);
+    set_slope(ramp, leg->slope, leg->w);
     ramp->at = tick_from(start);
-    struct rkm04_fixed w_end = w_at_end(ramp, profile, w);
-    set_end(ramp, profile, start, w, w_end);
-    if (from->slope < 0)
-        compute_from_end(ramp, from[1].at, w_end);
+    set_end(ramp, leg, start);
+    if (leg->slope < 0)
+        compute_from_end(ramp, leg->to, leg->w_end);
     else
-        compute_from_start(ramp, start, from->at, w);
-    begin_pulses(ramp, profile);
+        compute_from_start(ramp, start, leg->from, leg->w);
+    begin_pulses(ramp);
 }
 
-void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick, uint32_t rate)
+void ramp_set_rate(struct rkm04_ramp *ramp, uint32_t rate)
 {
     ramp->rate = rate;
     ramp->step = 2 * (int64_t)rate * rate;
     ramp->exact = true;
-    begin_leg(ramp, profile, (struct rkm04_instant){tick, 0, 0});
 }
 
 struct motion_state ramp_moved(const struct rkm04_ramp *ramp, int64_t d)
@@ -212,23 +175,6 @@ void ramp_state_at(const struct rkm04_ramp *ramp, uint64_t tick, struct rkm04_fi
     *y = then.y;
     y->whole -= ramp->step * ramp->sent;
     *w = then.w;
-}
-
-void ramp_continue(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick)
-{
-    struct rkm04_fixed y, w;
-    ramp_state_at(ramp, tick, &y, &w);
-    ramp->y = y;
-    ramp->w = w;
-    ramp->at = tick;
-    set_slope(ramp, profile->point[profile->leg].slope, w);
-    set_end(ramp, profile, (struct rkm04_instant){tick, 0, 0}, w, w_at_end(ramp, profile, w));
-    begin_pulses(ramp, profile);
-    while (ramp->left == 0 && ramp->next <= tick) { /* a speed that changes at once counts in this slot already */
-        struct rkm04_instant end = ramp->end;
-        profile->leg++;
-        begin_leg(ramp, profile, end);
-    }
 }
 
 uint64_t ramp_quiet_until(const struct rkm04_ramp *ramp)
@@ -257,24 +203,17 @@ uint64_t ramp_exact_tick(const struct rkm04_ramp *ramp, uint64_t tick, size_t j)
     return tick - (before.y.whole >= ramp->step * (int64_t)j);
 }
 
-size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t limit, uint64_t *tick, size_t room)
+size_t ramp_leg_ticks(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room)
 {
-    while (ramp->next <= limit) {
-        if (ramp->left == 0) {
-            struct rkm04_instant end = ramp->end;
-            profile->leg++;
-            begin_leg(ramp, profile, end);
-            continue;
-        }
-        size_t n = ramp_leg_pulses(ramp, limit, tick, room);
-        if (ramp->left == 0) {
-            if (is_leg_open(profile))
-                ramp->left = UINT32_MAX;
-            begin_pulses(ramp, profile);
-        }
-        return n;
+    if (ramp->next > limit)
+        return 0;
+    size_t n = ramp_leg_pulses(ramp, limit, tick, room);
+    if (ramp->left == 0) {
+        if (ramp->end.tick == RKM04_NEVER)
+            ramp->left = UINT32_MAX;
+        begin_pulses(ramp);
     }
-    return 0;
+    return n;
 }
 
 /* As motion_moved(), for a way of any length. */
@@ -311,4 +250,86 @@ uint32_t ramp_skip(struct rkm04_ramp *ramp, uint64_t limit, uint32_t most)
     ramp->left -= (uint32_t)leap.steps;
     ramp_find_first(ramp);
     return (uint32_t)leap.steps;
+}
+
+/* ---- Along a profile ------------------------------------------------------------------------------------------------ */
+
+/* w of a speed given as 2 * speed^2 * 2^34. ramp->exact becomes false if it is irrational. */
+static struct rkm04_fixed w_of(struct rkm04_ramp *ramp, uint64_t speed2)
+{
+    uint64_t square = speed2 >> (RAMP_SPEED2_BITS + 1);
+    uint32_t speed = wide_root_of((uint32_t)square);
+    if (square << (RAMP_SPEED2_BITS + 1) == speed2 && (uint64_t)speed * speed == square)
+        return (struct rkm04_fixed){ramp_speed_unit(ramp) * (int64_t)speed, 0};
+    /* w = sqrt(step * speed2 / 2^34), with 64 places: sqrt(step * speed2 * 4^47). */
+    bool inexact;
+    struct wide root = wide_root(wide_product((uint64_t)ramp->step, speed2), 47, &inexact);
+    ramp->exact = ramp->exact && !inexact;
+    return (struct rkm04_fixed){(int64_t)root.high, root.low};
+}
+
+static bool is_leg_open(const struct rkm04_profile *profile)
+{
+    return profile->endless && profile->leg + 1 == profile->count;
+}
+
+/* No pulse is left behind the present leg. */
+static bool is_last_leg(const struct rkm04_profile *profile)
+{
+    return !profile->endless &&
+           ramp_step_of(profile->point[profile->leg + 1].at) == ramp_step_of(profile->point[profile->count - 1].at);
+}
+
+/* The present leg of a profile. Its w_end is worked out where it has one. */
+static struct ramp_leg leg_of(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_fixed w)
+{
+    const struct rkm04_break *from = &profile->point[profile->leg];
+    struct ramp_leg leg = {.from = from->at, .w = w, .w_end = w, .slope = from->slope, .open = is_leg_open(profile)};
+    if (!leg.open) {
+        leg.to = from[1].at;
+        leg.w_end = w_of(ramp, from[1].speed2);
+        leg.last = is_last_leg(profile);
+    }
+    return leg;
+}
+
+static void begin_leg(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, struct rkm04_instant start)
+{
+    const struct ramp_leg leg = leg_of(ramp, profile, w_of(ramp, profile->point[profile->leg].speed2));
+    ramp_begin_leg(ramp, &leg, start);
+}
+
+static void next_leg(struct rkm04_ramp *ramp, struct rkm04_profile *profile)
+{
+    const struct rkm04_instant end = ramp->end;
+    profile->leg++;
+    begin_leg(ramp, profile, end);
+}
+
+void ramp_begin(struct rkm04_ramp *ramp, const struct rkm04_profile *profile, uint64_t tick, uint32_t rate)
+{
+    ramp_set_rate(ramp, rate);
+    begin_leg(ramp, profile, (struct rkm04_instant){tick, 0, 0});
+}
+
+void ramp_continue(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t tick)
+{
+    struct rkm04_fixed y, w;
+    ramp_state_at(ramp, tick, &y, &w);
+    ramp->y = y;
+    ramp->w = w;
+    ramp->at = tick;
+    const struct ramp_leg leg = leg_of(ramp, profile, w);
+    set_slope(ramp, leg.slope, w);
+    set_end(ramp, &leg, (struct rkm04_instant){tick, 0, 0});
+    begin_pulses(ramp);
+    while (ramp_leg_is_over(ramp, tick)) /* a speed that changes at once counts in this slot already */
+        next_leg(ramp, profile);
+}
+
+size_t ramp_pulses(struct rkm04_ramp *ramp, struct rkm04_profile *profile, uint64_t limit, uint64_t *tick, size_t room)
+{
+    while (ramp->left == 0 && ramp->next <= limit)
+        next_leg(ramp, profile);
+    return ramp_leg_ticks(ramp, limit, tick, room);
 }

@@ -71,16 +71,18 @@ void ramp_find_first(struct rkm04_ramp *ramp)
 
 #define BLOCK 64u
 
-/* The first 32 binary places of rest / v, and 2^-32 more at the most; rest < v < 2^16. */
+/* The first 32 binary places of rest / v, and 2^-32 more at the most; rest < v. */
 static uint32_t places_of(uint32_t rest, uint32_t v)
 {
+    if (v >> 16)
+        return (uint32_t)(((uint64_t)rest << 32) / v) + 1;
     uint32_t high = (rest << 16) / v; /* two digits of 16 bits */
     return (high << 16) + (((rest << 16) - high * v) << 16) / v + 1;
 }
 
 /* Speed v in whole steps/s. With y = 2 * rate * phase, and a rest that stays, pulse i of a block is due
  * ceil((rate * i - phase) / v) ticks on. That is a multiple of 1/v: 32 binary places, less than 1/v too much in all, give it
- * exactly. All divisions are of 32 bits. */
+ * exactly. All divisions are of 32 bits below 2^16 steps/s. */
 static size_t level_block(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room)
 {
     const uint32_t v = ramp->level, rate = ramp->rate, period = rate / v, reach = BLOCK * (period + 1);

@@ -76,6 +76,7 @@ struct rkm04_ramp {
     uint64_t fast;            /* on a slope: w from which its pulses are worked out in blocks */
     uint64_t due, due1, due2, due3; /* of a block: when the pulse after the next one is due, and differences (ramp_pulses.c) */
     uint8_t block, sent;      /* pulses of the block, and how many of them are out; 0: none under way */
+    bool last;                /* no pulse is left behind the present leg */
     bool exact;               /* no irrational number has come in so far (R5) */
     uint32_t rate;            /* ticks a second */
     int64_t step;             /* y of one step: 2 * rate^2 */
