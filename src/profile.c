@@ -476,6 +476,23 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
 
 /* ---- Any goal from any state ------------------------------------------------------------------------------------------ */
 
+/* The way ends `early` steps before the place, and a second segment at the start speed leads there; or it ends behind the
+ * place. */
+static void set_early(struct rkm04_motion *motion, int8_t early)
+{
+    struct rkm04_segment *segment = motion->segment;
+    if (early < 0) {
+        motion->total += (uint32_t)-early;
+        segment[0].steps = motion->total;
+        return;
+    }
+    segment[1] = segment[0];
+    segment[1].speed = slower(segment[0].speed, motion->start_speed);
+    segment[1].steps = (uint32_t)lower(size_of(early), motion->total);
+    segment[0].steps = motion->total - segment[1].steps;
+    motion->segments = 2;
+}
+
 /* One segment without places yet, of the goal's speeds. */
 static void set_goal(struct rkm04_motion *motion, const struct profile_goal *goal)
 {
@@ -488,6 +505,8 @@ static void set_goal(struct rkm04_motion *motion, const struct profile_goal *goa
     motion->total = (uint32_t)size_of(goal->way); /* counts in a motion of steps only */
     motion->segment[0].steps = motion->total;
     motion->profile.count = motion->profile.leg = 0;
+    if (goal->kind == PROFILE_TO_PLACE && goal->early != 0)
+        set_early(motion, goal->early);
 }
 
 static enum profile_answer start_from_rest(struct rkm04_motion *motion, uint64_t tick, uint32_t rate,
@@ -530,6 +549,7 @@ enum profile_answer profile_go(struct rkm04_motion *motion, uint64_t tick, uint3
             return goal->kind == PROFILE_TO_STOP ? PROFILE_MOVES : PROFILE_TURNS;
         return start_from_rest(motion, tick, rate, goal);
     }
+    state.segment = segment_at(motion, state.at);
     plan_from(motion, state);
     ramp_continue(&motion->ramp, &motion->profile, tick);
     return PROFILE_MOVES;

@@ -28,6 +28,9 @@ struct profile_goal {
     int32_t speed;        /* steps/s: TO_PLACE > 0; FOR_EVER: forward > 0, back < 0 */
     uint16_t start_speed; /* of a motion from rest, and of a stop; RKM04_SPEED_MAX: no ramps */
     uint16_t acceleration, deceleration; /* steps/s^2 */
+    int8_t early; /* TO_PLACE: the braking ends that many steps before the place, and the rest is done at start_speed, or at the
+                   * speed if that is lower; < 0: it is planned to end behind the place, where the caller cuts it. What can be
+                   * reached is asked of the place itself */
 };
 
 enum profile_answer {
