@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "modbus_rtu.h"
+#include "modbus/modbus.h"
 
 static const uint8_t single[] = {0x01, 0x06, 0x00, 0x00, 0x01, 0x20, 0x89, 0x82};
 static const uint8_t block[] = {0x01, 0x10, 0x00, 0x01, 0x00, 0x03, 0x06, 0x61, 0x03, 0x07, 0xD0, 0x00, 0x64, 0xFA, 0x52};
@@ -91,8 +91,8 @@ END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("modbus_rtu");
-    TCase *one = tcase_create("modbus_rtu");
+    Suite *suite = suite_create("modbus");
+    TCase *one = tcase_create("modbus");
     tcase_add_test(one, check_value);
     tcase_add_test(one, shortest_and_longest_frame);
     tcase_add_test(one, length_of_requests);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* modbus_rtu.h: frames of Modbus RTU (MODBUS over Serial Line 1.02): check value, length, words, exceptions.
+/* modbus.h: frames of Modbus RTU (MODBUS over Serial Line 1.02): check value, length, words, exceptions.
  *
  * A frame is address, function, data, check value (low byte first); words in it have their high byte first. When a frame is over,
  * and what its registers mean, is the device's business. */
-#ifndef RKM04_SRC_MODBUS_RTU_H
-#define RKM04_SRC_MODBUS_RTU_H
+#ifndef RKM04_MODBUS_MODBUS_H
+#define RKM04_MODBUS_MODBUS_H
 
 #include <stdbool.h>
 #include <stddef.h>

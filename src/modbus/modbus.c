@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "modbus_rtu.h"
+#include "modbus.h"
 
 #define READ_AND_SINGLE 8u /* bytes of a request: address, function, two words, check value */
 #define BLOCK_HEAD 7u      /* bytes before the data of functions 15 and 16; the last one counts the data */
