@@ -305,6 +305,11 @@ class Bus:
     # ---- Units ----
 
     @property
+    def device(self) -> Dict[str, Any]:
+        """What the units are: `name`, how many `axes`, `inputs`, `outputs`, …"""
+        return self.call("device")
+
+    @property
     def units(self) -> List[Unit]:
         """All units, in the order in which they were given."""
         if self._names is None:

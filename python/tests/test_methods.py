@@ -13,6 +13,7 @@ CONTROL = pathlib.Path(__file__).resolve().parents[2] / "docs" / "CONTROL.md"
 
 COUNTERPARTS = {
     "units": rkm04.Bus.units,
+    "device": rkm04.Bus.device,
     "ready": rkm04.Bus.ready,
     "state": rkm04.Unit.state,
     "motor.program": Motor.commands,

@@ -185,8 +185,26 @@ static json_t *command_units(struct sim *sim, const json_t *params, struct refus
                      readings);
 }
 
+/* What the units are: numbers that a client cannot know beforehand. */
+static json_t *command_device(struct sim *sim, const json_t *params, struct refusal *refusal)
+{
+    static const char *const none[] = {NULL};
+    const struct device_kind *kind = sim_device(sim);
+    if (!params_known(params, none, refusal))
+        return NULL;
+    json_t *methods = json_array();
+    for (const struct device_method *method = kind->methods; method && method->name; method++)
+        json_array_append_new(methods, json_string(method->name));
+    return json_pack("{s:I, s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "t_us", (json_int_t)sim_now(sim), "name",
+                     kind->name, "description", kind->description, "axes", (int)kind->axes, "inputs", (int)kind->inputs,
+                     "outputs", (int)kind->outputs, "variables", (int)kind->variables, "first_variable",
+                     (int)kind->first_variable, "addresses", (int)kind->addresses, "program", (int)kind->program, "methods",
+                     methods);
+}
+
 const struct command_method unit_methods[] = {
     {"units", command_units, false},
+    {"device", command_device, false},
     {"state", command_state, false},
     {"motor.program", command_motor_program, false},
     {"di.set", command_di_set, true},

@@ -199,7 +199,8 @@ static void on_ended(void *context)
     page_send(page, json_pack("{s:s}", "event", "uncalled")); /* what has not been answered will not be */
 }
 
-static bool is_allowed(const char *method)
+/* Methods with which a page works, and those that the device brings along. */
+static bool is_allowed(const struct window *window, const char *method)
 {
     static const char *const methods[] = {
         "units", "state", "ready", "motor.program", "di.set", "reset", "power", "switch", "clock", "advance", "trace.start",
@@ -208,7 +209,7 @@ static bool is_allowed(const char *method)
     for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
         if (strcmp(methods[i], method) == 0)
             return true;
-    return false;
+    return window_watch_has_method(&window->watch, method);
 }
 
 /* Files of the emulator for this window lie in its folder. Returns false if that is not possible: refused. */
@@ -240,7 +241,7 @@ static void do_call(struct page *page, json_t *request)
     char trouble[256] = "no emulator is chosen";
     const char *method = read_string(page, request, "method");
     json_t *params = json_deep_copy(json_object_get(request, "params"));
-    if (method == NULL || (params != NULL && !json_is_object(params)) || !is_allowed(method)) {
+    if (method == NULL || (params != NULL && !json_is_object(params)) || !is_allowed(window, method)) {
         if (method != NULL)
             page_refuse(page, request, "unknown method, or params that are no object");
         json_decref(params);

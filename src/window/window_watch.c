@@ -12,7 +12,7 @@
 #define HEARTBEAT_MS 1000u
 #define MESSAGES_MAX 20u  /* of the bus, sent in one round */
 
-enum { ID_UNITS = 1, ID_READY, ID_SUBSCRIBE, ID_STATE = 100 };
+enum { ID_UNITS = 1, ID_READY, ID_DEVICE, ID_SUBSCRIBE, ID_STATE = 100 };
 
 static void on_timer(uv_timer_t *timer);
 
@@ -34,9 +34,10 @@ json_t *window_watch_json(const struct window_watch *watch)
     json_t *units = json_array(), *path = json_string(watch->path), *trouble = json_string(watch->trouble);
     for (unsigned i = 0; i < watch->count; i++)
         json_array_append_new(units, json_string(watch->units[i]));
-    return json_pack("{s:s, s:o, s:i, s:o, s:b, s:o, s:O?}", "event", "emulator", "control", path != NULL ? path : json_null(),
-                     "bus", watch->bus, "units", units, "connected", watch->control != NULL && watch->count > 0, "trouble",
-                     trouble != NULL ? trouble : json_null(), "ready", watch->about);
+    return json_pack("{s:s, s:o, s:i, s:o, s:b, s:o, s:O?, s:O?}", "event", "emulator", "control",
+                     path != NULL ? path : json_null(), "bus", watch->bus, "units", units, "connected",
+                     watch->control != NULL && watch->count > 0, "trouble", trouble != NULL ? trouble : json_null(), "ready",
+                     watch->about, "device", watch->device);
 }
 
 static bool is_watched(const struct pages *pages)
@@ -135,6 +136,10 @@ static void take_object(struct window_watch *watch, const char *line)
         pages_send(watch->pages, window_watch_json(watch));
         schedule(watch);
         break;
+    case ID_DEVICE:
+        json_decref(watch->device);
+        watch->device = json_incref(result);
+        break;
     case ID_READY:
         json_decref(watch->about);
         watch->about = json_incref(result);
@@ -200,6 +205,7 @@ static void connect_watch(struct window_watch *watch)
     watch->moving = false;
     watch->news = true;
     ask(watch, ID_READY, "ready", NULL);
+    ask(watch, ID_DEVICE, "device", NULL);
     ask(watch, ID_UNITS, "units", NULL);
     ask(watch, ID_SUBSCRIBE, "subscribe", json_pack("{s:o}", "kinds", list));
 }
@@ -225,11 +231,28 @@ static void on_timer(uv_timer_t *timer)
         ask_states(watch);
 }
 
+/* What is known of the emulator. */
+static void forget(struct window_watch *watch)
+{
+    json_decref(watch->about);
+    json_decref(watch->device);
+    watch->about = watch->device = NULL;
+}
+
+bool window_watch_has_method(const struct window_watch *watch, const char *method)
+{
+    size_t i;
+    json_t *name;
+    json_array_foreach(json_object_get(watch->device, "methods"), i, name)
+        if (json_is_string(name) && strcmp(json_string_value(name), method) == 0)
+            return true;
+    return false;
+}
+
 void window_watch_choose(struct window_watch *watch, const char *path, int bus)
 {
     disconnect(watch);
-    json_decref(watch->about);
-    watch->about = NULL;
+    forget(watch);
     watch->trouble[0] = '\0';
     watch->bus = bus;
     snprintf(watch->path, sizeof watch->path, "%s", path != NULL ? path : "");
@@ -265,6 +288,5 @@ void window_watch_end(struct window_watch *watch)
 {
     disconnect(watch);
     watch->path[0] = '\0';
-    json_decref(watch->about);
-    watch->about = NULL;
+    forget(watch);
 }

@@ -26,6 +26,7 @@ struct window_watch {
     unsigned count;
     uint64_t sums[WATCH_UNITS_MAX]; /* of what the pages know */
     json_t *about;       /* result of `ready`; NULL: not known */
+    json_t *device;      /* result of `device`; NULL: not known */
     unsigned asked;      /* states that have not been answered */
     bool moving, news;
     unsigned messages;   /* of the bus, sent since the last round */
@@ -42,7 +43,10 @@ void window_watch_choose(struct window_watch *watch, const char *path, int bus);
 /* Pages have come, gone, begun or ended to watch. */
 void window_watch_pages_changed(struct window_watch *watch);
 
-/* What pages get: {"event": "emulator", "control", "bus", "units", "connected", "trouble"}. New reference. */
+/* Has the device of the units a method of its own with this name? */
+bool window_watch_has_method(const struct window_watch *watch, const char *method);
+
+/* What pages get: {"event": "emulator", "control", "bus", "units", "connected", "trouble", "ready", "device"}. New reference. */
 json_t *window_watch_json(const struct window_watch *watch);
 
 #endif

@@ -24,7 +24,12 @@ open_window() {
 # drive CASE: with an emulator and the window.
 drive() {
     serve bus
-    open_window -c "$folder/bus.control"
+    drive_with "$1" "$folder/bus.control"
+}
+
+# drive_with CASE CONTROL: with the window for the emulator with this control socket.
+drive_with() {
+    open_window -c "$2"
     HOME=$folder exits 0 timeout 200 node "$drive" "$1" "$address" "$folder" ${PICTURES-}
     [[ -z $said ]] || printf '  %s\n' "$said"
 }
@@ -32,6 +37,15 @@ drive() {
 test_the_service_view_sends_each_message() { drive service; }
 test_the_editor_marks_explains_formats_opens_and_saves() { drive editor; }
 test_each_control_of_the_panel_acts() { drive panel; }
+test_a_program_is_listed_with_the_present_command_in_it() { drive listing; }
+test_axes_are_drawn_and_dragged_between_their_stops() { drive axes; }
+test_faults_of_flash_and_power_are_injected_by_the_form() { drive faults; }
+test_several_buses_are_shown_one_at_a_time() {
+    start bus "$RKM04" serve --lines 2 --node 1,2 --link "$folder/bus%l" --control "$folder/control"
+    soon "the units are ready" ready bus
+    drive_with buses "$folder/control"
+}
+test_the_language_changes_what_is_in_the_logs() { drive language; }
 test_two_pages_show_the_same() { drive pages; }
 test_everything_works_with_the_keyboard_alone() { drive keyboard; }
 test_both_languages_and_themes_are_accessible_at_three_sizes() { drive looks; }

@@ -2,7 +2,8 @@
 // Messages of the unit (specification section 3) as words. What a unit sends is text, whatever it looks like.
 import { word } from "./words.js";
 
-export const messages = ["Version", "Set Command", "Store Flash", "Get Position", "Get Command", "Get Tabul Run", "Get Pozic Run"];
+export const messages = ["Version", "Set Command", "Store Flash", "Get Position", "Get Command", "Get Tabul Run",
+  "Get Pozic Run"];
 
 export const fromHex = (hex) => Uint8Array.from((hex ?? "").match(/../g) ?? [], (pair) => parseInt(pair, 16));
 export const toHex = (bytes) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");

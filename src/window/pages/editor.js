@@ -98,7 +98,8 @@ export async function check() {
   known = {
     text,
     commands: answer.commands.map(([offset, length, words]) => [place(offset), place(offset + length), words]),
-    diagnostics: answer.diagnostics.map((one) => ({ ...one, from: place(one.offset), to: place(one.offset + Math.max(1, one.length)) })),
+    diagnostics: answer.diagnostics.map((one) => ({ ...one, from: place(one.offset),
+      to: place(one.offset + Math.max(1, one.length)) })),
   };
   paint();
   showDiagnostics(answer);

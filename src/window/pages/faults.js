@@ -1,67 +1,56 @@
 // SPDX-License-Identifier: MIT
-// Injected faults: a form made out of their descriptions (docs/CONTROL.md), and the list of those there are.
+// Injected faults: a form made out of what `fault.kinds` of the control socket tells, and the list of those there are.
 import { call } from "./link.js";
 import { word } from "./words.js";
+import { make } from "./make.js";
 
 const $ = (id) => document.getElementById(id);
-const directions = ["", "to_units", "to_master", "both"];
-const operations = ["", "write", "erase", "program", "read"];
-const common = ["count", "skip", "probability", "after", "for"];
+let told = { kinds: [], common: [] };
 
-// Kind: its parameters; those with ! are required.
-export const kinds = {
-  drop: ["direction", "unit"], flip: ["mask", "direction", "unit"], duplicate: ["direction", "unit"],
-  insert: ["byte", "direction", "unit"], delay: ["delay!", "unit"], no_answer: ["unit"], wrong_fcs: ["unit"],
-  cut: ["bytes!", "unit"], echo: [], break: ["duration", "every"], unplugged: ["duration", "every"],
-  cable: ["duration", "every", "unit"], flash: ["operation", "torn", "unit"], power: ["operation", "duration", "unit"],
-  input: ["input!", "level!", "duration", "every", "unit"],
-};
-const times = new Set(["delay", "duration", "every", "after", "for"]);
-
-function makeField(parameter, kind, units) {
-  const name = parameter.replace("!", ""), choices = name === "direction" ? directions : name === "unit" ? ["", ...units]
-    : name === "operation" && kind === "flash" ? operations : name === "torn" ? ["", "true", "false"]
-    : name === "level" ? ["0", "1"] : null;
-  const label = document.createElement("label");
-  const field = document.createElement(choices ? "select" : "input");
+function makeField({ name, type, required, choices }, units) {
+  const list = choices ?? { unit: units, flag: ["1", "0"] }[type] ?? null;
+  const field = document.createElement(list ? "select" : "input");
   field.name = name;
-  field.required = parameter.endsWith("!");
-  if (choices)
-    field.append(...choices.map((choice) => new Option(choice)));
-  else
-    field.placeholder = times.has(name) ? "10ms" : name === "probability" ? "0.1" : "";
-  if (!choices)
+  field.required = required;
+  field.dataset.type = type;
+  if (list)
+    field.append(...[...(required ? [] : [""]), ...list].map((choice) => new Option(choice)));
+  else {
+    field.placeholder = type === "time" ? "10ms" : name === "probability" ? "0.1" : "";
     field.size = 6;
-  label.append(name + " ", field);
-  return label;
+  }
+  return make("label", {}, name + " ", field);
 }
 
 function readFields(form) {
   const params = {};
   for (const field of form.elements) {
-    if (!field.name || field.value === "")
+    const text = field.value.trim(), { type } = field.dataset;
+    if (!field.name || text === "")
       continue;
-    const text = field.value.trim();
-    params[field.name] = field.name !== "unit" && /^-?\d+(\.\d+)?$/.test(text) ? Number(text)
-      : text === "true" || text === "false" ? text === "true" : text;
+    params[field.name] = ["number", "time", "flag"].includes(type) && /^-?\d+(\.\d+)?$/.test(text) ? Number(text) : text;
   }
   return params;
 }
 
+// Asks what faults there are; then the form can be shown.
+export async function readKinds() {
+  const answer = await call("fault.kinds");
+  if (answer.kinds)
+    told = answer;
+}
+
 export function showFaultForm(act, units) {
-  const form = $("fault");
-  const chosen = form.elements.kind?.value ?? "drop";
-  const kind = document.createElement("select"), label = document.createElement("label"), button = document.createElement("button");
-  kind.name = "kind";
-  kind.append(...Object.keys(kinds).map((one) => new Option(one, one, false, one === chosen)));
-  kind.onchange = () => {
+  const form = $("fault"), names = told.kinds.map((one) => one.kind);
+  const chosen = form.elements.kind?.value || names[0], kind = told.kinds.find((one) => one.kind === chosen);
+  const choice = make("select", { name: "kind", "aria-label": word("faults") });
+  choice.append(...names.map((one) => new Option(one, one, false, one === chosen)));
+  choice.onchange = () => {
     showFaultForm(act, units);
     form.elements.kind.focus();
   };
-  label.append(kind);
-  kind.setAttribute("aria-label", word("faults"));
-  button.textContent = word("inject");
-  form.replaceChildren(label, ...[...kinds[chosen], ...common].map((one) => makeField(one, chosen, units())), button);
+  const fields = [...(kind?.parameters ?? []), ...told.common].map((one) => makeField(one, units()));
+  form.replaceChildren(make("label", {}, choice), ...fields, make("button", {}, word("inject")));
   form.onsubmit = async (event) => {
     event.preventDefault();
     await act("fault.inject", readFields(form));
@@ -72,16 +61,13 @@ export function showFaultForm(act, units) {
 export async function showFaults(act) {
   const answer = await call("fault.list");
   const items = (answer.faults ?? []).map((fault) => {
-    const item = document.createElement("li"), button = document.createElement("button"), text = document.createElement("span");
     const shown = Object.entries(fault).filter(([name, value]) => value !== null && !["id", "kind", "state"].includes(name));
-    text.textContent = `${fault.id} ${fault.kind}: ${fault.state}, ${shown.map(([name, value]) => `${name}=${value}`).join(" ")}`;
-    button.textContent = `${word("clearone")} ${fault.id}`;
-    button.onclick = async () => {
+    const text = `${fault.id} ${fault.kind}: ${fault.state}, ${shown.map(([name, value]) => `${name}=${value}`).join(" ")}`;
+    const clear = async () => {
       await act("fault.clear", { id: fault.id });
       showFaults(act);
     };
-    item.append(button, text);
-    return item;
+    return make("li", {}, make("button", { onclick: clear }, `${word("clearone")} ${fault.id}`), make("span", {}, text));
   });
   $("faults").replaceChildren(...items);
 }

@@ -10,7 +10,11 @@ const $ = (id) => document.getElementById(id);
 const tabs = ["service", "panel"];
 
 const remembered = (name) => { try { return localStorage.getItem(name); } catch { return null; } };
-const remember = (name, value) => { try { localStorage.setItem(name, value); } catch { /* not allowed: the page works without */ } };
+function remember(name, value) {
+  try {
+    localStorage.setItem(name, value);
+  } catch { /* not allowed: the page works without */ }
+}
 
 function showTab(name) {
   for (const tab of tabs) {
@@ -45,7 +49,7 @@ showTheme();
 
 function showLanguage() {
   setLanguage($("language").value);
-  service.showChoices();
+  service.showWords();
   panel.showWords();
 }
 $("language").value = remembered("language") ?? (navigator.language.startsWith("cs") ? "cs" : "en");
@@ -58,7 +62,8 @@ $("language").onchange = async () => {
 showLanguage();
 
 document.addEventListener("keydown", (event) => {
-  const name = (event.ctrlKey ? "Control+" : "") + (event.altKey ? "Alt+" : "") + (event.key.length === 1 ? event.key.toLowerCase() : event.key);
+  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+  const name = (event.ctrlKey ? "Control+" : "") + (event.altKey ? "Alt+" : "") + key;
   if (service.keys[name] && !event.shiftKey && !event.metaKey) {
     event.preventDefault();
     service.keys[name]();

@@ -4,13 +4,15 @@ import { ask, call, on } from "./link.js";
 import { word } from "./words.js";
 import { UnitView } from "./unit.js";
 import { describeAnswer, describeRequest, fromHex } from "./decode.js";
-import { showFaultForm, showFaults } from "./faults.js";
+import { readKinds, showFaultForm, showFaults } from "./faults.js";
+import { make, write } from "./make.js";
 
 const $ = (id) => document.getElementById(id);
 const LINES_MAX = 500;
 const STEPS = ["1ms", "10ms", "100ms", "1s"];
 const views = new Map();
 let emulator = { control: "", units: [], connected: false };
+const events = [];
 let found = [];
 let visible = false;
 let trace = null;
@@ -33,8 +35,10 @@ function showEmulators() {
     : emulator.control && !emulator.connected && emulator.trouble ? `${word("ended")} ${emulator.trouble}` : "";
 }
 
+const identity = ({ control, bus, units, device }) => [control, bus, units.join(), device?.name].join("\n");
+
 function showEmulator(now) {
-  const changed = now.control !== emulator.control || now.bus !== emulator.bus || now.units.join() !== emulator.units.join();
+  const changed = identity(now) !== identity(emulator);
   emulator = now;
   showEmulators();
   $("inside").hidden = !now.connected;
@@ -42,13 +46,15 @@ function showEmulator(now) {
     views.clear();
     $("units").replaceChildren();
     for (const name of now.units) {
-      const view = new UnitView(name, act);
+      const view = new UnitView(name, now.device, act);
       views.set(name, view);
       $("units").append(view.element);
     }
   }
-  if (now.connected)
-    showFaults(act);
+  if (!now.connected)
+    return;
+  readKinds().then(() => showFaultForm(act, () => emulator.units));
+  showFaults(act);
 }
 
 $("emulator").onsubmit = (event) => {
@@ -153,14 +159,15 @@ function describe(event) {
   return `${from} ${word(event.answer ? "answer" : "ask")} ${event.snode}→${event.dnode}: ${words}${wrong ? ` (${wrong})` : ""}`;
 }
 
+const say = (bus) => `${(bus.t_us / 1e6).toFixed(6)} ${describe(bus)}`;
+
 function addEvent({ bus }) {
-  const line = document.createElement("p");
-  line.textContent = `${(bus.t_us / 1e6).toFixed(6)} ${describe(bus)}`;
-  line.className = bus.dropped || bus.refused || bus.kind !== "message" ? "wrong" : "";
+  const element = make("p", { class: bus.dropped || bus.refused || bus.kind !== "message" ? "wrong" : "" }, say(bus));
   const log = $("dialogue"), atEnd = log.scrollTop + log.clientHeight > log.scrollHeight - 20;
-  log.append(line);
-  if (log.children.length > LINES_MAX)
-    log.firstChild.remove();
+  events.push({ bus, element });
+  log.append(element);
+  if (events.length > LINES_MAX)
+    events.shift().element.remove();
   if (atEnd)
     log.scrollTop = log.scrollHeight;
   if (bus.kind === "injected")
@@ -176,6 +183,8 @@ export function showWords() {
   showFaultForm(act, () => emulator.units);
   for (const view of views.values())
     view.build();
+  for (const { bus, element } of events)
+    write(element, say(bus));
   showEmulators();
 }
 

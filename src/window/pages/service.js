@@ -4,6 +4,7 @@ import { ask, on, tell } from "./link.js";
 import { word } from "./words.js";
 import { check, saveText } from "./editor.js";
 import { Graph, drawProfile } from "./graph.js";
+import { make } from "./make.js";
 import { describeAnswer, describeRequest, fromHex, messages, readPositions, readTable, spaced, text, toHex } from "./decode.js";
 
 const $ = (id) => document.getElementById(id);
@@ -13,19 +14,20 @@ const entries = [];
 const graph = new Graph($("positions-graph"));
 let open = null;
 let polling = 0;
-let profile = [];
+let profile = null; // none has been asked for
+let profileText = "";
 
-function fill(select, from, to, chosen) {
+function addNumbers(select, from, to, chosen) {
   for (let number = from; number <= to; number++)
     select.append(new Option(String(number), String(number), false, number === chosen));
 }
 
-fill($("node"), 0, 16, 1);
-fill($("motor"), 0, 4, 1);
+addNumbers($("node"), 0, 16, 1);
+addNumbers($("motor"), 0, 4, 1);
 messages.forEach((name, at) => $("message").append(new Option(`${at + 1} ${name}`, String(at + 1), false, at === 1)));
 $("message").append(new Option("Raw", String(RAW)));
-$("positions-head").append(...[1, 2, 3, 4].map((motor) => Object.assign(document.createElement("th"), { scope: "col", textContent: motor })));
-$("positions").append(...[1, 2, 3, 4].map(() => Object.assign(document.createElement("td"), { textContent: "–" })));
+$("positions-head").append(...[1, 2, 3, 4].map((motor) => make("th", { scope: "col" }, String(motor))));
+$("positions").append(...[1, 2, 3, 4].map(() => make("td", {}, "–")));
 
 export function say(message, wrong = false) {
   $("status").textContent = message;
@@ -39,34 +41,40 @@ function show(entry) {
   entry.element.hidden = wanted !== "" && !entry.element.textContent.toLowerCase().includes(wanted);
 }
 
-function addEntry(head, raw, wrong) {
-  const element = document.createElement("p");
-  element.className = wrong ? "wrong" : "";
-  element.append(head);
-  if (raw) {
-    const line = document.createElement("span");
-    line.className = "raw";
-    line.textContent = "\n" + raw;
-    element.append(line);
-  }
-  const entry = { element };
-  entries.push(entry);
+// Its words, in the present language.
+function fill(entry) {
+  const { head, raw } = entry.say();
+  entry.element.replaceChildren(head, ...(raw ? [make("span", { class: "raw" }, "\n" + raw)] : []));
   show(entry);
+}
+
+// `say` gives {head, raw}.
+function addEntry(say, wrong) {
+  const entry = { element: make("p", { class: wrong ? "wrong" : "" }), say };
+  entries.push(entry);
+  fill(entry);
   const log = $("answers"), atEnd = log.scrollTop + log.clientHeight > log.scrollHeight - 20;
-  log.append(element);
+  log.append(entry.element);
   if (entries.length > ENTRIES_MAX)
     entries.shift().element.remove();
   if (atEnd)
     log.scrollTop = log.scrollHeight;
 }
 
+function sayExchange(one, trouble) {
+  const time = new Date(one.t_ms).toISOString().slice(11, 23);
+  const said = one.outcome === "answered" ? describeAnswer(fromHex(one.answer)) : word(one.outcome);
+  const bytes = `> ${spaced(one.request)}${one.answer ? `\n< ${spaced(one.answer)}` : ""}`;
+  return {
+    head: `${time} [${one.node}] ${describeRequest(fromHex(one.request))}: ${said}${trouble ? "\n" + trouble.trim() : ""}`,
+    raw: `${bytes}\n${word("rtt")} ${(one.round_trip_us / 1000).toFixed(1)} ms`,
+  };
+}
+
 function addExchange(one, trouble) {
   const request = fromHex(one.request), answer = fromHex(one.answer);
-  const time = new Date(one.t_ms).toISOString().slice(11, 23);
-  const said = one.outcome === "answered" ? describeAnswer(answer) : word(one.outcome);
-  const raw = `> ${spaced(one.request)}${one.answer ? `\n< ${spaced(one.answer)}` : ""}\n${word("rtt")} ${(one.round_trip_us / 1000).toFixed(1)} ms`;
-  const bad = one.outcome === "silent" || one.outcome === "lost" || (request[0] === 2 && answer[2] > 0) || (request[0] === 3 && answer[2] > 0);
-  addEntry(`${time} [${one.node}] ${describeRequest(request)}: ${said}${trouble ? "\n" + trouble.trim() : ""}`, raw, bad);
+  const refused = (request[0] === 2 || request[0] === 3) && answer[2] > 0;
+  addEntry(() => sayExchange(one, trouble), one.outcome === "silent" || one.outcome === "lost" || refused);
   if (answer[0] === 4)
     takePositions(answer, one.t_ms);
   if (answer[0] === 6)
@@ -81,9 +89,9 @@ function takeAnswer(object) {
   else if (object.messages || object.bus)
     [...(object.messages ?? []), object.unit, object.bus].filter(Boolean).forEach((one) => addExchange(one));
   if (object.pieces !== undefined && object.messages.length > 1)
-    addEntry(`${word("pieces", object.commands, object.pieces)}`, "", false);
+    addEntry(() => ({ head: word("pieces", object.commands, object.pieces) }), false);
   if (!object.request && object.trouble)
-    addEntry(object.trouble.trim(), "", true);
+    addEntry(() => ({ head: object.trouble.trim() }), true);
 }
 
 $("search").oninput = () => entries.forEach(show);
@@ -102,8 +110,8 @@ function takePositions(bytes, time) {
 
 function takeProfile(bytes) {
   profile = readTable(bytes);
-  delete $("profile-text").dataset.word; // the language changes what has not been asked for yet
-  $("profile-text").textContent = profile.length > 0 ? text(bytes.slice(2)).trim() : word("profile-empty");
+  profileText = profile.length > 0 ? text(bytes.slice(2)).trim() : "";
+  $("profile-text").textContent = profileText || word("profile-empty");
   drawProfile($("profile"), profile, null);
   if (profile.length > 0)
     poll("7" + String.fromCharCode(bytes[1]), takeProgress);
@@ -111,7 +119,7 @@ function takeProfile(bytes) {
 
 function takeProgress(bytes) {
   const found = /^ (\d+);/.exec(text(bytes.slice(2)));
-  if (found && profile.length > 0)
+  if (found && profile?.length > 0)
     drawProfile($("profile"), profile, Number(found[1]));
 }
 
@@ -161,7 +169,8 @@ export async function findPorts() {
 }
 
 async function toggleConnection() {
-  const answer = open ? await ask("close") : await ask("open", { port: $("port").value.trim() || "-", framing: $("framing").value });
+  const answer = open ? await ask("close")
+    : await ask("open", { port: $("port").value.trim() || "-", framing: $("framing").value });
   if (answer.trouble || answer.error)
     say((answer.trouble ?? answer.error).trim(), true);
 }
@@ -183,17 +192,28 @@ function chosenMessage() {
 
 async function sendRequest() {
   const number = Number($("message").value), target = { node: Number($("node").value), motor: Number($("motor").value) };
-  const answer = number === 2 ? await ask("send", { ...target, text: $("text").value }) : await ask("request", { ...target, message: chosenMessage() });
+  const answer = number === 2 ? await ask("send", { ...target, text: $("text").value })
+    : await ask("request", { ...target, message: chosenMessage() });
   $("progress").hidden = true;
   if (answer.error)
-    addEntry(`${word("refused")}: ${answer.error}`, "", true);
+    addEntry(() => ({ head: `${word("refused")}: ${answer.error}` }), true);
 }
 
 $("request").onsubmit = (event) => {
   event.preventDefault();
   sendRequest();
 };
-export function showChoices() {
+// What depends on the language or on what is chosen.
+export function showWords() {
+  entries.forEach(fill);
+  showChoices();
+  if (profile === null)
+    $("profile-text").textContent = word("profile-none");
+  else
+    $("profile-text").textContent = profileText || word("profile-empty");
+}
+
+function showChoices() {
   $("broadcast").hidden = $("node").value !== "0";
   $("raw-label").hidden = $("message").value !== String(RAW);
 }

@@ -1,73 +1,92 @@
 // SPDX-License-Identifier: MIT
-// One virtual unit: its front, its motors, their curves, the axes of its plant.
+// One virtual unit: its front, its motors with their programs, their curves, the axes of its plant. What a unit of this device
+// has comes from `device` and `state` of the control socket (docs/CONTROL.md).
 import { word } from "./words.js";
+import { Axis } from "./axis.js";
 import { Graph } from "./graph.js";
+import { Listing } from "./listing.js";
 import { call } from "./link.js";
+import { group, lamp, light, make, two, write } from "./make.js";
 
 const PLANT_MS = 250;
 
-function make(name, attributes = {}, ...children) {
-  const element = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes))
-    key.startsWith("on") ? element.addEventListener(key.slice(2), value) : element.setAttribute(key, value);
-  element.append(...children);
-  return element;
-}
+const range = (from, count, of) => Array.from({ length: count }, (_, at) => of(from + at));
 
-const two = (number) => String(number).padStart(2, "0");
+// Members of a state that are shown elsewhere, or that say nothing to people.
+const SHOWN = new Set(["t_us", "motors", "di", "do", "var", "unit", "node", "switch", "powered", "since_us", "clock", "line",
+  "counters"]);
+const MOTOR_SHOWN = new Set(["motor", "position", "state", "index", "led", "fault", "true_position", "command", "waits_for",
+  "lit", "speed", "steps", "forward", "stopping", "held", "guards", "profile", "parameters", "functions", "loops", "calls",
+  "memory", "slot"]);
 
-function group(title, children) {
-  return make("fieldset", {}, make("legend", {}, title), ...children);
-}
-
-function lamp(text) {
-  return make("span", { class: "lamp", role: "img" }, text);
-}
-
-function light(element, on, name) {
-  element.classList.toggle("lit", on);
-  element.setAttribute("aria-label", `${name} ${on ? 1 : 0}`);
-}
+const plain = (value) => typeof value === "string" ? value : value === null ? "–" : JSON.stringify(value);
 
 export class UnitView {
-  constructor(name, act) {
+  constructor(name, device, act) {
     this.name = name;
-    this.act = (method, params) => act(method, { unit: name, ...params });
+    this.device = { axes: 4, inputs: 8, outputs: 8, variables: 16, first_variable: 80, addresses: 16, program: 700, ...device };
+    this.act = async (method, params) => {
+      const answer = await act(method, { unit: name, ...params });
+      if (answer.plant)
+        this.showPlant(answer.plant);
+    };
     this.element = make("section", { class: "unit" });
     this.axes = [];
     this.plantAsked = 0;
+    this.listing = this.device.program > 0 ? new Listing(name) : null;
     this.build();
   }
 
   // All of it anew, in the present language.
   build() {
-    const title = make("h2", {}, `${word("unit")} ${this.name}`);
-    const bits = (from, to, of) => Array.from({ length: to - from + 1 }, (_, at) => of(from + at));
+    const { device } = this, title = make("h2", {}, `${word("unit")} ${this.name}`);
     this.power = make("button", { onclick: () => this.act("power", { on: !this.state?.powered }) }, word("power"));
     this.reset = make("button", { onclick: () => this.act("reset", {}) }, word("reset"));
-    this.leds = bits(1, 4, (motor) => lamp(String(motor)));
-    this.s1 = bits(0, 3, (bit) => make("button", { onclick: () => this.flip(bit) }, String(bit + 1)));
-    this.s1Group = group("", this.s1);
-    this.di = bits(1, 8, (input) => make("button", { onclick: () => this.setInput(input) }, two(input)));
-    this.do = bits(1, 8, (output) => lamp(two(output)));
-    this.var = bits(80, 95, (variable) => lamp(String(variable)));
-    const front = make("div", { class: "front" }, group(word("power"), [this.power, this.reset]), group("LED", this.leds), this.s1Group,
-      group("DI", this.di), group("DO", this.do), group("VAR", this.var));
-    const heads = ["motor", "state", "command", "waits", "position", "true-position", "speed", "loops", "guards"];
-    this.rows = bits(1, 4, () => heads.map(() => make("td")));
-    const table = make("table", {}, make("thead", {}, make("tr", {}, ...heads.map((head) => make("th", { scope: "col" }, word(head))))),
-      make("tbody", {}, ...this.rows.map((cells) => make("tr", {}, ...cells))));
+    this.leds = range(1, device.axes, (motor) => lamp(String(motor)));
+    this.di = range(1, device.inputs, (input) => make("button", { onclick: () => this.setInput(input) }, this.inputName(input)));
+    this.do = range(1, device.outputs, (output) => lamp(this.outputName(output)));
+    this.var = range(device.first_variable, device.variables, (variable) => lamp(String(variable)));
+    const rows = [["DI", this.di], ["DO", this.do], ["VAR", this.var]].filter(([, list]) => list.length > 0);
+    const front = make("div", { class: "front" }, group(word("power"), [this.power, this.reset]), group("LED", this.leds),
+      this.buildAddress(), ...rows.map(([name, list]) => group(name, list)));
     const canvas = make("canvas", { class: "graph", role: "img", "aria-label": word("speed-graph") });
     const old = this.graph;
-    this.graph = new Graph(canvas, 2);
+    this.graph = new Graph(canvas, 2, device.axes);
     if (old)
-      this.graph.points = old.points;
+      this.graph.take(old);
     this.plant = make("div");
     this.axes = [];
-    this.element.replaceChildren(title, front, make("div", { class: "motors", tabindex: "0", role: "group", "aria-label": title.textContent },
-      table), canvas, this.plant);
+    this.more = make("dl", { class: "more" });
+    this.listing?.showWords();
+    const motors = make("div", { class: "motors", tabindex: "0", role: "group", "aria-label": title.textContent });
+    motors.append(this.buildTable());
+    const parts = [title, front, motors, this.more, this.listing?.element, canvas, this.plant];
+    this.element.replaceChildren(...parts.filter(Boolean));
     if (this.state)
       this.show(this.state);
+  }
+
+  inputName(input) { return this.device.input_names?.[input - 1] ?? two(input); }
+  outputName(output) { return this.device.output_names?.[output - 1] ?? two(output); }
+
+  // The address switch: S1 with four levers, or a number.
+  buildAddress() {
+    const { addresses } = this.device;
+    this.s1 = addresses === 16 ? range(0, 4, (bit) => make("button", { onclick: () => this.flip(bit) }, String(bit + 1))) : [];
+    this.address = make("input", { type: "number", min: 1, max: addresses, "aria-label": word("address") });
+    this.address.onchange = () => this.act("switch", { node: Number(this.address.value) });
+    this.s1Group = group("", addresses === 16 ? this.s1 : [this.address]);
+    this.s1Group.hidden = addresses <= 1;
+    return this.s1Group;
+  }
+
+  buildTable() {
+    this.heads = ["motor", "state", "command", "waits", "position", "true-position", "speed", "loops", "guards"];
+    if (this.device.program === 0)
+      this.heads = this.heads.filter((head) => !["command", "loops", "guards"].includes(head));
+    this.rows = range(1, this.device.axes, () => this.heads.map(() => make("td")));
+    const heads = make("tr", {}, ...this.heads.map((head) => make("th", { scope: "col" }, word(head))));
+    return make("table", {}, make("thead", {}, heads), make("tbody", {}, ...this.rows.map((cells) => make("tr", {}, ...cells))));
   }
 
   flip(bit) {
@@ -76,7 +95,7 @@ export class UnitView {
   }
 
   setInput(input) {
-    this.act("di.set", { di: { [input]: this.state.di >> (input - 1) & 1 ? 0 : 1 } });
+    this.act("di.set", { di: { [input]: this.state.di >>> (input - 1) & 1 ? 0 : 1 } });
   }
 
   show(state) {
@@ -85,12 +104,16 @@ export class UnitView {
     this.element.classList.toggle("off", !state.powered);
     pressed(this.power, state.powered);
     this.reset.disabled = !state.powered;
-    this.s1Group.firstChild.textContent = word("power-up", state.switch);
+    write(this.s1Group.firstChild, word(this.s1.length > 0 ? "power-up" : "address-up", state.switch));
     this.s1.forEach((button, bit) => pressed(button, (state.switch - 1) >> bit & 1));
-    this.di.forEach((button, bit) => pressed(button, state.di >> bit & 1));
-    this.do.forEach((element, bit) => light(element, Boolean(state.do >> bit & 1), `DO ${two(bit + 1)}`));
-    this.var.forEach((element, bit) => light(element, Boolean(state.var >> bit & 1), `VAR ${80 + bit}`));
+    if (document.activeElement !== this.address)
+      this.address.value = state.switch;
+    this.di.forEach((button, bit) => pressed(button, state.di >>> bit & 1));
+    this.do.forEach((element, bit) => light(element, Boolean(state.do >>> bit & 1), `DO ${this.outputName(bit + 1)}`));
+    this.var.forEach((element, bit) => light(element, Boolean(state.var >>> bit & 1), `VAR ${this.device.first_variable + bit}`));
     state.motors.forEach((motor, at) => this.showMotor(motor, at, state.t_us));
+    this.showMore(state);
+    this.listing?.show(state);
     if (state.motors.some((motor) => motor.true_position !== null))
       this.askPlant();
     else if (this.axes.length > 0)
@@ -98,17 +121,39 @@ export class UnitView {
   }
 
   showMotor(motor, at, t_us) {
-    const loops = motor.loops.map((loop) => `L@${loop.start}: ${loop.left}`), calls = motor.calls.map((place) => `→${place}`);
-    const guards = Object.entries(motor.guards).filter(([, input]) => input !== null).map(([kind, input]) => kind.toUpperCase() + two(input));
-    const texts = [
-      motor.motor, motor.fault ? `${motor.state}: ${motor.fault}` : motor.state,
-      motor.command ? `${motor.index}/${motor.memory.commands}: ${motor.command}` : "–", motor.waits_for ?? "–", motor.position,
-      motor.true_position ?? "–", motor.speed, [...loops, ...calls].join("\n") || "–", guards.join(" ") || "–",
-    ];
-    texts.forEach((text, column) => { this.rows[at][column].textContent = String(text); });
-    light(this.leds[at], motor.lit, `LED ${at + 1}`);
-    this.graph.add(0, at, t_us / 1000, motor.forward || motor.speed === 0 ? motor.speed : -motor.speed);
+    const loops = (motor.loops ?? []).map((loop) => `L@${loop.start}: ${loop.left}`);
+    const calls = (motor.calls ?? []).map((place) => `→${place}`);
+    const guards = Object.entries(motor.guards ?? {}).filter(([, input]) => input !== null)
+      .map(([kind, input]) => kind.toUpperCase() + two(input));
+    const texts = {
+      motor: motor.motor, state: motor.fault ? `${motor.state}: ${motor.fault}` : motor.state,
+      command: motor.command ? `${motor.index}/${motor.memory?.commands ?? "?"}: ${motor.command}` : "–",
+      waits: motor.waits_for ?? "–",
+      position: motor.position, "true-position": motor.true_position ?? "–", speed: motor.speed ?? "–",
+      loops: [...loops, ...calls].join("\n") || "–", guards: guards.join(" ") || "–",
+    };
+    this.heads.forEach((head, column) => write(this.rows[at][column], String(texts[head])));
+    light(this.leds[at], motor.lit ?? motor.led === "on", `LED ${at + 1}`);
+    const speed = motor.speed ?? 0;
+    this.graph.add(0, at, t_us / 1000, motor.forward || speed === 0 ? speed : -speed);
     this.graph.add(1, at, t_us / 1000, motor.position);
+  }
+
+  // What else the device tells of itself and of its motors.
+  showMore(state) {
+    const parts = Object.entries(state).filter(([key]) => !SHOWN.has(key)).map(([key, value]) => [key, plain(value)]);
+    for (const motor of state.motors)
+      for (const [key, value] of Object.entries(motor))
+        if (!MOTOR_SHOWN.has(key))
+          parts.push([`${key} ${motor.motor}`, plain(value)]);
+    while (this.more.children.length > parts.length)
+      this.more.lastChild.remove();
+    parts.forEach(([key, text], at) => {
+      if (!this.more.children[at])
+        this.more.append(make("div", {}, make("dt"), make("dd")));
+      write(this.more.children[at].firstChild, key);
+      write(this.more.children[at].lastChild, text);
+    });
   }
 
   // ---- Plant ----
@@ -127,46 +172,11 @@ export class UnitView {
   }
 
   showPlant(plant) {
-    const motors = plant?.motors ?? [];
-    if (motors.map((one) => one.motor).join() !== this.axes.map((axis) => axis.motor).join())
-      this.buildAxes(motors);
-    this.axes.forEach((axis, at) => this.showAxis(axis, motors[at], (plant.switches ?? []).filter((one) => one.motor === axis.motor)));
-  }
-
-  buildAxes(motors) {
-    this.axes = motors.map(({ motor }) => {
-      const set = (params) => this.act("plant.set", { motor, ...params });
-      const range = make("input", { type: "range", step: "1", "aria-label": word("axis", motor) });
-      const check = (name, key) => {
-        const box = make("input", { type: "checkbox", onchange: () => set({ [key]: box.checked }) });
-        return [box, make("label", { class: "check" }, box, " ", word(name))];
-      };
-      const [jammed, jammedLabel] = check("jammed", "jammed"), [lead, leadLabel] = check("lead", "missing_lead");
-      const text = make("output"), switches = make("span", { class: "row" });
-      range.oninput = () => set({ position: Number(range.value) });
-      const element = make("div", { class: "axis" }, make("span", {}, word("axis", motor)), range, text, jammedLabel, leadLabel, switches);
-      return { motor, element, range, jammed, lead, text, switches, low: -1000, high: 1000 };
-    });
-    this.plant.replaceChildren(...this.axes.map((axis) => axis.element));
-  }
-
-  showAxis(axis, motor, switches) {
-    while (motor.true_position < axis.low) // with room beyond, to drag it there
-      axis.low *= 2;
-    while (motor.true_position > axis.high)
-      axis.high *= 2;
-    axis.range.min = axis.low;
-    axis.range.max = axis.high;
-    if (document.activeElement !== axis.range || !axis.range.matches(":active"))
-      axis.range.value = motor.true_position;
-    axis.jammed.checked = motor.jammed;
-    axis.lead.checked = motor.missing_lead;
-    axis.text.textContent = `${motor.true_position} (${motor.lost})`;
-    while (axis.switches.children.length < switches.length)
-      axis.switches.append(lamp(""));
-    switches.forEach((one, at) => {
-      axis.switches.children[at].textContent = `DI ${two(one.input)}`;
-      light(axis.switches.children[at], one.actuated, `DI ${two(one.input)}`);
-    });
+    const motors = plant?.motors ?? [], key = (list) => list.map((one) => `${one.motor}/${one.turn ?? ""}`).join();
+    if (key(motors) !== key(this.axes)) {
+      this.axes = motors.map(({ motor, turn }) => new Axis(motor, turn, this.act));
+      this.plant.replaceChildren(...this.axes.map((axis) => axis.element));
+    }
+    this.axes.forEach((axis, at) => axis.show(motors[at], (plant.switches ?? []).filter((one) => one.motor === axis.motor)));
   }
 }
