@@ -56,7 +56,8 @@ json_t *client_json_text(const uint8_t *bytes, size_t length)
     return string;
 }
 
-/* The text after the head as a C string in `text`. Returns false if it has no place or contains a zero. */
+/* The text after the head as a C string in `text`. Returns false if it has no place or holds other characters than lists of
+ * numbers do. */
 static bool copy_text(const struct client_answer *answer, char text[TEXT_MAX])
 {
     size_t length = answer->length - HEAD;
@@ -64,7 +65,7 @@ static bool copy_text(const struct client_answer *answer, char text[TEXT_MAX])
         return false;
     memcpy(text, answer->bytes + HEAD, length);
     text[length] = '\0';
-    return true;
+    return text[strspn(text, " 0123456789;,()[]")] == '\0'; /* sscanf takes signs and any white space, too */
 }
 
 /* One field of a position: length byte and a decimal number, right-aligned with blanks. Returns the bytes it takes; 0: none. */
