@@ -122,6 +122,13 @@ setup_window() {
     setup_node_packages "$source" "$1" axe-core
 }
 
+# setup_pico FOLDER: rp2040js, as tests/system/pico/package-lock.json has it, in the folder.
+setup_pico() {
+    local source
+    source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/system/pico" && pwd) || return
+    setup_node_packages "$source" "$1" rp2040js
+}
+
 # list_skips LOG: what the tests in ctest's log have left out, and why, a line each.
 list_skips() {
     awk '/^[0-9]+\/[0-9]+ Testing: / { test = $3 }

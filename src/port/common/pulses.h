@@ -56,6 +56,23 @@ static inline bool pulses_room(const struct pulses *pulses, unsigned lane)
  * There must be room. */
 void pulses_put(struct pulses *pulses, unsigned lane, uint32_t tick, uint8_t item);
 
+/* Interrupt of a board that plays the lanes itself: the next item of a lane, if there is one; it is done. */
+static inline bool pulses_peek(const struct pulses *pulses, unsigned number, uint32_t *tick, uint8_t *item)
+{
+    const struct pulse_lane *lane = &pulses->lane[number];
+    if (lane->in == lane->out)
+        return false;
+    *tick = lane->tick[lane->out % PULSES_ROOM];
+    *item = lane->item[lane->out % PULSES_ROOM];
+    return true;
+}
+
+static inline void pulses_drop(struct pulses *pulses, unsigned number)
+{
+    __atomic_signal_fence(__ATOMIC_SEQ_CST);
+    pulses->lane[number].out++;
+}
+
 /* Main loop, with the timer's interrupt off: lanes that were empty learn of what has been put there. Then have it play. */
 void pulses_refresh(struct pulses *pulses);
 

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "board.h"
 
-#include "mps2.h"
-#include "uart.h"
+#include <rkm04/limits.h>
 
-struct pulses board_pulses;
+#include "clock.h"
+#include "flash.h"
+#include "line.h"
+#include "mps2.h"
+#include "pins.h"
 
 static volatile uint32_t wake_tick; /* when the main loop wants to be woken */
 static volatile bool awake;         /* that tick has come */
@@ -40,29 +43,28 @@ void board_driver(bool on)
 uint8_t board_inputs(void)
 {
     changed = false;
-    uint32_t high = MPS2_GPIO1->data & BOARD_INPUT_PINS;
-    MPS2_GPIO1->high_level_clear = high;
-    MPS2_GPIO1->high_level_set = BOARD_INPUT_PINS & ~high;
-    MPS2_GPIO1->interrupt_set = BOARD_INPUT_PINS;
-    return (uint8_t)(high >> 8);
+    const uint32_t pins = PINS(BOARD_INPUT_PIN, RKM04_INPUTS), levels = MPS2_GPIO1->data;
+    MPS2_GPIO1->high_level_clear = pins & levels;
+    MPS2_GPIO1->high_level_set = pins & ~levels;
+    MPS2_GPIO1->interrupt_set = pins;
+    return pins_read(levels, BOARD_INPUT_PIN, RKM04_INPUTS, false);
 }
 
 /* The pin stays as it is, so no more interrupts until the main loop has looked; it filters bounces by being slower. */
 void board_input_interrupt(void)
 {
-    MPS2_GPIO1->interrupt_clear = BOARD_INPUT_PINS;
+    MPS2_GPIO1->interrupt_clear = PINS(BOARD_INPUT_PIN, RKM04_INPUTS);
     changed = true;
 }
 
 uint8_t board_switch(void)
 {
-    return MPS2_SWITCHES & 0xf;
+    return pins_read(MPS2_SWITCHES, 0, 4, false);
 }
 
 void board_led(unsigned motor, bool lit)
 {
-    uint32_t bit = 1u << (motor - 1);
-    MPS2_LEDS = lit ? MPS2_LEDS | bit : MPS2_LEDS & ~bit;
+    MPS2_LEDS = pins_with(MPS2_LEDS, motor, lit);
 }
 
 /* ---- Time ------------------------------------------------------------------------------------------------------------- */
@@ -77,8 +79,7 @@ void board_clock_start(void)
 
 uint64_t board_clock(void)
 {
-    clock += MPS2_COUNTER - (uint32_t)clock;
-    return clock;
+    return clock_extend(&clock, MPS2_COUNTER);
 }
 
 /* Have the timer run out once, `ticks` from now. What is longer than it can count is cut: the interrupt then looks and arms it
@@ -118,7 +119,7 @@ void board_play(uint32_t wake)
 void board_sleep(bool more)
 {
     interrupts_off(); /* or what comes between the look and the sleep would be slept through; WFI wakes all the same */
-    if (!awake && !changed && !uart_needs_main_loop(more))
+    if (!awake && !changed && !line_needs_main_loop(more))
         __asm__ volatile("wfi");
     interrupts_on();
 }
@@ -140,4 +141,23 @@ void board_start(void)
     NVIC_PRIORITY[IRQ_TIMER0] = BOARD_PRIORITY_PULSES;
     NVIC_PRIORITY[IRQ_GPIO1] = BOARD_PRIORITY_INPUTS;
     NVIC_ENABLE = 1u << IRQ_TIMER0 | 1u << IRQ_GPIO1;
+    uart_start();
+    flash_start();
+}
+
+/* ---- Flash: memory that stands for it --------------------------------------------------------------------------------- */
+
+int board_flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    return flash_read(context, block, offset, data, length);
+}
+
+int board_flash_erase(void *context, unsigned block)
+{
+    return flash_erase(context, block);
+}
+
+int board_flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    return flash_program(context, block, offset, data, length);
 }

@@ -7,7 +7,6 @@
 #include "board.h"
 #include "loop.h"
 #include "mps2.h"
-#include "port.h"
 
 /* ---- Report ----------------------------------------------------------------------------------------------------------- */
 
@@ -74,7 +73,7 @@ static void fresh_unit(const char *program)
     static const struct rkm04_config config = {.node = 1};
     static const struct rkm04_port no_flash;
     rkm04_init(&unit, &config, &no_flash, NULL);
-    unit.port = &port;
+    unit.port = &loop_port;
     (void)rkm04_set_command(&unit, '0', program, strlen(program), NULL);
 }
 

@@ -3,7 +3,10 @@
 #ifndef MPS2_H
 #define MPS2_H
 
+#include <stdbool.h>
 #include <stdint.h>
+
+#include "pulses.h"
 
 #define MPS2_CLOCK 25000000u /* Hz, of the processor and of everything below */
 
@@ -50,6 +53,20 @@ struct mps2_gpio {
 #define NVIC_PRIORITY ((volatile uint8_t *)0xe000e400)
 enum mps2_interrupt { IRQ_UART0_RECEIVE = 0, IRQ_UART0_SENT = 1, IRQ_GPIO1 = 7, IRQ_TIMER0 = 8, IRQ_TIMER1 = 9 };
 
+/* Pins. GPIO0: 0-3 step, 4-7 direction of motors 1-4, 8 RS485 driver-enable. GPIO1: 0-7 DO 01-08, 8-15 DI 01-08. */
+#define BOARD_DRIVER_PIN 8u
+#define BOARD_INPUT_PIN 8u
+
+/* Cycles of the board's clock in one tick of the unit, 1 us. (tools/port-figures slows the unit's time down by more.) */
+#ifndef BOARD_TICK_CYCLES
+#define BOARD_TICK_CYCLES 25u
+#endif
+
+/* Priorities, 0 is the most urgent: a pulse does not wait; a byte waits for pulses (it has 521 us). */
+#define BOARD_PRIORITY_PULSES 0x00u
+#define BOARD_PRIORITY_LINE 0x80u
+#define BOARD_PRIORITY_INPUTS 0xc0u
+
 static inline void interrupts_off(void)
 {
     __asm__ volatile("cpsid i" ::: "memory");
@@ -59,5 +76,17 @@ static inline void interrupts_on(void)
 {
     __asm__ volatile("cpsie i" ::: "memory");
 }
+
+/* uart.c: the UART, and the timer that ends a transmission. */
+void uart_start(void);
+void uart_receive_interrupt(void);
+void uart_sent_interrupt(void);
+void uart_timer_interrupt(void);
+
+/* board.c: the pins as pulses.c moves them; RS485 driver on or off; the one-shot timer has run out; an input has changed. */
+extern const struct pulse_pins board_pins;
+void board_driver(bool on);
+void board_timer_interrupt(void);
+void board_input_interrupt(void);
 
 #endif

@@ -3,7 +3,7 @@
 #include <stdint.h>
 
 #include "board.h"
-#include "uart.h"
+#include "mps2.h"
 
 extern uint32_t stack_top, data_image, data_begin, data_end, bss_begin, bss_end; /* of mps2_an385.ld */
 

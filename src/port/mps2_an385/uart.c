@@ -1,40 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-#include "uart.h"
-
 #include "board.h"
+#include "line.h"
 #include "mps2.h"
 
-#define BAUD 19200u
-#define ROOM 64u /* of each queue; a power of 2. 64 bytes are 33 ms of the line. */
-#define BYTE_CYCLES (10u * MPS2_CLOCK / BAUD + 1) /* start bit, 8 bits, stop bit */
-
-struct queue {
-    volatile uint32_t in, out; /* bytes ever; each has one writer */
-    uint8_t byte[ROOM];
-};
-
-static struct queue received, sending;
-static uint32_t seen; /* received.in when the main loop looked last */
-
-static uint32_t used(const struct queue *queue)
-{
-    return queue->in - queue->out;
-}
-
-static void put(struct queue *queue, uint8_t byte)
-{
-    uint32_t in = queue->in;
-    queue->byte[in % ROOM] = byte;
-    __atomic_signal_fence(__ATOMIC_SEQ_CST); /* the byte is there before the other side sees that there is one */
-    queue->in = in + 1;
-}
+#define BYTE_CYCLES (10u * MPS2_CLOCK / LINE_BAUD + 1) /* start bit, 8 bits, stop bit */
 
 void uart_start(void)
 {
     board_driver(false);
     MPS2_TIMER1->control = 0;
     MPS2_TIMER1->reload = 0;
-    MPS2_UART0->divider = (MPS2_CLOCK + BAUD / 2) / BAUD;
+    MPS2_UART0->divider = (MPS2_CLOCK + LINE_BAUD / 2) / LINE_BAUD;
     MPS2_UART0->control = UART_ON;
     NVIC_PRIORITY[IRQ_UART0_RECEIVE] = BOARD_PRIORITY_LINE;
     NVIC_PRIORITY[IRQ_UART0_SENT] = BOARD_PRIORITY_LINE;
@@ -42,65 +18,41 @@ void uart_start(void)
     NVIC_ENABLE = 1u << IRQ_UART0_RECEIVE | 1u << IRQ_UART0_SENT | 1u << IRQ_TIMER1;
 }
 
-/* ---- In --------------------------------------------------------------------------------------------------------------- */
-
-/* If the queue is full the byte stays in the UART, and the interrupt off, until uart_take. What comes on top of that is lost,
- * as it must be on a line without handshake (and QEMU waits with the next byte). */
+/* If the queue is full the interrupt is off until there is room again (and QEMU waits with the next byte). */
 void uart_receive_interrupt(void)
 {
     MPS2_UART0->interrupt = UART_CAME;
     while (MPS2_UART0->state & UART_RECEIVED) {
-        if (used(&received) == ROOM) {
+        if (!line_has_room()) {
             MPS2_UART0->control = UART_ON & ~UART_RECEIVE_INTERRUPT;
             return;
         }
-        put(&received, (uint8_t)MPS2_UART0->data);
+        line_came((uint8_t)MPS2_UART0->data);
     }
 }
 
-size_t uart_poll(const uint8_t **bytes)
+/* A byte to send, or one in the UART for which there was no room: the interrupts do the rest. */
+void board_line(void)
 {
-    seen = received.in;
-    uint32_t at = received.out % ROOM, count = seen - received.out;
-    *bytes = received.byte + at;
-    return count < ROOM - at ? count : ROOM - at;
-}
-
-void uart_take(size_t count)
-{
-    received.out += (uint32_t)count;
-    if (!(MPS2_UART0->control & UART_RECEIVE_INTERRUPT) && used(&received) < ROOM) {
+    if (!(MPS2_UART0->control & UART_RECEIVE_INTERRUPT) && line_has_room()) {
         MPS2_UART0->control = UART_ON;
-        NVIC_PEND = 1u << IRQ_UART0_RECEIVE; /* for the byte that is in the UART */
+        NVIC_PEND = 1u << IRQ_UART0_RECEIVE;
     }
-}
-
-/* ---- Out -------------------------------------------------------------------------------------------------------------- */
-
-size_t uart_room(void)
-{
-    return ROOM - used(&sending);
-}
-
-void uart_send(const uint8_t *bytes, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        put(&sending, bytes[i]);
-    NVIC_PEND = 1u << IRQ_UART0_SENT; /* there everything else happens */
+    NVIC_PEND = 1u << IRQ_UART0_SENT;
 }
 
 /* The buffer of the UART is empty: the next byte. If there is none the last one is being shifted out: driver off after it. */
 void uart_sent_interrupt(void)
 {
+    uint8_t byte;
     MPS2_UART0->interrupt = UART_SENT;
-    MPS2_TIMER1->control = 0;
-    if (used(&sending) > 0)
-        board_driver(true);
-    while (used(&sending) > 0 && !(MPS2_UART0->state & UART_SENDING)) {
-        MPS2_UART0->data = sending.byte[sending.out % ROOM];
-        sending.out++;
-    }
-    if (used(&sending) == 0 && !(MPS2_UART0->state & UART_SENDING)) {
+    if ((MPS2_UART0->state & UART_SENDING) || !line_drives(false))
+        return;
+    board_driver(true);
+    if (line_next(&byte)) {
+        MPS2_TIMER1->control = 0;
+        MPS2_UART0->data = byte;
+    } else if (!(MPS2_TIMER1->control & 1u)) {
         MPS2_TIMER1->value = BYTE_CYCLES;
         MPS2_TIMER1->control = TIMER_ON;
     }
@@ -110,10 +62,5 @@ void uart_timer_interrupt(void)
 {
     MPS2_TIMER1->interrupt = 1;
     MPS2_TIMER1->control = 0;
-    board_driver(false);
-}
-
-bool uart_needs_main_loop(bool more)
-{
-    return received.in != seen || (more && used(&sending) <= ROOM / 2);
+    board_driver(line_drives(true));
 }

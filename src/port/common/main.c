@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* main.c: an RKM04 on Arm's MPS2 board with image AN385. */
+/* main.c: an RKM04 on a board. */
 #include "loop.h"
 
 int main(void)
