@@ -22,6 +22,7 @@ struct bus_options {
     unsigned lines;             /* --lines */
     bool pty;                   /* lines have a pty of their own */
     const char *link;           /* NULL: the default */
+    const char *wine;           /* NULL: none */
     const char *port;           /* NULL: none */
     const char *tcp;            /* NULL: none */
     const char *rfc2217;        /* NULL: none */

@@ -382,7 +382,8 @@ static bool open_line(struct bus_ports *ports, uv_loop_t *loop, struct line_watc
         }
         uv_timer_init(loop, &ports->retry);
         ports->retry.data = ports;
-        if (!link_path_claim(&ports->link, options->link ? path : NULL, ports->log->number) ||
+        if ((options->wine && !wine_link_prepare(&ports->wine, options->wine, ports->log->number)) ||
+            !link_path_claim(&ports->link, options->link ? path : NULL, ports->log->number) ||
             !line_pty_open(&ports->line, watch, on_event, ports))
             return false;
     } else {
@@ -419,12 +420,16 @@ bool bus_ports_open(struct bus_ports *ports, uv_loop_t *loop, struct line_watch 
 
 bool bus_ports_publish(struct bus_ports *ports)
 {
-    return !ports->options->pty || link_path_make(&ports->link, ports->line.path);
+    if (!ports->options->pty)
+        return true;
+    return link_path_make(&ports->link, ports->line.path) &&
+           (!ports->options->wine || ports->wine.target[0] || wine_link_make(&ports->wine, ports->link.path));
 }
 
 void bus_ports_close(struct bus_ports *ports)
 {
     ports->ended = true;
+    wine_link_remove(&ports->wine);
     link_path_release(&ports->link);
     if (ports->tcp)
         net_port_close(ports->tcp);

@@ -34,6 +34,7 @@ struct bus_ports {
     struct line line;           /* the pty or device */
     struct line_watch *watch;
     struct link_path link;      /* to the pty */
+    struct wine_link wine;      /* to `link` */
     uv_poll_t readable;
     bool reading;                   /* it is being polled */
     struct net_port *tcp, *rfc2217; /* NULL: none */
@@ -64,7 +65,7 @@ void bus_ports_prepare(struct bus_ports *ports, const struct bus_options *option
 /* Open what the options ask for. Failures are reported. Returns false if it did not work. */
 bool bus_ports_open(struct bus_ports *ports, uv_loop_t *loop, struct line_watch *watch);
 
-/* Make the link to the pty. Failures are reported. Returns false if it did not work. */
+/* Make the link to the pty, and Wine's. Failures are reported. Returns false if it did not work. */
 bool bus_ports_publish(struct bus_ports *ports);
 
 /* Close everything; the handles are gone when the loop has run out. Then bus_ports_free(). */

@@ -6,6 +6,7 @@
  *     net_port, rfc2217            TCP, raw or with the settings of a port
  *     net_address                  where it listens
  *     link_path, lock_file         the link to the pty, and who owns it
+ *     wine_link                    a COM port of Wine that leads there
  *     flash_file                   the flash of a unit in a file
  *     log, delivery                the log of the program, and the thread that writes it to a slow reader
  *
@@ -120,5 +121,6 @@ void line_make_raw(struct termios *settings);
 #include "lock_file.h"
 #include "log.h"
 #include "net_port.h"
+#include "wine_link.h"
 
 #endif

@@ -47,7 +47,9 @@ enum key {
     KEY_CONTROL,
     KEY_ALLOW_FOLDER,
     KEY_NO_SANDBOX,
-    KEY_NO_CONTROL, KEY_WINDOW
+    KEY_NO_CONTROL,
+    KEY_WINDOW,
+    KEY_WINE
 };
 
 static const struct argp_option table[] = {
@@ -62,6 +64,8 @@ static const struct argp_option table[] = {
     {"link", KEY_LINK, "PATH", 0,
      "Name of the symbolic link to the pty; default $XDG_RUNTIME_DIR/rkm04/bus0, else rkm04-UID/bus0 in the temporary "
      "directory. %l in it stands for the number of the bus", 0},
+    {"wine", KEY_WINE, "PREFIX:COMn", 0,
+     "Let the COM port of this Wine prefix lead to the link, as in ~/.wine:COM5; further buses have the next ports", 0},
     {"port", KEY_PORT, "DEVICE", 0, "Use this serial device or pty instead of creating a pty", 0},
     {"rts", KEY_RTS, "WHO", 0,
      "What switches the driver of an RS485 device on while units send: driver (default), the kernel's driver if it can, else the "
@@ -277,6 +281,8 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
     bool net = options->tcp || options->rfc2217;
     if (options->port && options->link)
         argp_error(state, "--link names the emulator's own pty: expected either --link or --port");
+    if (options->port && options->wine)
+        argp_error(state, "--wine leads to the emulator's own pty: expected either --wine or --port");
     if (options->port && options->lines > 1)
         argp_error(state, "--port is one bus: expected either --port or --lines");
     if (options->rts == LINE_RTS_TOGGLES && !options->port)
@@ -300,7 +306,7 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
     if (options->window && options->no_control)
         argp_error(state, "--window needs the control socket: expected it without --no-control");
     check_patterns(options, state);
-    options->pty = !options->port && (!net || options->link);
+    options->pty = !options->port && (!net || options->link || options->wine);
 }
 
 /* Options of the units and of time. */
@@ -340,6 +346,11 @@ static error_t read_line_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_LINK:
         options->link = read_pattern("link", text, state);
+        return 0;
+    case KEY_WINE:
+        options->wine = read_path("wine", text, state);
+        if (!wine_link_valid(text))
+            argp_error(state, "--wine: `%s' is wrong: expected " WINE_PORT_EXPECTED, text);
         return 0;
     case KEY_PORT:
         options->port = read_path("port", text, state);

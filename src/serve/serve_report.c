@@ -35,6 +35,8 @@ static void log_ports(const struct bus *bus)
         bus_log(&bus->log, "%s on %s", units, bus->options->port);
     else if (bus->options->pty)
         bus_log(&bus->log, "%s on %s, link %s", units, ports->line.path, ports->link.path);
+    if (bus->options->wine)
+        bus_log(&bus->log, "%s leads to the link", ports->wine.path);
     if (ports->tcp)
         bus_log(&bus->log, "%s on tcp:%s", units, ports->tcp->address);
     if (ports->rfc2217)

@@ -152,6 +152,60 @@ START_TEST(the_client_of_ser2net_sets_and_asks)
 }
 END_TEST
 
+/* The clients below speak as their documents say: they run on Windows alone. */
+
+/* hub4com with com2tcp-rfc2217.bat (--comport=client): it takes BINARY and SUPPRESS-GO-AHEAD in both directions, offers COM-PORT
+ * itself, and hands on what the program at the COM port sets, line by line. */
+START_TEST(hub4com_opens_a_port_sets_it_and_sends_a_break)
+{
+    begin();
+    say("fffb2c fffd00 fffb00 fffd03");
+    is_hex(replies, OPENING LINES);
+    forget();
+    say("fffa2c 01 00004b00 fff0 fffa2c 02 08 fff0 fffa2c 03 01 fff0 fffa2c 04 01 fff0 fffa2c 05 08 fff0 fffa2c 05 0b fff0");
+    is_hex(replies, "fffa2c 65 00004b00 fff0 fffa2c 66 08 fff0 fffa2c 67 01 fff0 fffa2c 68 01 fff0 fffa2c 69 08 fff0"
+                    "fffa2c 69 0b fff0");
+    ck_assert_str_eq(events, "");
+    forget();
+    say("fffa2c 05 0c fff0 fffa2c 05 05 fff0 fffa2c 05 06 fff0 fffa2c 01 00002580 fff0 fffa2c 03 03 fff0 7e 01 ffff 7e");
+    is_hex(replies, "fffa2c 69 0c fff0 fffa2c 69 05 fff0 fffa2c 69 06 fff0 fffa2c 65 00002580 fff0 fffa2c 67 03 fff0");
+    ck_assert_str_eq(events, "LBBSS");
+    is_hex(data, "7e 01 ff 7e");
+}
+END_TEST
+
+/* com2tcp.bat --telnet: the same without COM-PORT. (Without --telnet it is for the raw port.) */
+START_TEST(com2tcp_talks_without_COM_PORT)
+{
+    begin();
+    say("fffd00 fffb00 fffd03 fffc2c 7e 01 00 7e");
+    is_hex(replies, OPENING);
+    is_hex(data, "7e 01 00 7e");
+    forget();
+    say("fff1 fffd18 fffb01"); /* --keep-active, a terminal type, an echo: none of it is data */
+    is_hex(replies, "fffc18 fffe01");
+    ck_assert_str_eq(data, "");
+}
+END_TEST
+
+/* Redirectors of makers of device servers name themselves, ask first, set masks and flow control, and empty the buffers. */
+START_TEST(a_redirector_asks_sets_and_empties_the_buffers)
+{
+    begin();
+    say("fffd2c fffb2c fffd03 fffb03 fffd00 fffb00");
+    is_hex(replies, OPENING "fffb2c" LINES "fffd03");
+    forget();
+    say("fffa2c 00 5265646972 fff0 fffa2c 00 fff0 fffa2c 01 00000000 fff0 fffa2c 02 00 fff0 fffa2c 03 00 fff0 fffa2c 04 00 fff0");
+    is_hex(replies, "fffa2c 64 726b6d3034 fff0 fffa2c 65 00004b00 fff0 fffa2c 66 08 fff0 fffa2c 67 01 fff0 fffa2c 68 01 fff0");
+    answered("0a 00", "6e00");
+    answered("0b ffff", "6fffff");
+    answered("05 01", "6901");
+    answered("05 0e", "690e");
+    answered("0c 03", "7003");
+    ck_assert_str_eq(events, "P");
+}
+END_TEST
+
 /* ---- Settings ------------------------------------------------------------------------------------------------------- */
 
 START_TEST(a_client_finds_19200_8N1_with_its_lines_on)
@@ -484,6 +538,9 @@ static Suite *suite(void)
     tcase_add_test(one, pyserial_opens_a_port);
     tcase_add_test(one, the_client_of_ser2net_opens_a_port_and_sends);
     tcase_add_test(one, the_client_of_ser2net_sets_and_asks);
+    tcase_add_test(one, hub4com_opens_a_port_sets_it_and_sends_a_break);
+    tcase_add_test(one, com2tcp_talks_without_COM_PORT);
+    tcase_add_test(one, a_redirector_asks_sets_and_empties_the_buffers);
     tcase_add_test(one, a_client_finds_19200_8N1_with_its_lines_on);
     tcase_add_test(one, every_setting_is_taken_and_acknowledged);
     tcase_add_test(one, any_speed_is_taken_and_IAC_in_it_is_doubled);

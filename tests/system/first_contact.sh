@@ -60,6 +60,15 @@ test_the_hints_of_a_unit_on_a_pty_work_as_printed() {
     grep -q ' version$' "$folder/run.out" || fail "no request to the unit"
 }
 
+test_where_Wine_is_installed_a_hint_says_how_Windows_programs_find_the_unit() {
+    prepare_run
+    printf '#!/bin/sh\n' >"$folder/bin/wine"
+    chmod +x "$folder/bin/wine"
+    run_tool --link "$folder/bus"
+    grep -q -- '--wine ~/.wine:COM5' "$folder/run.out" || fail "no word of --wine"
+    grep -q 'LD_PRELOAD=.*/rkm04-modem-lines.so wine PROGRAM.exe$' "$folder/run.out" || fail "no command"
+}
+
 test_the_hints_of_a_unit_on_TCP_work_as_printed() {
     prepare_run
     run_tool --tcp 127.0.0.1:0 --node 3 --framing plain
