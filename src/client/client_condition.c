@@ -14,7 +14,7 @@
 
 #define NAME_MAX_LENGTH 48
 #define VALUE_MAX_LENGTH 48
-#define NAME_CHARACTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
+#define NAME_CHARACTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.+-"
 #define EXPECTED_NAME \
     "m1.position, true, steps, index, commands, state, led, fault or idle; idle, do1, di1, var80, powered, message, dropped or t"
 
@@ -120,7 +120,7 @@ static bool scan_term(struct reader *reader, struct term *term)
     if (!accept_comparison(reader, term->compare))
         return true;
     skip_blanks(reader);
-    if (accept_span(reader, NAME_CHARACTERS "+", term->value, sizeof term->value))
+    if (accept_span(reader, NAME_CHARACTERS, term->value, sizeof term->value))
         return true;
     report_expected(reader, "a value after %s%s, found '%.40s'", term->name, term->compare, reader->at);
     return false;
@@ -241,14 +241,17 @@ static json_t *motor_term(const struct reader *reader, const struct term *term, 
                            term->name);
 }
 
+static json_t *named_bit_term(const struct reader *reader, const struct term *term, const char *key, const char *name)
+{
+    int bit = read_bit(reader, term, false);
+    return bit < 0 ? NULL : no_memory(reader, json_pack("{s:{s:i}}", key, name, bit));
+}
+
 static json_t *bits_term(const struct reader *reader, const struct term *term, const char *key, int number)
 {
     char digits[12];
-    int bit = read_bit(reader, term, false);
-    if (bit < 0)
-        return NULL;
     snprintf(digits, sizeof digits, "%02d", number);
-    return no_memory(reader, json_pack("{s:{s:i}}", key, digits, bit));
+    return named_bit_term(reader, term, key, digits);
 }
 
 /* A message that passes; `from` NULL: from any sender. */
@@ -308,7 +311,9 @@ static json_t *unit_term(const struct reader *reader, const struct term *term, c
     static const struct {
         const char *name;
         int low, high;
-    } bits[] = {{"do", 1, 8}, {"di", 1, 8}, {"var", 80, 95}};
+    } bits[] = {{"do", 1, 32}, {"di", 1, 32}, {"var", 80, 95}}; /* the emulator knows how many there are */
+    if ((name[0] == 'd') && (name[1] == 'i' || name[1] == 'o') && name[2] == '.' && name[3] != '\0')
+        return named_bit_term(reader, term, name[1] == 'i' ? "di" : "do", name + 3);
     if (name[0] == 'm' && name[1] >= '1' && name[1] <= '4' && name[2] == '.')
         return motor_term(reader, term, name + 3, name[1] - '0');
     for (size_t i = 0; i < sizeof bits / sizeof *bits; i++) {

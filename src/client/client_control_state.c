@@ -118,10 +118,28 @@ enum exit_status client_control_state(struct client_job *job)
 
 /* ---- Inputs ----------------------------------------------------------------------------------------------------------- */
 
-static void print_inputs(json_int_t mask)
+/* What the device calls its inputs: a list, or NULL if they have numbers alone. A new reference. */
+static json_t *fetch_input_names(struct client_job *job)
 {
-    for (int i = 0; i < 8; i++)
-        printf("%02d=%d%c", i + 1, (int)(mask >> i & 1), i < 7 ? ' ' : '\n');
+    json_t *units;
+    if (client_job_call(job, "units", NULL, false, &units) != STATUS_SUCCESS)
+        return NULL;
+    json_t *names = json_incref(json_object_get(units, "inputs"));
+    json_decref(units);
+    return names;
+}
+
+/* `names`: as of fetch_input_names(). */
+static void print_inputs(const json_t *names, json_int_t mask)
+{
+    size_t count = names != NULL ? json_array_size(names) : 8;
+    for (size_t i = 0; i < count; i++) {
+        if (names != NULL)
+            printf("%s", json_string_value(json_array_get(names, i)));
+        else
+            printf("%02zu", i + 1);
+        printf("=%d%c", (int)(mask >> i & 1), i + 1 < count ? ' ' : '\n');
+    }
 }
 
 static enum exit_status show_inputs(struct client_job *job)
@@ -134,24 +152,27 @@ static enum exit_status show_inputs(struct client_job *job)
     json_decref(result);
     if (job->json)
         return client_print_json(json_pack("{s:I, s:I}", "t_us", t_us, "di", mask));
-    print_inputs(mask);
+    json_t *names = fetch_input_names(job);
+    print_inputs(names, mask);
+    json_decref(names);
     return STATUS_SUCCESS;
 }
 
-/* Read "3=1", "08=0", "di3=1". Returns false if it is wrong. */
+/* Read "3=1", "08=0", "di3=1", "near=1". Returns false if it is wrong. */
 static bool read_input(const char *word, json_t *inputs)
 {
-    char name[3], digits[3] = "";
+    char name[16];
     uint64_t number;
-    if (strncmp(word, "di", 2) == 0)
+    if (strncmp(word, "di", 2) == 0 && word[2] >= '0' && word[2] <= '9')
         word += 2;
     size_t length = strcspn(word, "=");
     const char *end = word + length;
-    if (length < sizeof digits)
-        memcpy(digits, word, length);
-    if (!number_read(digits, 1, 8, &number) || end[0] != '=' || (end[1] != '0' && end[1] != '1') || end[2] != '\0')
+    if (length < 1 || length >= sizeof name || end[0] != '=' || (end[1] != '0' && end[1] != '1') || end[2] != '\0')
         return false;
-    snprintf(name, sizeof name, "%02d", (int)(number & 15));
+    snprintf(name, sizeof name, "%.*s", (int)length, word);
+    bool is_number = strspn(name, "0123456789") == length;
+    if (is_number && (length > 2 || !number_read(name, 1, 32, &number)))
+        return false;
     json_object_set_new(inputs, name, json_integer(end[1] - '0'));
     return true;
 }
@@ -171,7 +192,7 @@ enum exit_status client_control_di(struct client_job *job)
     for (size_t i = 0; i < job->count; i++) {
         if (!read_input(job->words[i], inputs)) {
             json_decref(inputs);
-            return client_usage("di: expected an input 1 to 8 and its level, as in 3=1, found '%s'", job->words[i]);
+            return client_usage("di: expected an input, its number or name, and its level, as in 3=1, found '%s'", job->words[i]);
         }
     }
     if (job->count == 0) {
@@ -182,7 +203,9 @@ enum exit_status client_control_di(struct client_job *job)
     if (status != STATUS_SUCCESS)
         return status;
     warn_overridden(result);
+    json_t *known = job->json ? NULL : fetch_input_names(job);
     if (!job->json)
-        print_inputs(integer_of(result, "di"));
+        print_inputs(known, integer_of(result, "di"));
+    json_decref(known);
     return client_job_done(job, result);
 }

@@ -6,18 +6,6 @@
 #include "methods.h"
 #include "unit_state.h"
 
-/* "1", "01", … -> 1..inputs; 0: no input. */
-static unsigned find_input(const char *name, unsigned inputs)
-{
-    size_t length = strlen(name);
-    unsigned number = 0;
-    if (length < 1 || length > 2 || strspn(name, "0123456789") != length)
-        return 0;
-    for (; *name != '\0'; name++)
-        number = number * 10 + (unsigned)(*name - '0');
-    return number <= inputs ? number : 0;
-}
-
 /* 0, 1, false, true -> 0, 1; -1: none of these. */
 static int read_level(const json_t *value)
 {
@@ -63,15 +51,17 @@ static json_t *command_motor_program(struct sim *sim, const json_t *params, stru
 /* ---- Inputs --------------------------------------------------------------------------------------------------------- */
 
 /* Read the inputs named in `di` into `given`, and their levels. */
-static bool read_inputs(const json_t *di, unsigned inputs, uint32_t *given, uint32_t *levels, struct refusal *refusal)
+static bool read_inputs(const struct device_kind *kind, const json_t *di, uint32_t *given, uint32_t *levels,
+                        struct refusal *refusal)
 {
     const char *name;
     const json_t *value;
+    char expected[DEVICE_ERROR_SIZE];
     json_object_foreach((json_t *)di, name, value) {
-        unsigned input = find_input(name, inputs);
+        unsigned input = device_input_named(kind, name);
         int level = read_level(value);
         if (input == 0) {
-            refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': expected 1 to %u", name, inputs);
+            refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': expected %s", name, device_input_names(kind, expected));
             return false;
         }
         uint32_t bit = UINT32_C(1) << (input - 1);
@@ -89,17 +79,18 @@ static bool read_inputs(const json_t *di, unsigned inputs, uint32_t *given, uint
     return true;
 }
 
-static bool read_di(const json_t *params, unsigned inputs, uint32_t *given, uint32_t *levels, struct refusal *refusal)
+static bool read_di(const struct device_kind *kind, const json_t *params, uint32_t *given, uint32_t *levels,
+                    struct refusal *refusal)
 {
     const json_t *di = json_object_get(params, "di"), *mask = json_object_get(params, "mask");
     int64_t value;
     if (json_is_object(di) && json_object_size(di) > 0 && !mask)
-        return read_inputs(di, inputs, given, levels, refusal);
+        return read_inputs(kind, di, given, levels, refusal);
     if (di || !mask) {
         refuse(refusal, REFUSED_PARAMS, "expected either di, an object as in {\"3\": 1, \"08\": 0}, or mask, a number");
         return false;
     }
-    if (!param_integer(params, "mask", 0, (INT64_C(1) << inputs) - 1, &value, refusal))
+    if (!param_integer(params, "mask", 0, (INT64_C(1) << kind->inputs) - 1, &value, refusal))
         return false;
     *given = UINT32_MAX;
     *levels = (uint32_t)value;
@@ -113,7 +104,7 @@ static json_t *command_di_set(struct sim *sim, const json_t *params, struct refu
     if (number == 0)
         return NULL;
     uint32_t given = 0, levels = sim->unit[number - 1].di;
-    if (!read_di(params, sim_device(sim)->inputs, &given, &levels, refusal))
+    if (!read_di(sim_device(sim), params, &given, &levels, refusal))
         return NULL;
     sim_set_di(sim, number, levels);
     uint32_t inputs = sim_device(sim)->inputs_of(sim_core(sim, number));
@@ -169,6 +160,15 @@ static json_t *command_switch(struct sim *sim, const json_t *params, struct refu
                      (int)sim_device(sim)->node(sim_core(sim, number)));
 }
 
+/* A list of names; NULL: there are none, or out of memory. */
+static json_t *names_json(const char *const *names, unsigned count)
+{
+    json_t *list = names ? json_array() : NULL;
+    for (unsigned at = 0; list && at < count; at++)
+        json_array_append_new(list, json_string(names[at]));
+    return list;
+}
+
 static json_t *command_units(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const none[] = {NULL};
@@ -181,8 +181,10 @@ static json_t *command_units(struct sim *sim, const json_t *params, struct refus
     json_decref(settings);
     for (unsigned number = 1; number <= sim_units(sim); number++)
         json_array_append_new(list, json_string(sim->unit[number - 1].name));
-    return json_pack("{s:I, s:o, s:o*, s:o*}", "t_us", (json_int_t)sim_now(sim), "units", list, "framing", framing, "readings",
-                     readings);
+    const struct device_kind *kind = sim_device(sim);
+    return json_pack("{s:I, s:o, s:o*, s:o*, s:o*, s:o*}", "t_us", (json_int_t)sim_now(sim), "units", list, "framing", framing,
+                     "readings", readings, "inputs", names_json(kind->input_names, kind->inputs), "outputs",
+                     names_json(kind->output_names, kind->outputs));
 }
 
 /* What the units are: numbers that a client cannot know beforehand. */

@@ -240,6 +240,26 @@ static bool read_unit_and_direction(struct sim *sim, const json_t *params, struc
 
 /* ---- Methods -------------------------------------------------------------------------------------------------------- */
 
+/* `input`: a number or a name. */
+static bool read_input_number(const struct device_kind *device, const json_t *params, struct fault *fault,
+                              struct refusal *refusal)
+{
+    char expected[DEVICE_ERROR_SIZE];
+    const char *name = json_string_value(json_object_get(params, "input"));
+    if (!name)
+        return read_number(params, "input", 1, device->inputs, -1, fault, refusal);
+    fault->number = device_input_named(device, name);
+    if (fault->number == 0)
+        refuse(refusal, REFUSED_PARAMS, "input: unknown input `%.40s': expected %s", name, device_input_names(device, expected));
+    return fault->number > 0;
+}
+
+static bool has_check_value(const struct sim *sim)
+{
+    const struct device_kind *device = sim_device(sim);
+    return device->receive && device->has_check_value(&sim->config.unit);
+}
+
 static json_t *command_fault_inject(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     struct fault fault = {0};
@@ -249,11 +269,11 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
         !read_window(sim, params, &fault, refusal) || !read_interval(params, &fault, refusal) ||
         !read_unit_and_direction(sim, params, &fault, refusal) || !readers[fault.kind](params, &fault, refusal))
         return NULL;
-    if (fault.kind == FAULT_INPUT && !read_number(params, "input", 1, sim_device(sim)->inputs, -1, &fault, refusal))
+    if (fault.kind == FAULT_INPUT && !read_input_number(sim_device(sim), params, &fault, refusal))
         return NULL;
-    if (fault.kind == FAULT_WRONG_FCS && !sim_device(sim)->has_check_value(&sim->config.unit))
+    if (fault.kind == FAULT_WRONG_FCS && !has_check_value(sim))
         return refuse(refusal, REFUSED_STATE, "wrong_fcs: framing `%s' has no check value",
-                      sim_device(sim)->framing(&sim->config.unit)->link->name);
+                      sim->monitor.framing->link->name);
     uint32_t id = faults_add(&sim->faults, &fault);
     if (id == 0)
         return refuse(refusal, REFUSED_STATE, "too many faults: %u can still act; clear some of them first", FAULTS_MAX);

@@ -287,6 +287,18 @@ static void print_message(FILE *out, const struct term_message *message, struct 
         fputs(message->seen ? " (one has passed)" : " (none has passed)", out);
 }
 
+/* Its name, or its number where it has none. */
+static void print_bit(FILE *out, const struct term *term, const struct device_kind *device)
+{
+    const char *const *names = term->kind == TERM_INPUT    ? device->input_names
+                               : term->kind == TERM_OUTPUT ? device->output_names
+                                                           : NULL;
+    if (names)
+        fprintf(out, " %s", names[term->number - 1]);
+    else
+        fprintf(out, " %02u", term->number);
+}
+
 static void print_term(FILE *out, const struct term *term, struct sim *sim, enum part part)
 {
     bool bit = term->kind == TERM_INPUT || term->kind == TERM_OUTPUT || term->kind == TERM_VARIABLE;
@@ -300,7 +312,7 @@ static void print_term(FILE *out, const struct term *term, struct sim *sim, enum
         fprintf(out, "motor %u ", term->motor);
     fputs(term_name((enum term_kind)term->kind), out);
     if (bit)
-        fprintf(out, " %02u", term->number);
+        print_bit(out, term, sim_device(sim));
     fputc(' ', out);
     if (part == PART_FOUND) {
         print_value(out, term, sim, term_value(term, sim));

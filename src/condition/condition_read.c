@@ -189,17 +189,25 @@ static bool read_bits(struct reader *r, struct term *group, struct term term, co
 {
     bool variables = term.kind == TERM_VARIABLE;
     const struct device_kind *device = sim_device(r->sim);
+    const bool names = !variables && (term.kind == TERM_OUTPUT ? device->output_names : device->input_names);
     unsigned low = variables ? device->first_variable : 1;
     unsigned count = variables ? device->variables : term.kind == TERM_OUTPUT ? device->outputs : device->inputs;
     unsigned high = low + count - 1;
     const char *name;
+    char expected[DEVICE_ERROR_SIZE];
     json_t *level;
     if (count == 0)
         return REFUSE("%s: the device %s has none", key, device->name);
     if (!json_is_object(json) || json_object_size(json) == 0)
         return REFUSE("%s: expected numbers with levels, as in {\"%02u\": 1}", key, low);
     json_object_foreach((json_t *)json, name, level) {
-        term.number = read_bit_number(name, low, high);
+        term.number = (uint8_t)(variables                  ? read_bit_number(name, low, high)
+                                : term.kind == TERM_OUTPUT ? device_output_named(device, name)
+                                                           : device_input_named(device, name));
+        if (term.number == 0 && names)
+            return REFUSE("%s: expected %s, found \"%.20s\"", key,
+                          term.kind == TERM_OUTPUT ? device_output_names(device, expected) : device_input_names(device, expected),
+                          name);
         if (term.number == 0)
             return REFUSE("%s: expected a number %02u to %02u, found \"%.20s\"", key, low, high, name);
         if (!is_flag(level, &term.value))

@@ -28,12 +28,15 @@
 
 #define DEVICE_FLASH_BLOCKS_MAX 64u  /* blocks of flash */
 #define DEVICE_FLASH_BLOCK_MAX 4096u /* bytes of a block */
+#define DEVICE_MESSAGE_MAX 9216u  /* bytes of a message, without framing */
 #define DEVICE_NEVER UINT64_MAX   /* no time */
+#define DEVICE_TURNAROUND 521u    /* us: one character */
 #define DEVICE_AXES_MAX 16u       /* of a unit; axis 1..DEVICE_AXES_MAX, 0 is the unit */
 #define DEVICE_BITS_MAX 32u       /* inputs, outputs, variables: bit 0 is the first */
 #define DEVICE_SETTINGS_SIZE 128u /* bytes that a kind has for its own settings */
 #define DEVICE_COMMAND_SIZE 64u   /* bytes of a command as text */
 #define DEVICE_ERROR_SIZE 256u    /* bytes of a message */
+#define DEVICE_BIT_NAME_SIZE 16u  /* bytes of the name of an input or output, with its end */
 #define DEVICE_TEXT_OVERFLOWS 3   /* flag of set_text: more than the memory holds */
 
 /* A unit of any kind: kind->size bytes of plain memory. Copying them is a snapshot; what is copied back, or elsewhere, needs
@@ -179,6 +182,11 @@ struct device_framing {
     const struct rkm04_framing *link; /* finds messages and makes them */
     int flag, escape;                 /* bytes: every frame begins and ends with `flag`, `escape` before it aborts; -1: none */
     uint32_t silence;                 /* us after which bytes belong to no frame that was begun; 0: any time */
+    /* Messages that end with `silence` us in which no byte comes: link->receive gathers receiver->length bytes in `buffer` and
+     * returns false; after the silence, or when the other side begins to send, this is called. Are they a message? Then `dnode`,
+     * and `length` bytes of content at the begin of `buffer`; otherwise one of the counters is raised. `answer`: of a unit. Zero
+     * *receiver before the next message. NULL: a byte ends each message. */
+    bool (*end)(struct rkm04_receiver *receiver, uint8_t *buffer, bool answer);
     const char *no_address;           /* what bytes are that cannot be an address: "no frame, no address above 16" */
 };
 
@@ -213,14 +221,18 @@ struct device_kind {
     size_t size;             /* bytes of a unit */
     unsigned axes, inputs, outputs, variables; /* 0..DEVICE_AXES_MAX, 0..DEVICE_BITS_MAX */
     unsigned first_variable; /* number of the first variable: 80 is VAR 80 */
+    /* Names of inputs and outputs, the first one first: "near", "lmt+"; letters, digits and `_ . + -`, shorter than
+     * DEVICE_BIT_NAME_SIZE, no number. They may be used in place of the numbers. NULL: numbers alone. */
+    const char *const *input_names, *const *output_names;
     unsigned addresses;      /* 1..addresses are addresses; at most 247 */
     unsigned ticks_per_us;
     unsigned slot;           /* us of the period in which it looks at inputs and executes commands */
     unsigned pulse;          /* us of a step pulse; see pulse_ticks */
+    unsigned turnaround;     /* us from a request to its answer, unless --turnaround says otherwise; 0: one character */
     unsigned program;        /* commands that an axis can have in memory; 0: it has no program */
     bool is_program_whole;   /* a text is for all axes (axis 0), not for one */
     unsigned flash_blocks, flash_block_size; /* 0: no flash */
-    unsigned request_max, answer_max; /* bytes of the longest message, without framing */
+    unsigned request_max, answer_max; /* bytes of the longest message, without framing; at most DEVICE_MESSAGE_MAX */
 
     /* Power up at us 0 with the node and settings of `config`, which are copied; `port` must stay. */
     void (*begin)(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context);
@@ -237,9 +249,13 @@ struct device_kind {
      * are. */
     unsigned (*pulse_ticks)(const struct device_unit *unit, unsigned axis);
 
-    /* The bus. `receive` NULL: the device has none, and none of these is called. */
+    /* The bus. `receive` NULL: the device has none; then none of these is called, nor framing(), and all may be NULL. */
     size_t (*receive)(struct device_unit *unit, const uint8_t *bytes, size_t length); /* returns how many it took */
     size_t (*send)(struct device_unit *unit, uint8_t *bytes, size_t room); /* bytes of its answer; 0: nothing now */
+    /* Requests that end with a silence: the us at which the silence that the unit waits for is over, if no byte comes before;
+     * DEVICE_NEVER: it waits for none. At that us, before anything else happens in it, `receive` is called with 0 bytes: now it
+     * is over, and silence_end() must be later. NULL: a byte ends each request. */
+    uint64_t (*silence_end)(const struct device_unit *unit);
     bool (*has_answer)(const struct device_unit *unit);           /* is there an answer, now or later? */
     uint64_t (*answer_wait)(const struct device_unit *unit);      /* us until it can begin with that answer; 0: now */
     struct device_counters (*counters)(const struct device_unit *unit);
@@ -318,12 +334,26 @@ struct device_kind {
     const struct device_coverage *coverage; /* NULL: not known */
 };
 
+/* The framing of messages with these settings; of a device without a bus one that finds none. */
+const struct device_framing *device_framing_of(const struct device_kind *kind, const struct device_config *config);
+
+/* us from the end of a request to its answer where nothing else is said. */
+unsigned device_turnaround(const struct device_kind *kind);
+
 /* The kind of this name, or the one at `at` from 0 on: NULL if there is none. */
 const struct device_kind *device_kind_named(const char *name);
 const struct device_kind *device_kind_at(unsigned at);
 
 /* Writes the names of all kinds, "rkm04, fake", for messages. Returns `text`. */
 const char *device_kind_names(char text[DEVICE_ERROR_SIZE]);
+
+/* The number of an input, or output, from 1, by its name or number ("near", "3", "03"). Returns 0: there is none. */
+unsigned device_input_named(const struct device_kind *kind, const char *name);
+unsigned device_output_named(const struct device_kind *kind, const char *name);
+
+/* What inputs, or outputs, are expected, for messages: "1 to 8", "1 to 3 or near, home, z". Returns `text`. */
+const char *device_input_names(const struct device_kind *kind, char text[DEVICE_ERROR_SIZE]);
+const char *device_output_names(const struct device_kind *kind, char text[DEVICE_ERROR_SIZE]);
 
 /* The option of this name, or the one of this key of scenarios (`-` is `_`). NULL: the kind has none. */
 const struct device_option *device_option_named(const struct device_kind *kind, const char *name);

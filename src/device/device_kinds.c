@@ -66,3 +66,53 @@ const struct device_option *device_option_keyed(const struct device_kind *kind, 
             return option;
     return NULL;
 }
+
+/* ---- Framing -------------------------------------------------------------------------------------------------------- */
+
+static bool receive_none(struct rkm04_receiver *receiver, uint8_t byte, uint64_t now, uint8_t *buffer, size_t room)
+{
+    (void)receiver;
+    (void)byte;
+    (void)now;
+    (void)buffer;
+    (void)room;
+    return false;
+}
+
+static size_t begin_plain(struct rkm04_sender *sender, uint8_t dnode, uint8_t snode, size_t length, bool answer, uint8_t *out)
+{
+    (void)sender;
+    (void)dnode;
+    (void)snode;
+    (void)length;
+    (void)answer;
+    (void)out;
+    return 0;
+}
+
+static size_t put_plain(struct rkm04_sender *sender, uint8_t byte, uint8_t *out)
+{
+    (void)sender;
+    out[0] = byte;
+    return 1;
+}
+
+static size_t end_plain(struct rkm04_sender *sender, uint8_t *out)
+{
+    (void)sender;
+    (void)out;
+    return 0;
+}
+
+const struct device_framing *device_framing_of(const struct device_kind *kind, const struct device_config *config)
+{
+    static const struct rkm04_framing link = {
+        .name = "none", .receive = receive_none, .begin = begin_plain, .put = put_plain, .end = end_plain};
+    static const struct device_framing none = {.link = &link, .flag = -1, .escape = -1};
+    return kind->receive ? kind->framing(config) : &none;
+}
+
+unsigned device_turnaround(const struct device_kind *kind)
+{
+    return kind->turnaround > 0 ? kind->turnaround : DEVICE_TURNAROUND;
+}

@@ -8,7 +8,7 @@
 #include "text/text.h"
 
 #define DESCRIPTION "unit for four stepper motors on RS485 (SofCon RKM04)"
-#define ANSWER_MAX 9216u /* bytes of the longest message of a unit, however small requests are */
+#define ANSWER_MAX DEVICE_MESSAGE_MAX /* the longest that a framing can have */
 
 _Static_assert(RKM04_COMMAND_TEXT_MAX <= DEVICE_COMMAND_SIZE, "a command fits");
 _Static_assert((int)DEVICE_SLOT_LOADED == (int)RKM04_SLOT_LOADED && (int)DEVICE_SLOT_UNTRUSTED == (int)RKM04_SLOT_UNTRUSTED &&

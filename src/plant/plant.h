@@ -54,7 +54,7 @@ struct plant_change {
 
 /* What a plant has to know of the device whose motors it moves. */
 struct plant_device {
-    unsigned axes, inputs;             /* at most DEVICE_AXES_MAX, DEVICE_BITS_MAX */
+    const struct device_kind *kind;
     int64_t position[DEVICE_AXES_MAX]; /* the counters, in steps */
 };
 

@@ -162,7 +162,7 @@ static bool read_motors(const struct config_node *node, const struct plant_devic
 {
     char names[DEVICE_AXES_MAX][12];
     const char *numbers[DEVICE_AXES_MAX + 1u] = {NULL};
-    for (unsigned at = 0; at < device->axes; at++) {
+    for (unsigned at = 0; at < device->kind->axes; at++) {
         snprintf(names[at], sizeof names[at], "%u", at + 1u);
         numbers[at] = names[at];
     }
@@ -219,6 +219,21 @@ static bool read_hysteresis(const struct config_node *node, const struct plant_m
            config_error(node, "expected a smaller hysteresis: with this one the switch is always actuated");
 }
 
+/* Its number, or its name. */
+static bool read_input(const struct config_node *node, const struct device_kind *kind, uint8_t *input)
+{
+    char expected[DEVICE_ERROR_SIZE];
+    int64_t number;
+    if (kind->input_names && config_type(node) == CONFIG_TEXT) {
+        *input = (uint8_t)device_input_named(kind, config_text(node));
+        return *input > 0 || config_error(node, "expected an input %s", device_input_names(kind, expected));
+    }
+    if (!config_integer(node, "an input", 1, kind->inputs, &number))
+        return false;
+    *input = (uint8_t)number;
+    return true;
+}
+
 static bool read_switch(const struct config_node *node, const struct plant_device *device, const struct plant *plant,
                         struct plant_switch *to)
 {
@@ -227,14 +242,12 @@ static bool read_switch(const struct config_node *node, const struct plant_devic
     if (!is_map(node, "a switch, as in {input: 01, motor: 1, at_most: 0}") || !config_keys(node, names))
         return false;
     const struct config_node *input = config_get(node, "input"), *motor = config_get(node, "motor");
-    int64_t in, number;
+    int64_t number;
     if (!input || !motor)
         return config_error(node, "expected input and motor, as in {input: 01, motor: 1, at_most: 0}");
-    if (!config_integer(input, "an input", 1, device->inputs, &in) ||
-        !config_integer(motor, "a motor", 1, device->axes, &number))
+    if (!read_input(input, device->kind, &to->input) || !config_integer(motor, "a motor", 1, device->kind->axes, &number))
         return false;
     const struct plant_motor *moves = &plant->motor[number - 1];
-    to->input = (uint8_t)in;
     to->motor = (uint8_t)number;
     if (!read_zone(node, moves, to) || !read_hysteresis(node, moves, to) ||
         !read_time(node, "bounce", "the bounce time", &to->bounce) ||
@@ -281,7 +294,7 @@ struct plant *plant_read(const struct config_node *node, const struct plant_devi
     struct plant *plant = NULL;
     if (!is_map(node, "motors and switches") || !config_keys(node, names))
         return NULL;
-    plant = plant_new(device->axes);
+    plant = plant_new(device->kind->axes);
     if (!plant) {
         config_error(node, "out of memory");
         return NULL;

@@ -65,7 +65,7 @@ static bool read_config(const json_t *options, struct sim_config *config, struct
     if (!read_device(options, config, refusal) || !has_known_keys(options, config->device, refusal) ||
         !read_units(options, config, refusal) || !read_own(options, config, refusal) ||
         !param_integer_or(options, "seed", 0, INT64_MAX, 1, &seed, refusal) ||
-        !param_time(options, "turnaround", SEGMENT_TURNAROUND, &turnaround, refusal))
+        !param_time(options, "turnaround", device_turnaround(config->device), &turnaround, refusal))
         return false;
     if (turnaround > SEGMENT_TURNAROUND_MAX) {
         refuse(refusal, REFUSED_PARAMS, "turnaround: expected at most %u us", SEGMENT_TURNAROUND_MAX);

@@ -35,7 +35,7 @@ static bool hand_over(struct handle *handle, uint8_t byte, uint64_t tick)
 {
     struct sim *sim = &handle->sim;
     while (sim_room(sim) == 0)
-        if (!handle_advance(handle, sim_now(sim) + RKM04_SLOT_TICKS) || sim_time_is_over(sim))
+        if (!handle_advance(handle, sim_now(sim) + sim_device(sim)->slot) || sim_time_is_over(sim))
             return false;
     sim_queue_bytes(sim, &byte, 1, tick > sim_now(sim) ? tick : sim_now(sim));
     return true;
@@ -71,7 +71,7 @@ bool handle_host_write(struct handle *handle, const uint8_t *bytes, size_t lengt
         size_t room = sim_room(sim), part = length - at < room ? length - at : room;
         if (part > 0)
             sim_queue_bytes(sim, bytes + at, part, sim_now(sim));
-        else if (!handle_advance(handle, sim_now(sim) + RKM04_SLOT_TICKS) || sim_time_is_over(sim))
+        else if (!handle_advance(handle, sim_now(sim) + sim_device(sim)->slot) || sim_time_is_over(sim))
             return false;
         at += part;
     }

@@ -418,9 +418,34 @@ static PyObject *sim_frame(struct sim_object *self, PyObject *args)
     struct handle *handle = read_message(args, "iy#:frame", &node, &message, &length) ? enter(self) : NULL;
     if (!handle)
         return NULL;
-    const struct rkm04_framing *framing = sim_device(&handle->sim)->framing(&handle->sim.config.unit)->link;
+    const struct rkm04_framing *framing = handle->sim.monitor.framing->link;
     leave(self);
     return frame_message(framing, node, (const uint8_t *)message, (size_t)length);
+}
+
+/* Let time pass until a whole message has come, at most up to `tick`. */
+static bool receive_whole(struct handle *handle, uint64_t tick, struct rkm04_receiver *receiver, uint8_t *message)
+{
+    const struct device_framing *framing = handle->sim.monitor.framing;
+    struct handle_byte byte;
+    for (;;) {
+        bool open = framing->end && receiver->length > 0;
+        uint64_t silence = open ? receiver->last + framing->silence : DEVICE_NEVER;
+        if (!handle_advance_to_bytes(handle, silence < tick ? silence : tick, 1, -1))
+            return false;
+        const struct handle_host *host = &handle->host;
+        bool has_byte = host->count > 0 && host->heard[host->head].tick < silence;
+        if (has_byte && handle_host_read(handle, &byte, 1) > 0) {
+            if (framing->link->receive(receiver, byte.byte, byte.tick, message, ANSWER_ROOM))
+                return true;
+        } else if (sim_now(&handle->sim) >= silence) {
+            if (framing->end(receiver, message, true))
+                return true;
+            *receiver = (struct rkm04_receiver){.phase = 0};
+        } else {
+            return false;
+        }
+    }
 }
 
 /* Let time pass until a whole message has come to the host, at most up to a tick; the bytes that led to it are taken. Returns
@@ -430,18 +455,14 @@ static PyObject *sim_receive_message(struct sim_object *self, PyObject *value)
     static const char wanted_until[] = "(iiy#)";
     uint64_t tick;
     struct rkm04_receiver receiver = {0};
-    struct handle_byte byte;
-    bool whole = false;
     uint8_t *message = malloc(ANSWER_ROOM);
     struct handle *handle = message && read_tick(value, &tick) ? enter(self) : NULL;
     if (!handle) {
         free(message);
         return NULL;
     }
-    const struct rkm04_framing *framing = sim_device(&handle->sim)->framing(&handle->sim.config.unit)->link;
     release(self);
-    while (!whole && handle_advance_to_bytes(handle, tick, 1, -1) && handle_host_read(handle, &byte, 1) > 0)
-        whole = framing->receive(&receiver, byte.byte, byte.tick, message, ANSWER_ROOM);
+    bool whole = receive_whole(handle, tick, &receiver, message);
     take_back(self);
     leave(self);
     PyObject *result = NULL;

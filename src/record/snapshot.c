@@ -96,7 +96,8 @@ struct snapshot *snapshot_take(struct sim *sim)
     snapshot->switches = sim->config.nodes;
     snapshot->faults = sim->faults;
     bool ok = segment_copy(&snapshot->segment, &sim->segment);
-    ok = wire_monitor_begin(&snapshot->monitor, sim->monitor.framing, NULL, (struct wire_monitor_calls){0}) && ok;
+    struct wire_monitor_calls none = {0};
+    ok = wire_monitor_begin(&snapshot->monitor, sim_device(sim), sim->monitor.framing, NULL, none) && ok;
     if (ok)
         wire_monitor_copy(&snapshot->monitor, &sim->monitor, 0);
     if (sim->plant_text)

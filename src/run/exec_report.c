@@ -58,13 +58,18 @@ void report_answer(void *context, uint64_t tick, const struct stimulus *stimulus
 /* ---- For people --------------------------------------------------------------------------------------------------- */
 
 /* The numbers of the set bits, two digits each, "01 05". */
-static void print_bits(FILE *out, const char *name, unsigned mask, unsigned first)
+/* `names`: what they are called; NULL: numbers from `first` on. */
+static void print_bits(FILE *out, const char *name, unsigned mask, const char *const *names, unsigned first)
 {
     fprintf(out, "%s", name);
     if (mask == 0)
         fputs(" none", out);
     for (unsigned bit = 0; mask >> bit != 0; bit++) {
-        if (mask >> bit & 1)
+        if ((mask >> bit & 1) == 0)
+            continue;
+        if (names)
+            fprintf(out, " %s", names[bit]);
+        else
             fprintf(out, " %02u", first + bit);
     }
 }
@@ -90,9 +95,9 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end, bool
                 (unsigned)state.index, kind->led_name(state.led),
                 state.fault == 0 ? "-" : kind->fault_name(state.fault));
     }
-    print_bits(out, "inputs on:", kind->inputs_of(unit), 1);
-    print_bits(out, "; outputs on:", kind->outputs_of(unit), 1);
-    print_bits(out, "; variables on:", kind->variables_of(unit), kind->first_variable);
+    print_bits(out, "inputs on:", kind->inputs_of(unit), kind->input_names, 1);
+    print_bits(out, "; outputs on:", kind->outputs_of(unit), kind->output_names, 1);
+    print_bits(out, "; variables on:", kind->variables_of(unit), NULL, kind->first_variable);
     fputc('\n', out);
 }
 

@@ -97,11 +97,16 @@ static bool read_small(struct word word, unsigned low, unsigned high, uint8_t *n
 
 static bool read_input(struct parser *p, struct stimulus *s)
 {
-    char what[40];
+    char what[DEVICE_ERROR_SIZE + 16u], names[DEVICE_ERROR_SIZE], name[DEVICE_BIT_NAME_SIZE];
     struct word word = next_word(p);
     s->kind = STIMULUS_INPUT;
-    snprintf(what, sizeof what, "an input 01 to %02u", p->device->inputs);
-    if (!read_small(word, 1, p->device->inputs, &s->input))
+    snprintf(name, sizeof name, "%.*s", (int)word.length, word.text);
+    s->input = word.length < sizeof name ? (uint8_t)device_input_named(p->device, name) : 0;
+    if (p->device->input_names)
+        snprintf(what, sizeof what, "an input %s", device_input_names(p->device, names));
+    else
+        snprintf(what, sizeof what, "an input 01 to %02u", p->device->inputs);
+    if (s->input == 0)
         return report_expected(p, word, 0, what);
     word = next_word(p);
     if (!word_is(word, "0") && !word_is(word, "1"))

@@ -8,26 +8,52 @@
 
 /* ---- Listening ------------------------------------------------------------------------------------------------------ */
 
+static const struct device_framing *framing_of(const struct running *running)
+{
+    return device_framing_of(sim_device(running->sim), &running->scenario->config.unit);
+}
+
 static const struct rkm04_framing *link_of(const struct running *running)
 {
-    return sim_device(running->sim)->framing(&running->scenario->config.unit)->link;
+    return framing_of(running)->link;
+}
+
+static void keep_answer(struct host *host)
+{
+    if (!host->listening)
+        return;
+    host->answered = true;
+    host->dnode = host->receiver.dnode;
+    host->snode = host->receiver.snode;
+    host->length = host->receiver.length;
+}
+
+uint64_t running_silence_end(const struct running *running)
+{
+    const struct host *host = &running->host;
+    bool open = framing_of(running)->end && host->listening && !host->answered && host->receiver.length > 0;
+    return open ? host->receiver.last + framing_of(running)->silence : DEVICE_NEVER;
+}
+
+void running_end_silence(struct running *running)
+{
+    struct host *host = &running->host;
+    if (running_silence_end(running) > sim_now(running->sim))
+        return;
+    if (framing_of(running)->end(&host->receiver, host->buffer, true))
+        keep_answer(host);
+    else
+        host->receiver.length = 0;
 }
 
 void running_receive(void *context, const uint8_t *bytes, size_t length)
 {
     struct running *running = context;
     struct host *host = &running->host;
-    for (size_t i = 0; i < length && !host->answered; i++) {
-        if (!link_of(running)->receive(&host->receiver, bytes[i], sim_now(running->sim), host->buffer,
-                                          sizeof host->buffer))
-            continue;
-        if (!host->listening)
-            continue;
-        host->answered = true;
-        host->dnode = host->receiver.dnode;
-        host->snode = host->receiver.snode;
-        host->length = host->receiver.length;
-    }
+    running_end_silence(running);
+    for (size_t i = 0; i < length && !host->answered; i++)
+        if (link_of(running)->receive(&host->receiver, bytes[i], sim_now(running->sim), host->buffer, sizeof host->buffer))
+            keep_answer(host);
 }
 
 static void start_listening(struct host *host)
@@ -79,7 +105,7 @@ static bool send_bytes(struct running *running, const uint8_t *bytes, size_t len
                 *passed = (sim->segment.host_free + WIRE_TICK - 1) / WIRE_TICK;
             handed += part;
             sim_advance(sim, sim_now(sim));
-        } else if (!running_advance(running, sim_now(sim) + RKM04_SLOT_TICKS, NULL)) {
+        } else if (!running_advance(running, sim_now(sim) + sim_device(sim)->slot, NULL)) {
             return false;
         }
     }
@@ -185,6 +211,17 @@ static bool check_answer(struct running *running, const struct scenario_step *st
     return true;
 }
 
+/* Where a silence ends messages, one goes before each. */
+static bool keep_silence(struct running *running)
+{
+    const struct host *host = &running->host;
+    uint64_t last = host->sent > host->receiver.last ? host->sent : host->receiver.last;
+    uint64_t end = framing_of(running)->end && last > 0 ? last + framing_of(running)->silence : 0;
+    while (!running->over && sim_now(running->sim) < end)
+        running_advance(running, end, NULL);
+    return !running->over;
+}
+
 bool running_send(struct running *running, const struct scenario_step *step)
 {
     size_t length;
@@ -192,9 +229,11 @@ bool running_send(struct running *running, const struct scenario_step *step)
     uint8_t *bytes = make_frame(running, step, &length);
     if (bytes == NULL)
         return running_no_memory(running);
+    bool ok = step->action == ACTION_BYTES || keep_silence(running);
     if (step->answer != ANSWER_UNASKED)
         start_listening(&running->host);
-    bool ok = send_bytes(running, bytes, length, &passed);
+    ok = ok && send_bytes(running, bytes, length, &passed);
+    running->host.sent = ok ? passed : 0;
     free(bytes);
     if (step->answer == ANSWER_UNASKED || !ok)
         return ok;

@@ -112,8 +112,8 @@ static bool read_device(struct scenario_reader *reader, const struct config_node
 static bool read_line(struct scenario *scenario, const struct config_node *root)
 {
     bool ok = true;
-    uint64_t turnaround = SEGMENT_TURNAROUND;
     struct sim_config *config = &scenario->config;
+    uint64_t turnaround = device_turnaround(config->device);
     const char *units = text_of(root, "units", &ok);
     const char *baud = text_of(root, "baud", &ok);
     if (!node_list_read_up_to(&config->nodes, units != NULL ? units : "1", config->device->addresses))

@@ -204,8 +204,9 @@ bool running_advance(struct running *running, uint64_t limit, struct condition *
         next = earlier(next, condition_next(running->always[i]));
     next = earlier(next, stimuli_next(running));
     if (running->host.listening)
-        next = earlier(next, sim_due(running->sim));
+        next = earlier(next, earlier(sim_due(running->sim), running_silence_end(running)));
     sim_advance(running->sim, next > now ? next : now + 1);
+    running_end_silence(running);
     return check_all(running);
 }
 

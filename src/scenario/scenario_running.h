@@ -32,6 +32,7 @@ struct host {
     bool listening, answered; /* the first answer since it began to listen is kept */
     uint8_t dnode, snode;
     size_t length;            /* of the answer in the buffer */
+    uint64_t sent;            /* tick at which the last message had passed; 0: none */
 };
 
 struct running {
@@ -70,6 +71,11 @@ bool running_do_step(struct running *running, const struct scenario_step *step);
 
 /* The host's receiver, for sim_config.out. */
 void running_receive(void *context, const uint8_t *bytes, size_t length);
+
+/* Messages that end with a silence: when the one that comes in ends if nothing more does, DEVICE_NEVER: none comes in; it may be
+ * over. */
+uint64_t running_silence_end(const struct running *running);
+void running_end_silence(struct running *running);
 
 /* Send what the step says and judge the answer. */
 bool running_send(struct running *running, const struct scenario_step *step);

@@ -117,14 +117,19 @@ static bool read_pattern(const struct config_node *node, const char *what, struc
     return text != NULL;
 }
 
-static bool read_sent(const struct config_node *node, const char *what, struct scenario_bytes *bytes)
+/* What the host sends: at most `most` bytes. */
+static bool read_sent(const struct scenario_reader *reader, const struct config_node *node, const char *what, unsigned most,
+                      struct scenario_bytes *bytes)
 {
+    const struct device_kind *device = sim_device(reader->sim);
+    if (!device->receive)
+        return config_error(node, "the device %s has no bus: expected no %s", device->name, what);
     if (!read_pattern(node, what, bytes))
         return false;
     if (bytes->anys || bytes->rest)
         return config_error(node, "expected %s without .. and *, which stand for bytes of an answer", what);
-    if (bytes->length > RKM04_MESSAGE_MAX)
-        return config_error(node, "expected %s of up to %d bytes, found %zu", what, RKM04_MESSAGE_MAX, bytes->length);
+    if (bytes->length > most)
+        return config_error(node, "expected %s of up to %u bytes, found %zu", what, most, bytes->length);
     return true;
 }
 
@@ -150,13 +155,14 @@ static bool read_message(struct scenario_reader *reader, const struct config_nod
 {
     if (!read_unit(reader, node, true, &step->unit) || !read_within(reader, node, step))
         return false;
-    return read_sent(config_get(node, "message"), "message", &step->bytes) &&
+    return read_sent(reader, config_get(node, "message"), "message", sim_device(reader->sim)->request_max, &step->bytes) &&
            read_answer(node, step->unit == 0 ? ANSWER_UNASKED : ANSWER_ANY, step);
 }
 
 static bool read_bytes(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
 {
-    return read_within(reader, node, step) && read_sent(config_get(node, "bytes"), "bytes", &step->bytes) &&
+    const struct config_node *bytes = config_get(node, "bytes");
+    return read_within(reader, node, step) && read_sent(reader, bytes, "bytes", DEVICE_MESSAGE_MAX, &step->bytes) &&
            read_answer(node, ANSWER_UNASKED, step);
 }
 
@@ -189,8 +195,9 @@ static bool set_program(struct scenario_reader *reader, const struct config_node
         (motor_node != NULL && !config_integer(motor_node, "motor", 0, sim_device(reader->sim)->axes, &motor)) ||
         (flag_node != NULL && !config_integer(flag_node, "flag", 0, 3, &flag)))
         return false;
-    if (length > RKM04_MESSAGE_MAX - 2)
-        return config_error(node, "expected a program of up to %d bytes, as much as a message holds", RKM04_MESSAGE_MAX - 2);
+    const unsigned most = sim_device(reader->sim)->request_max - 2;
+    if (length > most)
+        return config_error(node, "expected a program of up to %u bytes, as much as a message holds", most);
     step->bytes.byte = malloc(length + 2);
     if (step->bytes.byte == NULL)
         return no_memory(node);

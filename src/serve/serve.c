@@ -244,8 +244,8 @@ static bool start_window(struct serve *serve)
     return serve->window >= 0;
 }
 
-/* The default path of the control socket: next to the link of the first bus; without one a name made of where the bus is, in the
- * folder of default links. Returns false if there is none (reported). */
+/* The default path of the control socket: next to the link of the first bus; without one a name made of where the bus is, or of
+ * the device that has none, in the folder of default links. Returns false if there is none (reported). */
 static bool default_control(const struct serve *serve, char path[PATH_MAX])
 {
     const struct bus_ports *ports = &serve->bus[0]->ports;
@@ -257,8 +257,10 @@ static bool default_control(const struct serve *serve, char path[PATH_MAX])
         log_error("the path of the link is too long for a control socket next to it");
         return false;
     }
-    const char *kind = port ? "" : ports->tcp ? "tcp-" : "rfc2217-";
-    const char *where = slash ? slash + 1 : port ? port : ports->tcp ? ports->tcp->address : ports->rfc2217->address;
+    const char *kind = ports->tcp ? "tcp-" : ports->rfc2217 ? "rfc2217-" : "";
+    const char *where = slash ? slash + 1 : port ? port : serve->options.device.kind->name;
+    if (ports->tcp || ports->rfc2217)
+        where = ports->tcp ? ports->tcp->address : ports->rfc2217->address;
     snprintf(name, sizeof name, "%s%.200s.control", kind, where);
     return link_path_default(path, name);
 }

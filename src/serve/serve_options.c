@@ -92,7 +92,7 @@ static const struct argp_option table[] = {
     {NULL, 0, NULL, 0, "For tests:", 4},
     {"control", KEY_CONTROL, "PATH", 0,
      "Unix socket to read and change the state of all units (JSON-RPC; rkmctl --control); default: the link's name and "
-     ".control; without a link, a name from the device or address, in the folder of default links", 0},
+     ".control; without a link, a name from the serial device, address or kind of device, in the folder of default links", 0},
     {"no-control", KEY_NO_CONTROL, NULL, 0, "No control socket", 0},
     {"window", KEY_WINDOW, "ADDRESS:PORT", OPTION_ARG_OPTIONAL,
      "Show the units in a browser, too (rkmctl window): the address is printed after READY; default 127.0.0.1:0, any port", 0},
@@ -275,10 +275,25 @@ static void check_patterns(const struct bus_options *options, struct argp_state 
     }
 }
 
+/* A device without a bus has no ports. */
+static void check_ports(struct bus_options *options, const struct argp_state *state)
+{
+    const struct device_kind *device = options->device.kind;
+    const char *given = options->port      ? "port"
+                        : options->link    ? "link"
+                        : options->tcp     ? "tcp"
+                        : options->rfc2217 ? "rfc2217"
+                        : options->wine    ? "wine"
+                                           : NULL;
+    bool net = options->tcp || options->rfc2217;
+    options->pty = device->receive && !options->port && (!net || options->link || options->wine);
+    if (given && !device->receive)
+        argp_error(state, "--%s: the device %s has no bus", given, device->name);
+}
+
 /* What does not go together. */
 static void check_combinations(struct bus_options *options, struct argp_state *state)
 {
-    bool net = options->tcp || options->rfc2217;
     if (options->port && options->link)
         argp_error(state, "--link names the emulator's own pty: expected either --link or --port");
     if (options->port && options->wine)
@@ -300,13 +315,12 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
     if (options->baud == 0 && options->turnaround != NO_TURNAROUND)
         argp_error(state, "--turnaround needs bytes that take time: expected it without --baud 0");
     if (options->turnaround == NO_TURNAROUND)
-        options->turnaround = options->baud != 0 ? SEGMENT_TURNAROUND : 0;
+        options->turnaround = options->baud != 0 ? device_turnaround(options->device.kind) : 0;
     if (options->control && options->no_control)
         argp_error(state, "expected either --control or --no-control");
     if (options->window && options->no_control)
         argp_error(state, "--window needs the control socket: expected it without --no-control");
     check_patterns(options, state);
-    options->pty = !options->port && (!net || options->link || options->wine);
 }
 
 /* Options of the units and of time. */
@@ -464,6 +478,7 @@ static error_t read_option(int key, char *text, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         check_device(options, state);
+        check_ports(options, state);
         check_combinations(options, state);
         return 0;
     default:

@@ -31,7 +31,9 @@ static void log_ports(const struct bus *bus)
     const struct bus_ports *ports = &bus->ports;
     char units[NODES_TEXT_SIZE];
     units_text(&bus->options->nodes, units);
-    if (bus->options->port)
+    if (!bus->options->device.kind->receive)
+        bus_log(&bus->log, "%s, device %s, without a bus", units, bus->options->device.kind->name);
+    else if (bus->options->port)
         bus_log(&bus->log, "%s on %s", units, bus->options->port);
     else if (bus->options->pty)
         bus_log(&bus->log, "%s on %s, link %s", units, ports->line.path, ports->link.path);
@@ -62,7 +64,7 @@ static void log_flash(struct bus *bus)
 
 static const char *framing_name(const struct bus_options *options)
 {
-    return options->device.kind->framing(&options->device.config)->link->name;
+    return device_framing_of(options->device.kind, &options->device.config)->link->name;
 }
 
 void serve_report_start(const struct bus_options *options, struct bus *const *buses)
@@ -73,7 +75,9 @@ void serve_report_start(const struct bus_options *options, struct bus *const *bu
         log_ports(buses[i]);
     if (readings && readings->text(&options->device.config, text)[0] != '\0')
         log_at(0, "readings %s", text);
-    if (options->baud == 0 || options->clock.stands)
+    if (!options->device.kind->receive)
+        log_at(0, "clock %s", options->clock_text);
+    else if (options->baud == 0 || options->clock.stands)
         log_at(0, "framing %s, bytes take no time, clock %s", framing_name(options), options->clock_text);
     else
         log_at(0, "framing %s, bytes paced at 19200 baud, turnaround %" PRIu32 " us, clock %s", framing_name(options),
@@ -161,6 +165,8 @@ void serve_report_end(struct bus *bus)
 {
     struct device_counters sum = {0};
     struct segment_counters line = segment_counters(&bus->sim.segment);
+    if (!sim_device(&bus->sim)->receive)
+        return;
     for (unsigned number = 1; number <= sim_units(&bus->sim); number++) {
         const struct device_counters counters = sim_device(&bus->sim)->counters(sim_core(&bus->sim, number));
         sum.requests += counters.requests;

@@ -301,7 +301,7 @@ bool sim_time_is_over(const struct sim *sim)
 
 uint64_t sim_due(const struct sim *sim)
 {
-    return segment_due(&sim->segment);
+    return earlier(segment_due(&sim->segment), wire_monitor_due(&sim->monitor));
 }
 
 static uint64_t plants_next(const struct sim *sim)
@@ -339,6 +339,7 @@ static uint64_t leap_end(const struct sim *sim, uint64_t tick)
     uint64_t now = sim_now(sim), end = earlier(tick, faults_next(&sim->faults)), bounce = plants_next(sim), due = sim_due(sim);
     uint64_t event = earlier(segment_next_event(&sim->segment), due);
     event = event > now ? event : now;
+    end = earlier(end, wire_monitor_due(&sim->monitor));
     if ((sim->faults.kinds >> FAULT_POWER & 1u) != 0)
         end = earlier(end, due > now ? due : now);
     for (unsigned number = 1; number <= sim->segment.units; number++) {
@@ -357,6 +358,7 @@ void sim_advance(struct sim *sim, uint64_t tick)
     tick = earlier(tick, SIM_TIME_MAX);
     do {
         segment_advance(&sim->segment, leap_end(sim, tick));
+        wire_monitor_pass_time(&sim->monitor, sim_now(sim));
         apply_plant_changes(sim); /* they were before the faults that begin or end now */
         if (faults_next(&sim->faults) <= sim_now(sim))
             faults_update(&sim->faults);
@@ -551,7 +553,8 @@ bool sim_begin(struct sim *sim, const struct sim_config *config)
     faults_begin(&sim->faults, config->seed, &sim->segment, &fault_calls, sim);
     segment_begin(&sim->segment, &segment);
     struct wire_monitor_calls calls = {.is_wanted = is_message_wanted, .message = on_message, .context = sim};
-    if (!wire_monitor_begin(&sim->monitor, sim_device(sim)->framing(&sim->config.unit), &sim->segment, calls))
+    const struct device_framing *framing = device_framing_of(sim_device(sim), &sim->config.unit);
+    if (!wire_monitor_begin(&sim->monitor, sim_device(sim), framing, &sim->segment, calls))
         return false;
     for (unsigned at = 0; at < config->nodes.count; at++)
         if (!add_unit(sim, at))

@@ -21,8 +21,8 @@ static void free_plants(struct plants *plants)
 static struct plant *read_plant(struct sim *sim, const struct config_node *node, unsigned number)
 {
     const struct device_kind *kind = sim_device(sim);
-    struct plant_device device = {.axes = kind->axes, .inputs = kind->inputs};
-    for (unsigned axis = 1; axis <= device.axes; axis++)
+    struct plant_device device = {.kind = kind};
+    for (unsigned axis = 1; axis <= kind->axes; axis++)
         device.position[axis - 1u] = sim_axis(sim, number, axis).position;
     return plant_read(node, &device, sim_now(sim), sim->config.seed);
 }

@@ -372,10 +372,15 @@ static void declare_signal(struct trace_file *file, const char *type, const char
     trace_wrote(file, put_text(at, " $end\n"));
 }
 
-static void declare_bits(struct trace_file *file, const char *prefix, const char *name, unsigned count, unsigned number,
-                         unsigned signal)
+/* `names`: what they are called instead of NAME01, …; NULL: so. */
+static void declare_bits(struct trace_file *file, const char *prefix, const char *name, const char *const *names,
+                         unsigned count, unsigned number, unsigned signal)
 {
     for (unsigned bit = 0; bit < count; bit++, number++) {
+        if (names) {
+            declare_signal(file, "wire 1", prefix, names[bit], signal + bit);
+            continue;
+        }
         char text[8], *at = put_text(text, name);
         *at++ = (char)('0' + number / 10u);
         *at++ = (char)('0' + number % 10u);
@@ -431,9 +436,9 @@ static void declare_unit(struct trace_file *file, unsigned unit)
         memcpy(at, "_", 2);
     }
     declare_signal(file, "wire 1", prefix, "power", first);
-    declare_bits(file, prefix, "di", kind->inputs, 1, first + vcd->place.inputs);
-    declare_bits(file, prefix, "do", kind->outputs, 1, first + vcd->place.outputs);
-    declare_bits(file, prefix, "var", kind->variables, kind->first_variable, first + vcd->place.variables);
+    declare_bits(file, prefix, "di", kind->input_names, kind->inputs, 1, first + vcd->place.inputs);
+    declare_bits(file, prefix, "do", kind->output_names, kind->outputs, 1, first + vcd->place.outputs);
+    declare_bits(file, prefix, "var", NULL, kind->variables, kind->first_variable, first + vcd->place.variables);
     for (unsigned motor = 1; motor <= sim_device(file->sim)->axes; motor++)
         declare_motor(file, prefix, unit, motor);
     if (sim_units(file->sim) > 1)

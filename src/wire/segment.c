@@ -79,7 +79,7 @@ static void alter_byte(struct segment *segment, unsigned station, uint8_t byte, 
 /* Has the unit an answer, now or later? */
 static bool has_answer(const struct segment *segment, const struct segment_unit *unit)
 {
-    return unit->powered && segment->config.kind->has_answer(unit->unit);
+    return unit->powered && segment->config.kind->receive && segment->config.kind->has_answer(unit->unit);
 }
 
 /* Ticks until the unit can begin with its answer. */
@@ -123,14 +123,13 @@ static void report_to_monitor(struct segment *segment, const struct segment_byte
 static void deliver_to_unit(struct segment *segment, struct segment_unit *unit, uint8_t byte)
 {
     const struct device_kind *kind = segment->config.kind;
+    if (!kind->receive)
+        return;
     if (kind->receive(unit->unit, &byte, 1) == 0) {
         segment->overruns++;
         return;
     }
-    struct device_counters counters = kind->counters(unit->unit);
-    uint32_t frames = counters.requests + counters.others + counters.dropped;
-    unit->in_frame = frames == unit->frames;
-    unit->frames = frames;
+    segment_note_frames(segment, unit);
     report_processed(segment, unit);
 }
 
@@ -252,9 +251,22 @@ static void end_byte(struct segment *segment, const struct wire_byte *received)
     } else {
         struct segment_unit *unit = &segment->unit[received->receiver - 1u];
         deliver_to_unit(segment, unit, received->byte);
+        unit->heard = received->end;
         if (unit->next == DEVICE_NEVER && has_answer(segment, unit))
             unit->next = received->end + (segment->config.turnaround + answer_wait(segment, unit)) * (uint64_t)WIRE_TICK;
     }
+}
+
+/* Do what the silence leads to that is over before anything else happens, at `tick` at the latest. Returns false if none is. */
+static bool end_silence(struct segment *segment, uint64_t tick)
+{
+    uint64_t silence = segment_silence_end(segment);
+    if (silence == DEVICE_NEVER || silence > tick)
+        return false;
+    advance_units(segment, silence);
+    for (unsigned number; (number = segment_pass_silence(segment)) > 0;)
+        report_processed(segment, &segment->unit[number - 1u]);
+    return true;
 }
 
 static void advance_timed(struct segment *segment, uint64_t until)
@@ -262,6 +274,8 @@ static void advance_timed(struct segment *segment, uint64_t until)
     for (;;) {
         unsigned station;
         uint64_t start = next_start(segment, &station), end = wire_due(&segment->wire), next = earlier(start, end);
+        if (end_silence(segment, earlier(tick_of(next), until / WIRE_TICK)))
+            continue;
         if (next > until)
             return;
         advance_units(segment, tick_of(next));
@@ -367,7 +381,14 @@ static uint64_t untimed_due(const struct segment *segment)
 
 static void advance_untimed(struct segment *segment, uint64_t tick)
 {
-    for (uint64_t due; (due = untimed_due(segment)) <= tick && due != DEVICE_NEVER;) {
+    for (uint64_t due;;) {
+        due = untimed_due(segment);
+        if (end_silence(segment, earlier(due, tick))) {
+            pass_answers(segment);
+            continue;
+        }
+        if (due > tick || due == DEVICE_NEVER)
+            return;
         advance_units(segment, due);
         if (segment->again > segment->now) {
             segment->unasked = 0;
@@ -421,6 +442,7 @@ static void power_up(struct segment *segment, unsigned number)
     unit->frames = 0;
     unit->begun = false;
     unit->next = DEVICE_NEVER;
+    unit->heard = 0;
     wire_join(&segment->wire, number, parts_of(segment->now));
 }
 
@@ -545,56 +567,10 @@ void segment_advance(struct segment *segment, uint64_t tick)
 
 uint64_t segment_due(const struct segment *segment)
 {
+    const uint64_t silence = segment_silence_end(segment);
     if (!segment->config.timed)
-        return untimed_due(segment);
+        return earlier(untimed_due(segment), silence);
     unsigned station;
     uint64_t start = next_start(segment, &station);
-    return tick_of(earlier(wire_due(&segment->wire), start == DEVICE_NEVER ? DEVICE_NEVER : start + WIRE_BYTE));
-}
-
-static uint64_t next_unit_time(const struct segment *segment, uint64_t (*next_of)(const struct device_unit *))
-{
-    uint64_t next = DEVICE_NEVER;
-    for (unsigned i = 0; i < segment->units; i++) {
-        const struct segment_unit *unit = &segment->unit[i];
-        uint64_t event = unit->powered ? next_of(unit->unit) : DEVICE_NEVER;
-        if (event != DEVICE_NEVER)
-            next = earlier(next, event + unit->since);
-    }
-    return next;
-}
-
-uint64_t segment_next_event(const struct segment *segment)
-{
-    return next_unit_time(segment, segment->config.kind->next_event);
-}
-
-uint64_t segment_next_report(const struct segment *segment)
-{
-    return next_unit_time(segment, segment->config.kind->next_report);
-}
-
-bool segment_in_frame(const struct segment *segment)
-{
-    for (unsigned i = 0; i < segment->units; i++)
-        if (segment->unit[i].in_frame)
-            return true;
-    return false;
-}
-
-bool segment_idle(const struct segment *segment)
-{
-    return segment_due(segment) == DEVICE_NEVER;
-}
-
-struct segment_counters segment_counters(const struct segment *segment)
-{
-    return (struct segment_counters){
-        .bytes = segment->wire.sent + segment->quiet_bytes,
-        .collisions = segment->wire.collisions,
-        .framing_errors = segment->wire.receiver[WIRE_MONITOR].framing_errors,
-        .overruns = segment->overruns,
-        .cuts = segment->cuts,
-        .cut_ticks = segment->cut_ticks,
-    };
+    return earlier(silence, tick_of(earlier(wire_due(&segment->wire), start == DEVICE_NEVER ? DEVICE_NEVER : start + WIRE_BYTE)));
 }

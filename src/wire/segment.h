@@ -36,7 +36,7 @@
 
 #define SEGMENT_UNITS 16u               /* on one line (U4) */
 #define SEGMENT_ROOM 4096u              /* bytes of the host that may be under way */
-#define SEGMENT_TURNAROUND 521u         /* ticks, the default: one character */
+#define SEGMENT_TURNAROUND DEVICE_TURNAROUND /* ticks, the default: one character */
 #define SEGMENT_UNASKED_MAX 1000u       /* without time: more answers than this without a byte of the host are cut off */
 #define SEGMENT_TURNAROUND_MAX 1000000u /* ticks */
 
@@ -99,6 +99,7 @@ struct segment_unit {
     bool in_frame;          /* what it has received so far does not end with a whole frame */
     uint32_t frames;        /* seen by the unit */
     bool begun;             /* its answer has begun to go out: the hook has been asked */
+    uint64_t heard;         /* parts: end of the last byte that it has received */
     uint64_t next;          /* parts (wire.h): start bit of the next byte of its answer; DEVICE_NEVER: no answer goes out */
 };
 
@@ -238,5 +239,17 @@ uint64_t segment_next_report(const struct segment *segment);
 bool segment_idle(const struct segment *segment);
 
 struct segment_counters segment_counters(const struct segment *segment);
+
+/* ---- Inside: segment_silence.c, requests that end with a silence (device_kind.silence_end) ----------------------------- */
+
+/* The first tick at which a silence is over that a unit waits for; DEVICE_NEVER: none waits. */
+uint64_t segment_silence_end(const struct segment *segment);
+
+/* Tell one unit whose silence is over at the present tick; its answer, if there is one, is due then. Returns its number; 0: there
+ * is none. */
+unsigned segment_pass_silence(struct segment *segment);
+
+/* The unit has looked at what it has received: has a frame ended with it? */
+void segment_note_frames(const struct segment *segment, struct segment_unit *unit);
 
 #endif

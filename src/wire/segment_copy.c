@@ -64,6 +64,7 @@ void segment_shift(struct segment *segment, uint64_t ticks)
         segment->queue[(segment->head + i) % SEGMENT_ROOM].start += parts;
     for (unsigned i = 0; i < segment->units; i++) {
         segment->unit[i].since += ticks;
+        segment->unit[i].heard += parts;
         postpone(&segment->unit[i].next, parts);
     }
     wire_shift(&segment->wire, parts);

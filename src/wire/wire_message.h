@@ -7,7 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define WIRE_ANSWER_MAX 9216u /* bytes of the longest message of a unit, however small requests are */
+#include "device/device.h"
+
+#define WIRE_ANSWER_MAX DEVICE_MESSAGE_MAX /* bytes of the longest message of a unit */
 
 /* What became of bytes on the wire. */
 enum wire_fate {

@@ -161,7 +161,7 @@ static void keep_byte(struct wire_frame *frame, const struct segment_byte *byte)
 {
     if (frame->raw_total++ == 0)
         frame->start = byte->start;
-    if (frame->raw_length < WIRE_RAW_MAX)
+    if (frame->raw_length < frame->raw_room)
         frame->raw[frame->raw_length++] = byte->byte;
     frame->senders |= byte->senders;
     if ((byte->senders & (byte->senders - 1u)) != 0)
@@ -264,6 +264,31 @@ static void receive_other(const struct wire_monitor *monitor, struct wire_frame 
         report(monitor, frame, byte->tick, fate_of[verdict]);
 }
 
+/* A silence, or the other side, has ended what was gathered: is it a message? */
+static void end_gathered(const struct wire_monitor *monitor, struct wire_frame *frame, uint64_t tick)
+{
+    struct rkm04_receiver *receiver = &frame->receiver;
+    if (frame->raw_total == 0)
+        return;
+    if (monitor->framing->end(receiver, frame->message, frame->answer))
+        report(monitor, frame, tick, WIRE_WHOLE);
+    else
+        report(monitor, frame, tick,
+               receiver->too_long > 0    ? WIRE_TOO_LONG
+               : receiver->bad_check > 0 ? WIRE_WRONG_CHECK
+                                         : WIRE_MALFORMED);
+    *receiver = (struct rkm04_receiver){.phase = 0};
+}
+
+/* Messages that end with a silence. */
+static void receive_gathered(const struct wire_monitor *monitor, struct wire_frame *frame, const struct segment_byte *byte)
+{
+    if (frame->raw_total > 0 && byte->tick - frame->last >= monitor->framing->silence)
+        end_gathered(monitor, frame, frame->last + monitor->framing->silence);
+    keep_byte(frame, byte);
+    monitor->framing->link->receive(&frame->receiver, byte->byte, byte->tick, frame->message, frame->room);
+}
+
 /* Is there anything in the frame that makes a message? */
 static bool holds_something(const struct wire_monitor *monitor, const struct wire_frame *frame)
 {
@@ -274,6 +299,8 @@ static void receive_byte(const struct wire_monitor *monitor, struct wire_frame *
 {
     if (byte->lost)
         frame->lost += frame->raw_total > 0;
+    else if (monitor->framing->end)
+        receive_gathered(monitor, frame, byte);
     else if (monitor->framing->flag >= 0)
         receive_flagged(monitor, frame, byte);
     else if (monitor->framing->silence > 0)
@@ -284,23 +311,32 @@ static void receive_byte(const struct wire_monitor *monitor, struct wire_frame *
 
 /* ---- Public --------------------------------------------------------------------------------------------------------- */
 
-static bool begin_frame(struct wire_frame *frame, bool answer, size_t room, enum wire_fate astray)
+static bool begin_frame(struct wire_frame *frame, bool answer, size_t room, size_t raw_room, enum wire_fate astray)
 {
     frame->message = malloc(room);
-    frame->raw = malloc(WIRE_RAW_MAX);
+    frame->raw = malloc(raw_room);
     frame->room = room;
+    frame->raw_room = raw_room;
     frame->answer = answer;
     frame->astray = astray;
     return frame->message && frame->raw;
 }
 
-bool wire_monitor_begin(struct wire_monitor *monitor, const struct device_framing *framing, const struct segment *segment,
-                        struct wire_monitor_calls calls)
+/* Gathered bytes are a message with what is around it. */
+static size_t room_for(const struct device_framing *framing, size_t longest)
+{
+    return longest + (framing->end ? 2u * RKM04_FRAME_EDGE_MAX : 0);
+}
+
+bool wire_monitor_begin(struct wire_monitor *monitor, const struct device_kind *kind, const struct device_framing *framing,
+                        const struct segment *segment, struct wire_monitor_calls calls)
 {
     *monitor = (struct wire_monitor){.framing = framing, .segment = segment, .calls = calls};
     enum wire_fate astray = framing->flag >= 0 ? WIRE_OUTSIDE : WIRE_WHOLE;
-    bool requests = begin_frame(&monitor->requests, false, RKM04_MESSAGE_MAX, astray);
-    return begin_frame(&monitor->answers, true, WIRE_ANSWER_MAX, astray) && requests;
+    size_t longest = kind->answer_max > kind->request_max ? kind->answer_max : kind->request_max;
+    size_t raw = 2u * (room_for(framing, longest) + 4u) + 2u; /* every byte may be escaped */
+    bool requests = begin_frame(&monitor->requests, false, room_for(framing, kind->request_max), raw, astray);
+    return begin_frame(&monitor->answers, true, room_for(framing, kind->answer_max), raw, astray) && requests;
 }
 
 static void end_frame(struct wire_frame *frame)
@@ -345,10 +381,51 @@ void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_by
     monitor->overruns = overruns;
     if (byte->lost)
         report_lost(monitor, byte, !from_host);
+    if (monitor->framing->end && from_host != from_unit)
+        end_gathered(monitor, from_host ? &monitor->answers : &monitor->requests, byte->tick);
     if (from_host)
         receive_byte(monitor, &monitor->requests, byte);
     if (from_unit)
         receive_byte(monitor, &monitor->answers, byte);
+}
+
+static uint64_t silence_end_of(const struct wire_monitor *monitor, const struct wire_frame *frame)
+{
+    return frame->raw_total > 0 ? frame->last + monitor->framing->silence : DEVICE_NEVER;
+}
+
+uint64_t wire_monitor_due(const struct wire_monitor *monitor)
+{
+    const struct wire_monitor_calls *calls = &monitor->calls;
+    if (!monitor->framing->end || !calls->is_wanted || !calls->is_wanted(calls->context))
+        return DEVICE_NEVER;
+    uint64_t request = silence_end_of(monitor, &monitor->requests), answer = silence_end_of(monitor, &monitor->answers);
+    return request < answer ? request : answer;
+}
+
+void wire_monitor_pass_time(struct wire_monitor *monitor, uint64_t tick)
+{
+    if (!monitor->framing->end)
+        return;
+    struct wire_frame *frames[] = {&monitor->requests, &monitor->answers};
+    for (unsigned i = 0; i < 2u; i++)
+        if (silence_end_of(monitor, frames[i]) <= tick)
+            end_gathered(monitor, frames[i], silence_end_of(monitor, frames[i]));
+}
+
+/* What was gathered may be a message although its silence is not over yet. */
+static struct wire_message *gathered_rest(const struct wire_monitor *monitor, const struct wire_frame *frame)
+{
+    struct wire_message *message = NULL;
+    struct wire_frame copy = *frame;
+    copy.message = malloc(frame->room);
+    if (copy.message) {
+        memcpy(copy.message, frame->message, frame->receiver.length);
+        bool whole = monitor->framing->end(&copy.receiver, copy.message, frame->answer);
+        message = make_message(monitor, &copy, whole ? WIRE_WHOLE : WIRE_UNFINISHED);
+    }
+    free(copy.message);
+    return message;
 }
 
 struct wire_message *wire_monitor_rest(const struct wire_monitor *monitor, bool answer)
@@ -356,5 +433,7 @@ struct wire_message *wire_monitor_rest(const struct wire_monitor *monitor, bool 
     const struct wire_frame *frame = answer ? &monitor->answers : &monitor->requests;
     if (!holds_something(monitor, frame))
         return NULL;
+    if (monitor->framing->end)
+        return gathered_rest(monitor, frame);
     return make_message(monitor, frame, frame->astray != WIRE_WHOLE ? frame->astray : WIRE_UNFINISHED);
 }

@@ -12,7 +12,7 @@
 #include "segment.h"
 #include "wire_message.h"
 
-#define WIRE_RAW_MAX (2u * (WIRE_ANSWER_MAX + 4u) + 2u) /* bytes on the wire that are kept of one frame: the longest there is */
+#define WIRE_RAW_MAX (2u * (WIRE_ANSWER_MAX + 4u) + 2u) /* bytes on the wire that are kept of a frame, of any kind */
 
 /* One for each direction, so that an answer in the middle of a request does not confuse either. A byte that belongs to a
  * collision of both counts in both. */
@@ -20,7 +20,8 @@ struct wire_frame {
     struct rkm04_receiver receiver;
     uint8_t *message; /* `room` bytes */
     size_t room;
-    uint8_t *raw;     /* WIRE_RAW_MAX bytes */
+    uint8_t *raw;     /* `raw_room` bytes */
+    size_t raw_room;
     size_t raw_length, raw_total;
     uint64_t start, last; /* ticks: the first byte began; the last one had passed */
     uint32_t senders, collided;
@@ -47,10 +48,10 @@ struct wire_monitor {
     struct wire_frame requests, answers;
 };
 
-/* Find messages in the bytes of `segment`, which may be NULL for a copy that gets none. Returns false if out of memory;
- * wire_monitor_end() is due in either case. */
-bool wire_monitor_begin(struct wire_monitor *monitor, const struct device_framing *framing, const struct segment *segment,
-                        struct wire_monitor_calls calls);
+/* Find messages of units of this kind in the bytes of `segment`, which may be NULL for a copy that gets none. Returns false if
+ * out of memory; wire_monitor_end() is due in either case. */
+bool wire_monitor_begin(struct wire_monitor *monitor, const struct device_kind *kind, const struct device_framing *framing,
+                        const struct segment *segment, struct wire_monitor_calls calls);
 void wire_monitor_end(struct wire_monitor *monitor);
 
 /* Make `to` like `from`, what is half received included, all times later by `later` ticks (mod 2^64). Both have been begun,
@@ -59,6 +60,13 @@ void wire_monitor_copy(struct wire_monitor *to, const struct wire_monitor *from,
 
 /* A byte has passed: report the message that it completes, if any. */
 void wire_monitor_add_byte(struct wire_monitor *monitor, const struct segment_byte *byte);
+
+/* Messages that end with a silence: the tick at which the present one ends if nothing more comes; DEVICE_NEVER: there is none, or
+ * no watcher wants it. */
+uint64_t wire_monitor_due(const struct wire_monitor *monitor);
+
+/* No byte comes before `tick` any more: report what ends with the silence. */
+void wire_monitor_pass_time(struct wire_monitor *monitor, uint64_t tick);
 
 /* What has been received of a request, or of an answer, that is not complete. Returns NULL if there is nothing (or out of
  * memory), otherwise a message to be freed. */

@@ -75,13 +75,15 @@ START_TEST(inputs_outputs_and_variables_are_0_or_1)
     assert_means("do3=1", NULL, "{\"do\": {\"03\": 1}}");
     assert_means("di08=0", NULL, "{\"di\": {\"08\": 0}}");
     assert_means("var95!=1", NULL, "{\"var\": {\"95\": 0}}");
-    assert_refused("do0=1", "do1 to do8");
-    assert_refused("di9=1", "di1 to di8");
+    assert_refused("do0=1", "do1 to do32");
+    assert_refused("di33=1", "di1 to di32");
+    assert_refused("di.=1", "di1 to di32");
+    assert_refused("di.near=2", "di.near=0 or di.near=1");
     assert_refused("var79=1", "var80 to var95");
     assert_refused("var96=1", "var80 to var95");
     assert_refused("do3=2", "do3=0 or do3=1");
     assert_refused("do3", "do3=0 or do3=1");
-    assert_refused("do003=1", "do1 to do8");
+    assert_refused("do003=1", "do1 to do32");
 }
 END_TEST
 

@@ -155,36 +155,77 @@ const char *fake_obey(struct fake_unit *unit, const char *text)
     return "OK";
 }
 
+static void answer_request(struct fake_unit *unit)
+{
+    unit->requests++;
+    unit->text[unit->length] = '\0';
+    const char *answer = fake_obey(unit, unit->text);
+    uint8_t sum = 0;
+    unit->answer_length = (uint8_t)strlen(answer);
+    memmove(unit->answer, answer, unit->answer_length);
+    for (unsigned i = 0; i < unit->answer_length; i++)
+        sum = (uint8_t)(sum + (uint8_t)unit->answer[i]);
+    unit->answer[unit->answer_length++] = unit->silent ? (char)sum : '\r';
+    unit->answer_sent = 0;
+}
+
 static void end_request(struct fake_unit *unit)
 {
     unit->frames++;
-    if (unit->addressed) {
-        unit->requests++;
-        unit->text[unit->length] = '\0';
-        const char *answer = fake_obey(unit, unit->text);
-        unit->answer_length = (uint8_t)strlen(answer);
-        memmove(unit->answer, answer, unit->answer_length);
-        unit->answer[unit->answer_length++] = '\r';
-        unit->answer_sent = 0;
-    }
+    if (unit->addressed)
+        answer_request(unit);
     unit->addressed = false;
+}
+
+/* The silence is over: the last byte was the check byte. */
+static void end_silence(struct fake_unit *unit)
+{
+    uint8_t check = unit->length > 0 ? (uint8_t)unit->text[unit->length - 1u] : 0;
+    unit->addressed = unit->addressed && unit->length > 0 && (uint8_t)(unit->sum - check) == check;
+    if (unit->length > 0)
+        unit->length--;
+    unit->silence = FAKE_NEVER;
+    end_request(unit);
+}
+
+/* A byte of a request that ends with a silence. The first one is the address. */
+static void gather_byte(struct fake_unit *unit, uint8_t byte)
+{
+    if (unit->silence == FAKE_NEVER) {
+        unit->addressed = byte == 0x80 + unit->address;
+        unit->length = unit->sum = 0;
+    } else if (unit->length <= FAKE_TEXT_MAX) {
+        unit->text[unit->length++] = (char)byte;
+    } else {
+        unit->addressed = false;
+    }
+    unit->sum = (uint8_t)(unit->sum + byte);
+    unit->silence = unit->now + FAKE_SILENCE * FAKE_TICKS_PER_US;
+}
+
+static void receive_byte(struct fake_unit *unit, uint8_t byte)
+{
+    if (unit->silent) {
+        gather_byte(unit, byte);
+    } else if (byte >= 0x80) {
+        unit->addressed = byte == 0x80 + unit->address;
+        unit->length = 0;
+    } else if (byte == '\r') {
+        end_request(unit);
+    } else if (unit->length < FAKE_TEXT_MAX) {
+        unit->text[unit->length++] = (char)byte;
+    } else {
+        unit->addressed = false;
+    }
 }
 
 size_t fake_receive(struct fake_unit *unit, const uint8_t *bytes, size_t length)
 {
     size_t taken = 0;
-    for (; taken < length && unit->answer_length == 0; taken++) {
-        uint8_t byte = bytes[taken];
-        if (byte >= 0x80) {
-            unit->addressed = byte == 0x80 + unit->address;
-            unit->length = 0;
-        } else if (byte == '\r')
-            end_request(unit);
-        else if (unit->length < FAKE_TEXT_MAX)
-            unit->text[unit->length++] = (char)byte;
-        else
-            unit->addressed = false;
-    }
+    if (length == 0 && unit->silence <= unit->now)
+        end_silence(unit);
+    for (; taken < length && unit->answer_length == 0; taken++)
+        receive_byte(unit, bytes[taken]);
     return taken;
 }
 
@@ -203,8 +244,8 @@ size_t fake_send(struct fake_unit *unit, uint8_t *bytes, size_t room)
 void fake_begin(struct fake_unit *unit, uint8_t address, const struct fake_calls *calls, void *context)
 {
     uint8_t data[4];
-    *unit = (struct fake_unit){
-        .calls = calls, .context = context, .due = FAKE_NEVER, .rate = 100, .address = address, .forward = true};
+    *unit = (struct fake_unit){.calls = calls, .context = context, .due = FAKE_NEVER, .silence = FAKE_NEVER, .rate = 100,
+                               .address = address, .forward = true};
     bool is_read = calls->load(context, data) && data[0] == MARK;
     unsigned rate = is_read ? data[1] * 256u + data[2] : 0;
     if (rate >= 1 && rate <= FAKE_RATE_MAX)

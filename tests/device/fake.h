@@ -10,7 +10,10 @@
  *
  * The others answer OK, or: E1 unknown, E2 out of range, E3 the limit switch is on, E4 the flash failed. A request that is too
  * long is not answered. Input 1 is the limit switch: it ends motions forward. Nothing is heard while an answer is being sent.
- * Time is counted in ticks of 0.25 us. */
+ * Time is counted in ticks of 0.25 us.
+ *
+ * With `silent` requests and answers have a check byte, the sum of the others, in place of CR, and end with FAKE_SILENCE us in
+ * which no byte comes. */
 #ifndef RKM04_TESTS_FAKE_H
 #define RKM04_TESTS_FAKE_H
 
@@ -28,6 +31,7 @@
 #define FAKE_FLASH_SIZE 16u    /* bytes of a block */
 #define FAKE_MOVE_MAX 1000000  /* steps */
 #define FAKE_RATE_MAX 10000u   /* steps/s */
+#define FAKE_SILENCE 2000u     /* us */
 #define FAKE_NEVER UINT64_MAX
 
 /* What a unit reports and asks; every call is set. `tick` is its own. */
@@ -53,9 +57,12 @@ struct fake_unit {
     uint32_t inputs;         /* input 1 is bit 0 */
     uint8_t address;
     bool forward, output, limit;
+    bool silent;             /* messages end with a silence */
+    uint64_t silence;        /* tick at which the one that it waits for is over; FAKE_NEVER: it waits for none */
+    uint8_t sum;             /* of the bytes of the request */
     bool addressed;          /* the request that comes in is for this unit */
     uint8_t length, answer_length, answer_sent;
-    char text[FAKE_TEXT_MAX + 1], answer[FAKE_TEXT_MAX + 1];
+    char text[FAKE_TEXT_MAX + 2], answer[FAKE_TEXT_MAX + 1];
     uint32_t frames, requests, answers; /* ended on the wires; of these, for this unit; sent */
 };
 

@@ -3,4 +3,4 @@
 #include "fake_device.h"
 
 extern const struct device_kind *const device_kinds_added[];
-const struct device_kind *const device_kinds_added[] = {&fake_device, NULL};
+const struct device_kind *const device_kinds_added[] = {&fake_device, &fake_alone_device, NULL};

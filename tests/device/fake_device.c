@@ -31,6 +31,7 @@ static const struct fake_unit *core_of(const struct device_unit *unit)
 /* What a config has of it: nothing is the default. */
 struct fake_settings {
     int32_t rate;      /* steps/s at power-up; 0: 100, or that of the flash */
+    bool silent;       /* messages end with a silence */
     const char *start; /* texts to obey at power-up, a line each; NULL: none */
 };
 
@@ -118,6 +119,7 @@ static const struct fake_calls calls = {
 static void start(struct fake_device *device, struct fake_settings settings)
 {
     char text[FAKE_TEXT_MAX + 1];
+    device->core.silent = settings.silent;
     if (settings.rate > 0)
         device->core.rate = (uint16_t)settings.rate;
     for (const char *at = settings.start; at && *at; at += strcspn(at, "\n"), at += *at == '\n') {
@@ -187,6 +189,12 @@ static size_t send(struct device_unit *unit, uint8_t *bytes, size_t room)
     return fake_send(&device_of(unit)->core, bytes, room);
 }
 
+static uint64_t silence_end(const struct device_unit *unit)
+{
+    uint64_t tick = core_of(unit)->silence;
+    return tick == FAKE_NEVER ? DEVICE_NEVER : tick / FAKE_TICKS_PER_US;
+}
+
 static bool has_answer(const struct device_unit *unit)
 {
     return core_of(unit)->answer_length > 0;
@@ -225,56 +233,11 @@ static size_t exchange(struct device_unit *unit, const uint8_t *message, size_t 
     return answer_length;
 }
 
-/* ---- Framing: the bytes of messages ---------------------------------------------------------------------------------- */
-
-static bool receive_byte(struct rkm04_receiver *receiver, uint8_t byte, uint64_t us, uint8_t *buffer, size_t room)
-{
-    receiver->last = us;
-    if (receiver->phase == 0) { /* a message begins */
-        receiver->length = 0;
-        receiver->dnode = 0;
-    }
-    receiver->phase = byte != '\r';
-    if (byte >= 0x80) {
-        receiver->length = 0;
-        receiver->dnode = byte & 0x7f;
-    } else if (byte == '\r') {
-        return receiver->length > 0;
-    } else if (receiver->length < room) {
-        buffer[receiver->length++] = byte;
-    }
-    return false;
-}
-
-static size_t begin_frame(struct rkm04_sender *sender, uint8_t to, uint8_t from, size_t length, bool answer, uint8_t *out)
-{
-    (void)sender;
-    (void)from;
-    (void)length;
-    out[0] = 0x80 | to;
-    return answer ? 0 : 1;
-}
-
-static size_t put_byte(struct rkm04_sender *sender, uint8_t byte, uint8_t *out)
-{
-    (void)sender;
-    out[0] = byte;
-    return 1;
-}
-
-static size_t end_frame(struct rkm04_sender *sender, uint8_t *out)
-{
-    return put_byte(sender, '\r', out);
-}
-
-static const struct rkm04_framing fake_lines = {
-    .name = "lines", .receive = receive_byte, .begin = begin_frame, .put = put_byte, .end = end_frame};
+/* ---- Messages -------------------------------------------------------------------------------------------------------- */
 
 static const struct device_framing *framing(const struct device_config *config)
 {
-    static const struct device_framing lines = {.link = &fake_lines, .flag = -1, .escape = -1};
-    (void)config;
-    return &lines;
+    return settings_of(config).silent ? &fake_sums : &fake_lines;
 }
 
 static void put_words(struct wire_text *out, const uint8_t *message, size_t length, bool is_answer)
@@ -447,6 +410,16 @@ static bool read_rate(struct device_config *config, const char *value, char erro
     return true;
 }
 
+static bool read_framing(struct device_config *config, const char *value, char error[DEVICE_ERROR_SIZE])
+{
+    struct fake_settings own = settings_of(config);
+    own.silent = strcmp(value, "sums") == 0;
+    put_own(config, &own);
+    if (!own.silent && strcmp(value, "lines") != 0)
+        snprintf(error, DEVICE_ERROR_SIZE, "`%.40s' is wrong: expected lines or sums", value);
+    return own.silent || strcmp(value, "lines") == 0;
+}
+
 static bool read_start(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)
 {
     struct fake_settings own = settings_of(config);
@@ -464,11 +437,16 @@ static const struct device_option options[] = {
      .argument = "FILE",
      .help = "Requests that are obeyed at power-up, a line each",
      .read_file = read_start},
+    {.name = "end",
+     .argument = "WHAT",
+     .help = "What ends a message: lines (default), CR; sums, a silence of 2 ms after a sum of the bytes",
+     .flags = DEVICE_OPTION_BUS,
+     .read = read_framing},
     {.name = NULL},
 };
 
 /* As recordings have them. */
-static const char *const settings[] = {"rate", "start", NULL};
+static const char *const settings[] = {"rate", "start", "end", NULL};
 
 static void put_settings(const struct device_config *config, json_t *object)
 {
@@ -476,12 +454,16 @@ static void put_settings(const struct device_config *config, json_t *object)
     json_object_set_new(object, "rate", json_integer(own.rate));
     if (own.start)
         json_object_set_new(object, "start", json_string(own.start));
+    if (own.silent)
+        json_object_set_new(object, "end", json_string("sums"));
 }
 
 static bool read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE])
 {
     struct fake_settings own = settings_of(config);
     bool is_rate = strcmp(name, "rate") == 0;
+    if (strcmp(name, "end") == 0)
+        return !value || read_framing(config, json_is_string(value) ? json_string_value(value) : "", error);
     if (is_rate && value)
         own.rate = (int32_t)json_integer_value(value);
     if (!is_rate && value)
@@ -522,6 +504,8 @@ static const struct device_method methods[] = {
 static const char *unlike(const struct device_config *a, const struct device_config *b)
 {
     const struct fake_settings here = settings_of(a), there = settings_of(b);
+    if (here.silent != there.silent)
+        return "the end of messages";
     return here.rate != there.rate ? "the rate" : NULL; /* what it does at power-up is over */
 }
 
@@ -550,6 +534,7 @@ const struct device_kind fake_device = {
     .pulse_ticks = pulse_ticks,
     .receive = receive,
     .send = send,
+    .silence_end = silence_end,
     .has_answer = has_answer,
     .answer_wait = answer_wait,
     .counters = counters_of,

@@ -7,4 +7,10 @@
 
 extern const struct device_kind fake_device;
 
+/* fake_framing.c: a message ends with CR; with a silence, after a sum of its bytes. */
+extern const struct device_framing fake_lines, fake_sums;
+
+/* fake_alone.c: the same core without a bus, with names of inputs and outputs. */
+extern const struct device_kind fake_alone_device;
+
 #endif

@@ -34,8 +34,23 @@ static void open_text(struct fake_rig *rig)
 
 void fake_rig_begin(struct fake_rig *rig, const char *nodes, bool timed)
 {
+    fake_rig_begin_as(rig, &fake_device, NULL, nodes, timed);
+}
+
+/* The config with a setting, "end=sums". */
+static void set_option(struct device_config *config, const struct device_kind *kind, const char *setting)
+{
+    char name[32], error[DEVICE_ERROR_SIZE];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(setting, "="), setting);
+    const struct device_option *option = device_option_named(kind, name);
+    ck_assert_ptr_nonnull(option);
+    ck_assert_msg(option->read(config, strchr(setting, '=') + 1, error), "%s", error);
+}
+
+void fake_rig_begin_as(struct fake_rig *rig, const struct device_kind *kind, const char *setting, const char *nodes, bool timed)
+{
     struct sim_config config = {
-        .device = &fake_device,
+        .device = kind,
         .timed = timed,
         .turnaround = timed ? SEGMENT_TURNAROUND : 0,
         .seed = 1,
@@ -43,7 +58,9 @@ void fake_rig_begin(struct fake_rig *rig, const char *nodes, bool timed)
         .context = rig,
     };
     memset(rig, 0, sizeof *rig);
-    ck_assert(node_list_read_up_to(&config.nodes, nodes, fake_device.addresses));
+    ck_assert(node_list_read_up_to(&config.nodes, nodes, kind->addresses));
+    if (setting)
+        set_option(&config.unit, kind, setting);
     open_text(rig);
     ck_assert(sim_begin(&rig->sim, &config));
     ck_assert(snapshots_attach(&rig->sim));

@@ -17,6 +17,10 @@ struct fake_rig {
 
 /* Units with these addresses ("1,2"). `timed`: bytes take their time. */
 void fake_rig_begin(struct fake_rig *rig, const char *nodes, bool timed);
+
+/* Units of this kind, with a setting ("end=sums"; NULL: none). */
+void fake_rig_begin_as(struct fake_rig *rig, const struct device_kind *kind, const char *setting, const char *nodes, bool timed);
+
 void fake_rig_end(struct fake_rig *rig);
 
 /* The host sends a request to a unit, now. */

@@ -40,7 +40,7 @@ START_TEST(kind_is_found_by_its_name_behind_those_of_the_product)
     unsigned count = 0;
     while (device_kind_at(count))
         count++;
-    ck_assert_ptr_eq(device_kind_at(count - 1), &fake_device);
+    ck_assert_ptr_eq(device_kind_at(count - 2), &fake_device);
 }
 END_TEST
 

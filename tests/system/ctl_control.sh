@@ -65,7 +65,11 @@ test_inputs_are_shown_and_set() {
     exits 0 control advance do1=1 --limit 10ms
     exits 0 control di 3=0
     same "01=0 02=0 03=0 04=0 05=0 06=0 07=0 08=1" "$said" "inputs after setting again"
-    for wrong in 9=1 3=2 3 =1 di=1 0=1; do
+    for wrong in 9 di x; do
+        exits 2 control di "$wrong=1"
+        holds "$complained" "unknown input \`$wrong': expected 1 to 8" "an input that the unit has not"
+    done
+    for wrong in 3=2 3 =1 0=1 33=1; do
         exits 2 control di "$wrong"
         holds "$complained" "'$wrong'" "the message quotes it"
     done

@@ -40,9 +40,10 @@ END
 test_devices_are_listed_with_a_line_each() {
     exits 0 "$RKM04" devices
     same "rkm04    unit for four stepper motors on RS485 (SofCon RKM04)
-fake     one axis at constant speed, twenty inputs, one output (example)" "$said" "rkm04 devices"
+fake     one axis at constant speed, twenty inputs, one output (example)
+alone    one axis at constant speed without a bus (example)" "$said" "rkm04 devices"
     exits 0 "$RKM04" devices --json
-    same "['rkm04', 'fake'] 1 20 1 100" \
+    same "['rkm04', 'fake', 'alone'] 1 20 1 100" \
         "$(python3 -c 'import json, sys; all = json.load(sys.stdin); fake = all[1]; print([d["name"] for d in all], fake["axes"],
 fake["inputs"], fake["outputs"], fake["addresses"])' <<<"$said")" "rkm04 devices --json"
     exits 0 "$PRODUCT" devices
@@ -54,7 +55,7 @@ test_an_unknown_device_and_options_of_another_one_are_refused() {
     exits 2 "$PRODUCT" serve --device fake
     holds "$complained" "--device: \`fake' is unknown: expected one that \`rkm04 devices' lists" "stderr"
     exits 2 "$RKM04" serve --device fake --framing plain
-    holds "$complained" "--framing: the device fake has no such option: expected rate, start-file" "stderr"
+    holds "$complained" "--framing: the device fake has no such option: expected rate, start-file, end" "stderr"
     exits 2 "$RKM04" serve --device fuke
     holds "$complained" "did you mean \`fake'?" "stderr"
     exits 2 "$RKM04" serve --device-option rote=20 --device fake
@@ -193,6 +194,42 @@ END
     exits 0 "$RKM04" test "$folder/a.yaml"
     exits 2 "$PRODUCT" test "$folder/a.yaml"
     holds "$complained" "expected a device, one that \`rkm04 devices' lists, found \"fake\"" "the product"
+}
+
+# A device without a bus has a control socket alone.
+test_a_device_without_a_bus_is_served() {
+    exits 2 "$RKM04" serve --device alone --tcp 0
+    holds "$complained" "--tcp: the device alone has no bus" "stderr"
+    exits 2 "$RKM04" serve --device alone --link "$folder/bus"
+    holds "$complained" "--link: the device alone has no bus" "stderr"
+    start alone "$RKM04" serve --device alone --clock stepped --control "$folder/alone.control"
+    soon "the device is ready" ready alone
+    same "None None" "$(sed -n 's/^READY //p' "$folder/alone.out" | python3 -c 'import json, sys; ready = json.load(sys.stdin)
+print(ready["pty"], ready["tcp"])')" "READY"
+    export RKM04_CONTROL=$folder/alone.control
+    exits 0 "$RKMCTL" di near=1 3=1
+    same "lmt+=0 near=1 DI3=1" "$said" "di near=1 3=1"
+    exits 2 "$RKMCTL" di far=1
+    holds "$complained" "unknown input \`far': expected 1 to 3 or lmt+, near, DI3" "di far=1"
+    exits 0 "$RKMCTL" call alone.obey text="MOVE 3"
+    exits 0 "$RKMCTL" wait di.near=1
+    exits 0 "$RKMCTL" advance 1s
+    exits 0 "$RKMCTL" --json state
+    holds "$said" '"position":3' "state"
+    exits 0 "$RKMCTL" shutdown
+    status_of "$started"
+    XDG_RUNTIME_DIR=$folder exits 0 timeout 20 "$RKM04" serve --device alone --exit-when-idle=0
+    holds "$said" 'rkm04/alone.control' "READY without --control"
+    [[ $complained != *"frames dropped"* ]] || fail "the log has counters of a bus that is not there"
+}
+
+test_exec_advances_a_device_without_a_bus() {
+    printf '1ms di near 1\n2ms di 3 1\n' >"$folder/inputs.txt"
+    exits 0 "$RKM04" exec --device alone --stimulus "$folder/inputs.txt"
+    holds "$said" "inputs on: near DI3; outputs on: none" "the report"
+    echo '1ms di far 1' >"$folder/inputs.txt"
+    exits 1 "$RKM04" exec --device alone --stimulus "$folder/inputs.txt"
+    holds "$complained" "inputs.txt:1:8: error: expected an input 1 to 3 or lmt+, near, DI3, found 'far'" "stderr"
 }
 
 run_cases "$@"

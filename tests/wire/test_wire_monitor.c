@@ -380,7 +380,7 @@ START_TEST(a_copy_goes_on_with_what_was_half_heard)
 {
     struct wire_monitor copy;
     wire_rig_begin("3", HDLC);
-    ck_assert(wire_monitor_begin(&copy, sim->monitor.framing, NULL, (struct wire_monitor_calls){0}));
+    ck_assert(wire_monitor_begin(&copy, sim_device(sim), sim->monitor.framing, NULL, (struct wire_monitor_calls){0}));
     wire_rig_bytes("7E 00 00 03 32");
     wire_rig_settle();
     wire_monitor_copy(&copy, &sim->monitor, 0);
