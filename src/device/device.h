@@ -229,6 +229,7 @@ struct device_kind {
     unsigned slot;           /* us of the period in which it looks at inputs and executes commands */
     unsigned pulse;          /* us of a step pulse; see pulse_ticks */
     unsigned turnaround;     /* us from a request to its answer, unless --turnaround says otherwise; 0: one character */
+    bool deaf_to_answers;    /* where bytes take no time, no unit receives the answers of others: they look like requests */
     unsigned program;        /* commands that an axis can have in memory; 0: it has no program */
     bool is_program_whole;   /* a text is for all axes (axis 0), not for one */
     unsigned flash_blocks, flash_block_size; /* 0: no flash */
@@ -391,6 +392,7 @@ void device_arguments_free(struct device_arguments *arguments);
 
 /* The kind that is meant where none is named: the RKM04. Its settings as they lie in a config; `node` is that of the config. */
 extern const struct device_kind rkm04_device;
+extern const struct device_kind cib_device;
 struct rkm04_config rkm04_settings(const struct device_config *config);
 
 /* Put them there; the node of the config stays. */

@@ -364,7 +364,7 @@ static void pass_answers(struct segment *segment)
     }
     for (unsigned i = 0; i < segment->units; i++)
         if ((receivers >> (i + 1u) & 1u) == 0)
-            pass_answer(segment, i + 1u, receivers);
+            pass_answer(segment, i + 1u, segment->config.kind->deaf_to_answers ? 0 : receivers);
     segment->again = DEVICE_NEVER;
     for (unsigned i = 0; i < segment->units; i++) {
         const struct segment_unit *unit = &segment->unit[i];

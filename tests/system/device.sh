@@ -39,15 +39,16 @@ END
 
 test_devices_are_listed_with_a_line_each() {
     exits 0 "$RKM04" devices
-    same "rkm04    unit for four stepper motors on RS485 (SofCon RKM04)
-fake     one axis at constant speed, twenty inputs, one output (example)
-alone    one axis at constant speed without a bus (example)" "$said" "rkm04 devices"
+    same "rkm04    unit for four stepper motors on RS485 (SofCon RKM04)" "$(head -n 1 <<<"$said")" "rkm04 devices: the default"
+    same "fake     one axis at constant speed, twenty inputs, one output (example)" "$(grep ^fake <<<"$said")" "the fake one"
     exits 0 "$RKM04" devices --json
-    same "['rkm04', 'fake', 'alone'] 1 20 1 100" \
-        "$(python3 -c 'import json, sys; all = json.load(sys.stdin); fake = all[1]; print([d["name"] for d in all], fake["axes"],
-fake["inputs"], fake["outputs"], fake["addresses"])' <<<"$said")" "rkm04 devices --json"
+    same "rkm04 fake 1 20 1 100" \
+        "$(python3 -c 'import json, sys; all = json.load(sys.stdin); fake = all[-2]; print(all[0]["name"], fake["name"],
+fake["axes"], fake["inputs"], fake["outputs"], fake["addresses"])' <<<"$said")" "rkm04 devices --json"
     exits 0 "$PRODUCT" devices
-    same "rkm04    unit for four stepper motors on RS485 (SofCon RKM04)" "$said" "rkm04 devices of the product"
+    same "rkm04
+cib" "$(cut -d ' ' -f 1 <<<"$said" | head -n 2)" "rkm04 devices of the product"
+    same 0 "$(grep -c fake <<<"$said")" "fake devices of the product"
     exits 2 "$RKM04" devices x
 }
 
