@@ -9,6 +9,8 @@
 
 #include <rkm04/unit.h>
 
+#include "text.h"
+
 #define MS UINT64_C(1000)
 #define SECOND (1000 * MS)
 
@@ -70,13 +72,5 @@ void run_manual(void);
 /* So many random ones. */
 #define STORIES 500
 void run_stories(void);
-
-/* ---- Text ---- */
-
-/* Append to a zero-terminated text in a buffer of `room` bytes; what has no room is left out. */
-void append(char *text, size_t room, const char *more);
-void append_number(char *text, size_t room, uint64_t number);
-void append_hex(char *text, size_t room, uint64_t number);
-size_t text_length(const char *text);
 
 #endif
