@@ -54,5 +54,16 @@ test_an_emulator_that_ends_and_comes_again_is_shown() {
     drive loss
 }
 test_the_page_is_small() { drive size; }
+test_the_page_looks_as_its_references() {
+    serve bus --clock stepped
+    drive_with references "$folder/bus.control"
+}
+test_the_page_is_quickly_there() { drive load; }
+test_stop_all_answers_within_100_ms() { drive stop; }
+test_curves_of_sixteen_units_are_drawn_smoothly() {
+    serve bus --node 1-16
+    exits 0 "$RKMCTL" -p "$folder/bus" -n 0 -m 0 set '\ C100 S200 V4000 A8000 L20 F90000 R B90000 R E'
+    drive_with frames "$folder/bus.control"
+}
 
 run_cases "$@"

@@ -87,10 +87,9 @@ export class Graph {
       context.beginPath();
       for (const part of list) {
         context.lineTo(x(part.begin), y(part.first));
-        if (part.high > part.low) {
-          context.lineTo(x(part.begin), y(part.low));
-          context.lineTo(x(part.begin), y(part.high));
-        }
+        for (const peak of [part.low, part.high])
+          if (peak < Math.min(part.first, part.last) || peak > Math.max(part.first, part.last))
+            context.lineTo(x((part.begin + part.time) / 2), y(peak));
         context.lineTo(x(part.time), y(part.last));
       }
       context.stroke();

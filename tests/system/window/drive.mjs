@@ -4,9 +4,10 @@ import assert from "node:assert/strict";
 import { chromium, folder, name, openPage, troubles } from "./page.mjs";
 import * as looks from "./looks.mjs";
 import * as panel from "./panel.mjs";
+import * as pictures from "./pictures.mjs";
 import * as service from "./service.mjs";
 
-const cases = { ...service.cases, ...panel.cases, ...looks.cases };
+const cases = { ...service.cases, ...panel.cases, ...looks.cases, ...pictures.cases };
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", args: ["--no-sandbox"] });
 let page;
 try {

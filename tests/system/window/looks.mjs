@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 // looks.mjs: how the page looks, and what it costs.
 import { writeFileSync } from "node:fs";
+import { cpus, loadavg } from "node:os";
 import assert from "node:assert/strict";
 import { address, AXIS, checkAccess, connect, folder, openPanel, pictures, says, send, shows, write } from "./page.mjs";
+
+// Figures of time count only on a machine that has nothing else to do; they are always printed.
+const isBusy = () => loadavg()[0] > cpus().length;
 
 export const cases = {
   // Both languages have all words; axe-core finds nothing, light and dark; pictures at three sizes.
@@ -53,6 +57,46 @@ export const cases = {
     await other.waitForFunction(() => document.querySelectorAll("#colours .c-move").length > 0);
     await other.waitForLoadState("networkidle");
     console.log(`page: ${bytes} bytes`);
+    const modules = await other.evaluate(() => performance.getEntriesByType("resource").map((one) => new URL(one.name).pathname)
+      .filter((path) => path.endsWith(".js")));
+    const loaded = await other.evaluate(() => [...document.querySelectorAll("link[rel=modulepreload], script")]
+      .map((one) => new URL(one.href ?? one.src, document.baseURI).pathname));
+    assert.deepEqual([...new Set(modules)].sort(), loaded.sort(), "every module is loaded at once");
     assert.ok(bytes > 20000 && bytes < 200000, `${bytes} bytes`);
+  },
+
+  // How long the page takes to load; and until it can be used: connected, its program checked. The middle one of five counts.
+  async load(page, context) {
+    const times = [], usable = [];
+    for (let round = 0; round < 5; round++) {
+      const other = await context.browser().newPage();
+      await other.goto(address);
+      await other.waitForFunction(() => document.getElementById("status").textContent !== ""
+        && document.querySelectorAll("#colours .c-move").length > 0);
+      usable.push(Math.round(await other.evaluate(() => performance.now())));
+      times.push(Math.round(await other.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd)));
+      await other.context().close();
+    }
+    console.log(`page loaded after ${times.join(", ")} ms, usable after ${usable.join(", ")} ms`);
+    times.sort((a, b) => a - b);
+    assert.ok(times[2] <= 300 || isBusy(), `loaded after ${times.join(", ")} ms`);
+  },
+
+  // Frames a second while sixteen units with four moving motors each are shown.
+  async frames(page) {
+    await openPanel(page);
+    await shows(page, ".unit:nth-of-type(16) td", "element.textContent === 'moving'");
+    const frames = await page.evaluate(() => new Promise((done) => {
+      const times = [];
+      const take = (time) => {
+        times.push(time);
+        time < times[0] + 5000 ? requestAnimationFrame(take) : done(times);
+      };
+      requestAnimationFrame(take);
+    }));
+    const gaps = frames.slice(1).map((time, at) => time - frames[at]).sort((a, b) => a - b);
+    const at = (part) => gaps[Math.floor(part * (gaps.length - 1))].toFixed(1);
+    console.log(`${(gaps.length / 5).toFixed(1)} frames/s, half within ${at(0.5)} ms, 95 % within ${at(0.95)} ms`);
+    assert.ok(gaps.length / 5 >= 55 || isBusy(), `${gaps.length / 5} frames/s`);
   },
 };

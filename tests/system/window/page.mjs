@@ -8,7 +8,7 @@ const require = createRequire(process.env.NODE_PATH + "/");
 export const { chromium } = require("playwright-core");
 const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 export const [, , name, address, folder, pictures] = process.argv;
-export const port = folder + "/bus";
+export const port = process.env.WINDOW_PORT ?? folder + "/bus";
 export const troubles = [];
 
 export async function openPage(context) {
