@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // looks.mjs: how the page looks, and what it costs.
-import { writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
 import assert from "node:assert/strict";
 import { address, AXIS, checkAccess, connect, folder, openPanel, pictures, says, send, shows, write } from "./page.mjs";
@@ -80,6 +80,35 @@ export const cases = {
     console.log(`page loaded after ${times.join(", ")} ms, usable after ${usable.join(", ")} ms`);
     times.sort((a, b) => a - b);
     assert.ok(times[2] <= 300 || isBusy(), `loaded after ${times.join(", ")} ms`);
+  },
+
+  // Memory while time runs a hundred times as fast: of the emulator, the window and the page, it is as much at the end as after a
+  // third of the time. WINDOW_MINUTES of virtual time, half an hour.
+  async memory(page, context) {
+    const minutes = Number(process.env.WINDOW_MINUTES || 30), probe = await context.newCDPSession(page);
+    const resident = (pid) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]);
+    const sample = async () => {
+      await probe.send("HeapProfiler.collectGarbage");
+      const heap = Math.round((await probe.send("Runtime.getHeapUsage")).usedSize / 1024);
+      return { emulator: resident(process.env.EMULATOR_PID), window: resident(process.env.WINDOW_PID), page: heap };
+    };
+    const time = async () => parseFloat(await page.textContent("#time"));
+    await openPanel(page);
+    await page.click(".programs summary");
+    const begun = await time();
+    let third = null;
+    for (;;) {
+      const done = (await time() - begun) / 60;
+      if (!third && done >= minutes / 3)
+        third = await sample();
+      if (done >= minutes)
+        break;
+      await new Promise((resume) => setTimeout(resume, 200));
+    }
+    const end = await sample();
+    console.log(`${minutes} min: after a third ${JSON.stringify(third)} KiB, at the end ${JSON.stringify(end)} KiB`);
+    for (const [what, most] of Object.entries(third))
+      assert.ok(end[what] <= most * 1.1 + 512, `${what}: ${most} KiB, then ${end[what]} KiB`);
   },
 
   // Frames a second while sixteen units with four moving motors each are shown.
