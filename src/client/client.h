@@ -7,11 +7,12 @@
  *     client_watch, client_panel                    the front panel in a terminal
  *     client_find                                   the emulators that are running
  *     client_report                                 where messages about ports go
+ *     client_pmc*                                   a PMC-1HS or PMC-2HS, over its line or the control socket
  *     client_shell, client_words                    commands line by line, typed or from a file
  *     client_window                                 the window in a browser, a program of its own
  *     client_job, client_usage, client_help         one command line, what is wrong with it, help for a command
  *
- * Knows text formats and the public headers of the core, and nothing of the emulator. */
+ * Knows text formats and the cores, and nothing of the emulator. */
 #ifndef RKM04_CLIENT_H
 #define RKM04_CLIENT_H
 
@@ -20,6 +21,7 @@
 #include "client_find.h"
 #include "client_help.h"
 #include "client_link.h"
+#include "client_pmc.h"
 #include "client_port.h"
 #include "client_report.h"
 #include "client_request.h"

@@ -29,6 +29,21 @@ static const struct help {
     {"progress", "progress", "Steps done in the present motion, and the place of the present command.", MOTOR_OPTIONS,
      "  rkmctl -m 1 progress\n"},
     {"raw", "raw HEX", "Send these bytes as a message and show those of the answer.", UNIT_OPTIONS, "  rkmctl raw 04 31\n"},
+    {"pmc", "pmc COMMAND [...]",
+     "A PMC-1HS or PMC-2HS, on its line of text, by Modbus (--face modbus) or, with --control, in an emulator:\n"
+     "  run [AXES] [REG]           run the program; AXES is x, y or xy, without it all\n"
+     "  jog x+|x-|y+|y-...         move until stopped\n"
+     "  move [by] x=N y=N          to a position, or by a distance, in pulses\n"
+     "  speed x=N y=N              speed of these moves, 1 to 8000 times the multiplier\n"
+     "  stop [AXES] [now]          stop with a ramp; now: without (Modbus, --control)\n"
+     "  home [AXES]                home search\n"
+     "  position                   the counters\n"
+     "  errors [clear [AXES]]      show or clear the errors\n"
+     "  program get|put FILE       the program of all axes (Modbus, --control)\n"
+     "  parameters get|put FILE    the parameters likewise\n"
+     "  store [AXES]               keep program and parameters in flash likewise",
+     "  -p PORT, --face=NAME, -n NODE, --baud=RATE, -c PATH, -u UNIT, --timeout=MS, --json",
+     "  rkmctl -p /dev/ttyUSB0 pmc move x=1000 y=-5\n  rkmctl -p /dev/ttyUSB0 --face modbus pmc program put drill.pmc\n"},
     {"state", "state", "Everything about the unit, or about all units.", "  -u UNIT\n" EMULATOR_OPTIONS,
      "  rkmctl state --json\n"},
     {"watch", "watch", "The front panel of the units, live.", "  --once\n" EMULATOR_OPTIONS, "  rkmctl watch\n"},

@@ -235,7 +235,8 @@ struct device_kind {
     unsigned flash_blocks, flash_block_size; /* 0: no flash */
     unsigned request_max, answer_max; /* bytes of the longest message, without framing; at most DEVICE_MESSAGE_MAX */
 
-    /* Power up at us 0 with the node and settings of `config`, which are copied; `port` must stay. */
+    /* Power up at us 0 with the node and settings of `config`, which are copied; `port` must stay. The memory is zero before the
+     * first power-up, and as the unit left it before another. */
     void (*begin)(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context);
     /* Give a unit that has been copied, or whose port has changed, its surroundings. `config`: the settings that it had at begin,
      * with pointers of its own. */
@@ -400,5 +401,8 @@ void rkm04_settings_put(struct device_config *config, const struct rkm04_config 
 
 /* A config with them and their node. */
 struct device_config rkm04_device_config(const struct rkm04_config *settings);
+
+/* The other kinds. */
+extern const struct device_kind pmc_1hs_device, pmc_2hs_device;
 
 #endif

@@ -24,6 +24,8 @@ __attribute__((visibility("default"))) const char *argp_program_version = "rkmct
 struct options {
     struct client_request request;
     struct client_job job;
+    const char *face;      /* of a PMC; NULL: not given */
+    unsigned baud;         /* of its line; 0: not given */
     const char *node;      /* as it was given; NULL: not given */
     bool timed, json;
     const char *file;      /* of the shell's commands; NULL: none */
@@ -33,7 +35,8 @@ struct options {
 };
 
 enum {
-    KEY_FRAMING = 0x100, KEY_TIMEOUT, KEY_MESSAGE_MAX, KEY_LINE, KEY_LIMIT, KEY_ONCE, KEY_ADVANCE, KEY_ALLOW_OVERFLOW, KEY_FORCE
+    KEY_FRAMING = 0x100, KEY_TIMEOUT, KEY_MESSAGE_MAX, KEY_LINE, KEY_LIMIT, KEY_ONCE, KEY_ADVANCE, KEY_ALLOW_OVERFLOW, KEY_FORCE,
+    KEY_FACE, KEY_BAUD
 };
 
 static const struct argp_option option_table[] = {
@@ -45,6 +48,8 @@ static const struct argp_option option_table[] = {
      "Address of the unit, 1 to 16; 0: all units, which do not answer (default: RKM04_NODE of the environment, else 1)", 0},
     {"motor", 'm', "MOTOR", 0, "Motor 1 to 4; 0: all four (default 1)", 0},
     {"framing", KEY_FRAMING, "NAME", 0, "Framing of the unit: hdlc or plain (default hdlc)", 0},
+    {"face", KEY_FACE, "NAME", 0, "pmc: what the unit speaks, ascii (default) or modbus", 0},
+    {"baud", KEY_BAUD, "RATE", 0, "pmc: speed of a serial line, 9600 (default), 19200, 38400, 57600 or 115200", 0},
     {"message-max", KEY_MESSAGE_MAX, "BYTES", 0, "Longest message that the unit accepts, 64 to 9216 (default 9216)", 0},
     {"allow-overflow", KEY_ALLOW_OVERFLOW, NULL, 0,
      "set, send: a program that overflows the unit's memory is a warning, not a failure", 0},
@@ -70,7 +75,7 @@ static const struct argp_option option_table[] = {
 
 static const char arguments[] =
     "version|store|position|command|table|progress\nset TEXT\nsend FILE\nraw HEX\n"
-    "state|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
+    "pmc COMMAND [...]\nstate|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
     "snapshot|restore NAME|file=PATH\npower on|off\nswitch NODE [reset]\nclock [CLOCK]\nfault [inject KIND|clear] [...]\n"
     "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\nshell\nwindow [OPTION...]";
 
@@ -109,6 +114,7 @@ static const char doc[] =
     "  shutdown     end the emulator\n"
     "\n"
     "Both:\n"
+    "  pmc          a PMC-1HS or PMC-2HS: run, jog, move, speed, stop, home, position, errors, program, parameters, store\n"
     "  shell        type commands and program text, or take them from -f FILE\n"
     "  window       the service program in a browser: `rkmctl window --help'\n"
     "\n"
@@ -146,6 +152,22 @@ static const struct rkm04_framing *read_framing(const struct argp_state *state, 
     if (framing == NULL)
         argp_error(state, "--framing: expected hdlc or plain, found '%s'", name);
     return framing;
+}
+
+/* An option of pmc. */
+static error_t parse_pmc_option(int key, char *text, struct argp_state *state)
+{
+    struct options *options = state->input;
+    if (key == KEY_BAUD) {
+        options->baud = read_number("--baud", text, 9600, 115200);
+        return 0;
+    }
+    if (key != KEY_FACE)
+        return ARGP_ERR_UNKNOWN;
+    if (strcmp(text, "ascii") != 0 && strcmp(text, "modbus") != 0)
+        argp_error(state, "--face: expected ascii or modbus, found '%s'", text);
+    options->face = text;
+    return 0;
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state)
@@ -205,7 +227,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
             options->words[options->count++] = text;
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_pmc_option(key, text, state);
     }
 }
 
@@ -243,6 +265,19 @@ static enum exit_status do_job(struct options *options)
     return client_control(job, options->command);
 }
 
+/* A command to a PMC, on its line or in an emulator. */
+static enum exit_status do_pmc(struct options *options)
+{
+    struct client_job *job = &options->job;
+    if (job->limit != NULL || job->once || job->advance || job->force || options->request.allow_overflow)
+        return client_usage("pmc: expected --port, --face, --node and --baud, or --control and --unit");
+    job->timeout_ms = options->timed ? (int)options->request.timeout_ms : 0;
+    const struct client_pmc pmc = {
+        .port = options->request.port, .face = options->face, .job = job, .node = options->request.node, .baud = options->baud,
+        .timeout_ms = options->request.timeout_ms, .json = options->json, .words = options->words, .count = options->count};
+    return client_pmc(&pmc);
+}
+
 static int run_line(int argc, char **argv);
 
 static enum exit_status do_shell(const struct options *options)
@@ -264,21 +299,25 @@ static enum exit_status run(struct options *options)
 {
     if (options->command == NULL)
         return client_usage("no command: expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; "
-                            "or shell, window");
+                            "pmc, shell or window");
     if (strcmp(options->command, "shell") == 0)
         return do_shell(options);
     if (options->file != NULL)
         return client_usage("-f is for shell");
     if (strcmp(options->command, "window") == 0)
         return client_usage("window is the first word: rkmctl window [OPTION...]");
+    if (strcmp(options->command, "pmc") == 0)
+        return do_pmc(options);
+    if (options->face != NULL || options->baud != 0)
+        return client_usage("--face and --baud are for pmc");
     if (client_request_has(options->command))
         return do_request(options);
     if (client_control_has(options->command))
         return do_job(options);
-    return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; or shell, found "
-                        "'%s'%s",
+    return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; pmc or "
+                        "shell, found '%s'%s",
                         options->command,
-                        nearest_hint(options->command, CLIENT_REQUEST_NAMES ", " CLIENT_CONTROL_NAMES ", shell"));
+                        nearest_hint(options->command, CLIENT_REQUEST_NAMES ", " CLIENT_CONTROL_NAMES ", pmc, shell"));
 }
 
 /* Do a command line, from its options to the exit status. */

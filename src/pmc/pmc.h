@@ -458,4 +458,6 @@ uint8_t pmc_outputs(const struct pmc_unit *unit);
 /* How many ticks the pulses of the present motion are long (AT5). */
 unsigned pmc_pulse_ticks(const struct pmc_unit *unit, unsigned axis);
 
+#include "pmc_text.h"
+
 #endif

@@ -1,0 +1,174 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# The PMC-1HS and PMC-2HS: rkm04 serve and exec with them, rkmctl pmc on both faces and through the control socket.
+. "${0%/*}/lib.sh"
+
+# unit OPTIONS...: a PMC-2HS on $folder/bus with a control socket.
+unit() {
+    serve bus --device pmc-2hs --control "$folder/bus.control" "$@"
+}
+
+# pmc WORDS...: on the bus. socket WORDS...: through the control socket.
+pmc() {
+    "$RKMCTL" -p "$folder/bus" pmc "$@"
+}
+
+socket() {
+    "$RKMCTL" -c "$folder/bus.control" pmc "$@"
+}
+
+program() {
+    cat >"$folder/a.pmc" <<'END'
+# two laps, then an output
+X: 00 REP 1
+X: 01 INC 100 V3 50
+X: 02 RPE
+X: 03 OUT OUT0 ON
+X: 04 END
+Y: 00 ABS -20.5 V4
+Y: 01 END
+END
+}
+
+canonical="X: 00 REP 1
+X: 01 INC 100 V3 50
+X: 02 RPE
+X: 03 OUT OUT0 ON
+X: 04 END
+Y: 00 ABS -20.5 V4
+Y: 01 END"
+
+# at WAY X Y: the counters.
+at() {
+    [[ $("$1" position 2>"$folder/at.err") == "x: $2"$'\n'"y: $3" ]]
+}
+
+idle() {
+    "$RKMCTL" -c "$folder/bus.control" wait idle --limit 1s >/dev/null
+}
+
+# way_works WAY: moves, jogs and stops.
+way_works() {
+    exits 0 "$1" speed x=2000 y=2000
+    exits 0 "$1" move x=1000 y=-5
+    soon "$1: both axes arrive" at "$1" 1000 -5
+    exits 0 "$1" move by x=-1000 y=5 --json
+    same "{}" "$said" "$1: --json of a command"
+    soon "$1: both axes come back" at "$1" 0 0
+    exits 0 "$1" --json position
+    same '{"x":0,"y":0}' "$said" "$1: --json position"
+    exits 0 "$1" errors
+    same "x: none
+y: none" "$said" "$1: errors"
+    exits 0 "$1" --json errors
+    same '{"x":[],"y":[]}' "$said" "$1: --json errors"
+    exits 0 "$1" jog x+ y-
+    exits 0 "$1" stop
+    soon "$1: both axes stop" idle
+}
+
+test_lines_of_text() {
+    unit
+    way_works pmc
+    exits 2 pmc program get
+    holds "$complained" "expected --face modbus, or --control" "stderr"
+    exits 2 pmc stop x now
+}
+
+# files WAY: program and parameters there and back.
+files() {
+    program
+    exits 0 "$1" program put "$folder/a.pmc"
+    exits 0 "$1" program get
+    same "$canonical" "$said" "$1: program get"
+    exits 0 "$1" parameters get
+    holds "$said" "deceleration = follow" "$1: parameters get"
+    printf '[Y]\nspeed1 = 77\nlimit_minus = -1000\ndeceleration = 9\n' >"$folder/y.txt"
+    exits 0 "$1" parameters put "$folder/y.txt"
+    exits 0 "$1" parameters get
+    holds "$said" "speed1 = 77" "$1: parameters get"
+    holds "$said" "deceleration = 9" "$1: parameters get"
+    holds "$said" "limit_minus = -1000" "$1: parameters get"
+    holds "$said" "flags = 0x0133" "$1: parameters get"
+    exits 0 "$1" store
+    exits 0 "$RKMCTL" -c "$folder/bus.control" reset
+    exits 0 "$1" program get
+    same "$canonical" "$said" "$1: program get after a power-up"
+    printf '5 REP 256\nX: 6 FOO\n' >"$folder/wrong.pmc"
+    exits 1 "$1" program put "$folder/wrong.pmc"
+    holds "$complained" "$folder/wrong.pmc:1:7: error: expected a count from 1 to 255" "stderr"
+    holds "$complained" "$folder/wrong.pmc:2:6: error: expected a command" "stderr"
+    exits 1 "$1" program put "$folder/none.pmc"
+    exits 0 "$1" run x
+    soon "$1: the program ends" at "$1" 200 0
+}
+
+test_modbus() {
+    pmc() { "$RKMCTL" -p "$folder/bus" --face modbus pmc "$@"; }
+    unit --device-option face=modbus
+    way_works pmc
+    exits 0 pmc stop xy now
+    exits 0 pmc jog x+
+    exits 1 pmc move by x=1
+    holds "$complained" "exception 6: the axis is busy" "stderr"
+    exits 0 pmc stop xy now
+    soon "both axes stop" idle
+    exits 0 "$RKMCTL" -p "$folder/bus" --face modbus --node 0 pmc speed x=1
+    exits 3 "$RKMCTL" -p "$folder/bus" --face modbus --node 2 --timeout 100 pmc position
+    soon "the counter is cleared" "$RKMCTL" -c "$folder/bus.control" call pmc.clear_counters >/dev/null
+    files pmc
+}
+
+test_control_socket() {
+    unit
+    way_works socket
+    files socket
+}
+
+test_files_are_stored_at_the_start() {
+    program
+    printf '[X]\nspeed3 = 2000\n' >"$folder/x.txt"
+    unit --device-option program="$folder/a.pmc" --device-option parameters="$folder/x.txt"
+    exits 0 socket program get
+    same "$canonical" "$said" "the program"
+    exits 0 socket parameters get
+    holds "$said" "speed3 = 2000" "the parameters"
+    exits 0 socket program put /dev/null
+    exits 0 socket store
+    exits 0 "$RKMCTL" -c "$folder/bus.control" reset
+    exits 0 socket program get
+    same "" "$said" "the program after another one was stored"
+}
+
+test_wrong_files_and_options_are_refused() {
+    printf '5 REP 256\n' >"$folder/wrong.pmc"
+    exits 2 "$RKM04" serve --device pmc-2hs --device-option program="$folder/wrong.pmc"
+    holds "$complained" "$folder/wrong.pmc:1:7: error: expected a count from 1 to 255" "stderr"
+    local option
+    for option in face=hdlc baud=300 first-answer-late=60001 rep-counts=laps abs-needs-home=yes; do
+        exits 2 "$RKM04" serve --device pmc-1hs --device-option "$option"
+        holds "$complained" "expected" "$option"
+    done
+    exits 2 "$RKMCTL" -p "$folder/none" pmc
+    exits 2 "$RKMCTL" -p "$folder/none" pmc flip
+    exits 2 "$RKMCTL" -p "$folder/none" --face rtu pmc position
+    exits 2 "$RKMCTL" -p "$folder/none" --face modbus position
+}
+
+test_exec_runs_a_program() {
+    program
+    exits 0 "$RKM04" exec --device pmc-2hs "$folder/a.pmc"
+    holds "$said" "1              200  idle" "the state"
+    holds "$said" "2              -21  idle" "the state"
+    exits 0 "$RKM04" exec --device pmc-2hs --device-option rep-counts=passes "$folder/a.pmc"
+    holds "$said" "1              100  idle" "the state"
+    printf '0 RPE\n' >"$folder/a.pmc"
+    exits 1 "$RKM04" exec --device pmc-1hs "$folder/a.pmc"
+    holds "$complained" "a.pmc:1:1: warning: RPE without a REP before it" "stderr"
+    holds "$complained" "error pgm: an error in the program" "stderr"
+    printf '0 JMP 0\n' >"$folder/a.pmc"
+    exits 124 "$RKM04" exec --device pmc-1hs "$folder/a.pmc"
+    holds "$complained" "never ends" "stderr"
+}
+
+run_cases "$@"
