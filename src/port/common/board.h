@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* board.h: what a board has to do for loop.c, which is the same on all of them: the unit runs ahead of the clock, what it wants
- * done at which tick waits in `board_pulses`, and an interrupt of the board does it. Everything here is called by the main loop.
+ * done at which tick waits in `board_pulses`, and an interrupt of the board does it. All is called by the main loop.
  * The board's Makefile or compiler options give BOARD_TICKS_AHEAD. */
 #ifndef BOARD_H
 #define BOARD_H
@@ -28,11 +28,15 @@ void board_clock_start(void);
 /* Microseconds since board_clock_start, never going back. Called more than once in 71 minutes. */
 uint64_t board_clock(void);
 
-/* The interrupt looks at the pulses again, since something may have been put there, and wakes the main loop at this tick. */
+/* Call wake_at with this tick, and have the interrupt look at the pulses again, since something may have been put there. */
 void board_play(uint32_t wake);
 
-/* Sleep until the tick handed to board_play, a change of an input, or until line_needs_main_loop(more). */
-void board_sleep(bool more);
+/* Interrupts on or off; wait for one with them off: what is pending already, or comes, ends the wait. */
+void board_interrupts(bool on);
+void board_wait(void);
+
+/* Begin anew, as after switching on. */
+void board_reset(void);
 
 /* Terminals DI 01..08, bit 0 is DI 01; 1 = current flows. */
 uint8_t board_inputs(void);

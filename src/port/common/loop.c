@@ -3,6 +3,7 @@
 
 #include "board.h"
 #include "line.h"
+#include "wake.h"
 
 #define LEAST (BOARD_TICKS_AHEAD - 1000u) /* with so much left before the next event the unit is advanced again */
 #define LED_TICKS 100000u /* how often the LEDs are checked, at least */
@@ -110,5 +111,5 @@ void loop_turn(void)
     transmit();
     show_leds();
     board_play((uint32_t)back_at(now));
-    board_sleep(rkm04_sending(&unit));
+    wake_wait(rkm04_sending(&unit));
 }

@@ -8,10 +8,7 @@
 #include "line.h"
 #include "mps2.h"
 #include "pins.h"
-
-static volatile uint32_t wake_tick; /* when the main loop wants to be woken */
-static volatile bool awake;         /* that tick has come */
-static volatile bool changed;       /* an input has, since board_inputs */
+#include "wake.h"
 
 /* ---- Pins ----------------------------------------------------------------------------------------------------------- */
 
@@ -42,7 +39,7 @@ void board_driver(bool on)
 /* Have a change of an input interrupt: pins at 1 when they go to 0, and the other way round. */
 uint8_t board_inputs(void)
 {
-    changed = false;
+    wake_clear();
     const uint32_t pins = PINS(BOARD_INPUT_PIN, RKM04_INPUTS), levels = MPS2_GPIO1->data;
     MPS2_GPIO1->high_level_clear = pins & levels;
     MPS2_GPIO1->high_level_set = pins & ~levels;
@@ -54,7 +51,7 @@ uint8_t board_inputs(void)
 void board_input_interrupt(void)
 {
     MPS2_GPIO1->interrupt_clear = PINS(BOARD_INPUT_PIN, RKM04_INPUTS);
-    changed = true;
+    wake_changed();
 }
 
 uint8_t board_switch(void)
@@ -97,10 +94,9 @@ void board_timer_interrupt(void)
     MPS2_TIMER0->interrupt = 1;
     do {
         now = MPS2_COUNTER;
-        far = awake ? now + PULSES_FAR : wake_tick;
+        wake_check(now);
+        far = wake_tick(now + PULSES_FAR);
         next = pulses_play(&board_pulses, &board_pins, now, far);
-        if (!awake && (int32_t)(wake_tick - now) <= 0)
-            awake = true;
         left = (int32_t)(next - MPS2_COUNTER);
     } while (left <= 0);
     arm((uint32_t)left);
@@ -110,18 +106,14 @@ void board_play(uint32_t wake)
 {
     interrupts_off();
     pulses_refresh(&board_pulses);
-    wake_tick = wake;
-    awake = false;
+    wake_at(wake);
     NVIC_PEND = 1u << IRQ_TIMER0;
     interrupts_on();
 }
 
-void board_sleep(bool more)
+void board_reset(void)
 {
-    interrupts_off(); /* or what comes between the look and the sleep would be slept through; WFI wakes all the same */
-    if (!awake && !changed && !line_needs_main_loop(more))
-        __asm__ volatile("wfi");
-    interrupts_on();
+    SCB_AIRCR = AIRCR_RESET;
 }
 
 void board_start(void)
@@ -161,3 +153,8 @@ int board_flash_program(void *context, unsigned block, unsigned offset, const vo
 {
     return flash_program(context, block, offset, data, length);
 }
+
+INTERRUPTS interrupts[] = {
+    [IRQ_UART0_RECEIVE] = uart_receive_interrupt, [IRQ_UART0_SENT] = uart_sent_interrupt,
+    [IRQ_GPIO1] = board_input_interrupt, [IRQ_TIMER0] = board_timer_interrupt, [IRQ_TIMER1] = uart_timer_interrupt,
+};

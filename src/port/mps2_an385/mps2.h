@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cortex.h"
 #include "pulses.h"
 
 #define MPS2_CLOCK 25000000u /* Hz, of the processor and of everything below */
@@ -47,10 +48,7 @@ struct mps2_gpio {
 #define MPS2_LEDS (*(volatile uint32_t *)0x4002f004)
 #define MPS2_SWITCHES (*(volatile uint32_t *)0x4002f00c)
 
-/* Interrupts of the processor: enable, set pending; one byte of priority each, 0 is the most urgent. */
-#define NVIC_ENABLE (*(volatile uint32_t *)0xe000e100)
-#define NVIC_PEND (*(volatile uint32_t *)0xe000e200)
-#define NVIC_PRIORITY ((volatile uint8_t *)0xe000e400)
+/* Interrupts of the processor. */
 enum mps2_interrupt { IRQ_UART0_RECEIVE = 0, IRQ_UART0_SENT = 1, IRQ_GPIO1 = 7, IRQ_TIMER0 = 8, IRQ_TIMER1 = 9 };
 
 /* Pins. GPIO0: 0-3 step, 4-7 direction of motors 1-4, 8 RS485 driver-enable. GPIO1: 0-7 DO 01-08, 8-15 DI 01-08. */
@@ -66,16 +64,6 @@ enum mps2_interrupt { IRQ_UART0_RECEIVE = 0, IRQ_UART0_SENT = 1, IRQ_GPIO1 = 7, 
 #define BOARD_PRIORITY_PULSES 0x00u
 #define BOARD_PRIORITY_LINE 0x80u
 #define BOARD_PRIORITY_INPUTS 0xc0u
-
-static inline void interrupts_off(void)
-{
-    __asm__ volatile("cpsid i" ::: "memory");
-}
-
-static inline void interrupts_on(void)
-{
-    __asm__ volatile("cpsie i" ::: "memory");
-}
 
 /* uart.c: the UART, and the timer that ends a transmission. */
 void uart_start(void);

@@ -3,6 +3,7 @@
  * inserts. The ROM copies them to the end of the RAM and runs them. They have the flash read as memory, with the command that
  * every chip knows, copy the firmware to RAM and start it: it never runs from flash, so the cache has no influence on its times,
  * and the flash may be erased while interrupts go on. */
+#include "cortex.h"
 #include "rp2040.h"
 
 __attribute__((section(".boot_crc"), used)) const uint32_t boot_crc = 0;
@@ -11,12 +12,12 @@ extern uint32_t image[], image_begin[], image_end[]; /* of pico.ld */
 
 __attribute__((section(".boot"), used, noreturn)) void boot(void)
 {
-    SSI_SSIENR = 0;
-    SSI_BAUDR = 4;                          /* 31 MHz of 125 at most; less while it boots */
-    SSI_CTRLR0 = 31u << 16 | 3u << 8;       /* 32 bits a word; EEPROM read: send command and address, then read */
-    SSI_CTRLR1 = 0;                         /* one word */
-    SSI_SPI_CTRLR0 = 0x03u << 24 | 2u << 8 | 6u << 2; /* command 03, 8 bits; 24 bits of address; all on one wire */
-    SSI_SSIENR = 1;
+    SSI->ssienr = 0;
+    SSI->baudr = 4;                          /* 31 MHz of 125 at most; less while it boots */
+    SSI->ctrlr0 = 31u << 16 | 3u << 8;       /* 32 bits a word; EEPROM read: send command and address, then read */
+    SSI->ctrlr1 = 0;                         /* one word */
+    SSI->spi_ctrlr0 = 0x03u << 24 | 2u << 8 | 6u << 2; /* command 03, 8 bits; 24 bits of address; all on one wire */
+    SSI->ssienr = 1;
     const volatile uint32_t *from = image;
     for (uint32_t *to = image_begin; to < image_end; to++)
         *to = *from++;

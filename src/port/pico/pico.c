@@ -1,23 +1,29 @@
 /* SPDX-License-Identifier: MIT */
 /* pico.c: pins, pulses, line and clock of the Pico. Pulses come from the PIO: a state machine a motor gets a word a pulse, which
- * says how long after the one before it comes; one more shifts out DO and LEDs. So no interrupt can delay a pulse. The beat
- * hands over what is due within a millisecond; where nothing is due it hands over words that only wait: a state machine that
- * never runs dry never loses its time. */
+ * says how long after the one before it comes; one more shifts out DO and LEDs. So no interrupt can delay a pulse. */
 #include "board.h"
 
 #include <rkm04/limits.h>
 
 #include "clock.h"
+#include "cortex.h"
+#include "feed.h"
 #include "line.h"
-#include "pico.h"
 #include "pins.h"
 #include "rp2040.h"
+#include "wake.h"
 
-#define BEAT 200u     /* us */
-#define WINDOW 1000   /* us: what is due so soon goes to the PIO */
-#define START 50u     /* us from the start of the PIO to tick 0 */
+#define BEAT 200u /* us */
+#define START 50u /* us from the start of the PIO to tick 0 */
 
-/* ---- PIO -------------------------------------------------------------------------------------------------------------- */
+enum { /* docs/PICO.md draws them */
+    PIN_TX = 0, PIN_RX, PIN_DRIVER,        /* RS485; driver-enable high */
+    PIN_DATA = 3, PIN_CLOCK, PIN_LATCH,    /* two 74HC595: DO 01-08, LEDs 1-4 */
+    PIN_STEP = 6,                          /* step of motor 1, direction of motor 1, step of motor 2, ... */
+    PIN_INPUTS = 14,                       /* DI 01-08; current pulls them low */
+    PIN_SWITCH_1 = 22, PIN_SWITCH_2 = 26,  /* S1-1; S1-2 to S1-4. Closed pulls them low. */
+    PIN_BOARD_LED = 25                     /* of the Pico itself: one of the LEDs is lit */
+};
 
 /* Of a motor, 1 cycle = 1 us. A word: bits 0-23 x, 24 step, 25 direction. The pins change x + 3 after its begin, it takes
  * x + 14. */
@@ -45,12 +51,6 @@ static const uint16_t shift_program[] = {
 #define LENGTH(array) (sizeof(array) / sizeof *(array))
 #define SET_OUTPUTS 0xe087u /* set pindirs, 7 */
 
-/* What a lane of board_pulses has given to its state machine. */
-static struct fed {
-    uint32_t end;    /* tick at which the pins change by its last word */
-    uint32_t levels; /* 0: DO, LEDs above; motors: direction in bit 1 */
-} fed[PULSES_LANES];
-
 static void start_machine(struct pio *pio, unsigned machine, uint32_t divider, unsigned wrap, uint32_t shift, uint32_t outputs,
                           uint32_t pins)
 {
@@ -77,69 +77,27 @@ static void start_pio(void)
                   1u << 29 | 1u << 26 | 1u << 20 | PIN_CLOCK << 10 | PIN_LATCH << 5 | PIN_DATA);
 }
 
-/* A word for the lane: its pins change at `tick`. */
-static inline void give(unsigned lane, uint32_t tick, uint32_t step)
+static const struct feed_timing motor_timing = {.apart = PULSES_SETTLE, .rest = 11}, shift_timing = {.apart = 8, .rest = 0};
+
+unsigned board_feed_room(unsigned lane)
 {
-    uint32_t after = tick - fed[lane].end;
-    fed[lane].end = tick;
-    if (lane == 0)
-        PIO1->txf[0] = fed[0].levels << 16 | (after * 5 - 38);
-    else
-        PIO0->txf[lane - 1] = (fed[lane].levels | step) << 24 | (after - 14);
+    return 8 - (lane == 0 ? PIO_LEVEL(PIO1, 0) : PIO_LEVEL(PIO0, lane - 1));
 }
 
-/* The item has been taken from the lane. Returns 1 if it is a step. */
-static inline uint32_t apply(unsigned lane, uint32_t item)
+void board_feed_give(unsigned lane, uint32_t after, uint32_t levels)
 {
     if (lane == 0)
-        fed[0].levels = (fed[0].levels & 0xf00) | item;
-    else if (item == PULSE_STEP)
-        return 1;
+        PIO1->txf[0] = levels << 16 | (after * 5 - 38);
     else
-        fed[lane].levels = item == PULSE_FORWARD ? 2 : 0;
-    return 0;
-}
-
-/* Fill the queue of the lane's state machine. */
-static inline void feed(unsigned lane, uint32_t now)
-{
-    const struct pio *pio = lane == 0 ? PIO1 : PIO0;
-    const uint32_t full = PIO_TX_FULL(lane == 0 ? 0 : lane - 1);
-    const uint32_t apart = lane == 0 ? 8 : PULSES_SETTLE; /* if they are late; in time the unit sees to it */
-    int32_t ahead = (int32_t)(fed[lane].end - now);
-    uint32_t tick, step;
-    uint8_t item;
-    if (ahead < -11)
-        fed[lane].end = now - 11; /* it has run dry, and begins with the next word */
-    while (pulses_peek(&board_pulses, lane, &tick, &item) && (int32_t)(tick - now) < WINDOW) {
-        if (pio->fstat & full)
-            return;
-        pulses_drop(&board_pulses, lane);
-        step = apply(lane, item);
-        for (uint32_t next; lane == 0 && pulses_peek(&board_pulses, 0, &next, &item) && next == tick;) {
-            pulses_drop(&board_pulses, 0);
-            (void)apply(0, item); /* all outputs of a tick at once */
-        }
-        uint32_t earliest = fed[lane].end + apart, late = earliest - tick;
-        if ((int32_t)late > 0) {
-            tick = earliest;
-            board_pulses.latest = late > board_pulses.latest ? late : board_pulses.latest;
-        }
-        give(lane, tick, step);
-    }
-    if ((int32_t)(fed[lane].end - now) < WINDOW / 4 && !(pio->fstat & full))
-        give(lane, now + WINDOW / 2, 0);
+        PIO0->txf[lane - 1] = levels << 24 | (after - 14);
 }
 
 /* ---- Time ------------------------------------------------------------------------------------------------------------- */
 
 static uint32_t began; /* TIMER_NOW at tick 0 */
-static uint64_t time;
-static uint32_t next_beat; /* of TIMER_NOW */
-static uint32_t wake_tick; /* when the main loop wants to be woken */
-static volatile bool awake;
+static uint32_t next_beat;   /* of TIMER_NOW */
 static uint32_t inputs_seen; /* by the main loop */
-static volatile bool changed; /* an input has, since then */
+static uint64_t time;
 
 uint64_t board_clock(void)
 {
@@ -148,10 +106,7 @@ uint64_t board_clock(void)
 
 static void set_pin(unsigned pin, bool high)
 {
-    if (high)
-        SIO_OUT_SET = 1u << pin;
-    else
-        SIO_OUT_CLEAR = 1u << pin;
+    *(high ? &SIO_OUT_SET : &SIO_OUT_CLEAR) = 1u << pin;
 }
 
 static void serve_line(void)
@@ -167,7 +122,8 @@ static void serve_line(void)
         UART0->data = byte;
 }
 
-void beat_interrupt(void)
+/* Every BEAT us: the PIO and the UART get and give what there is. */
+static void beat_interrupt(void)
 {
     uint32_t now = TIMER_NOW;
     TIMER_INTR = 1;
@@ -176,20 +132,22 @@ void beat_interrupt(void)
         next_beat = now + BEAT; /* a debugger has halted it: an alarm in the past would come in 71 minutes */
     TIMER_ALARM0 = next_beat;
     for (unsigned lane = 0; lane < PULSES_LANES; lane++)
-        feed(lane, now - began);
+        feed(lane, lane == 0 ? &shift_timing : &motor_timing, now - began);
     serve_line();
     if ((SIO_IN ^ inputs_seen) & PINS(PIN_INPUTS, RKM04_INPUTS))
-        changed = true;
-    if ((int32_t)(wake_tick - (now - began)) <= 0)
-        awake = true;
+        wake_changed();
+    wake_check(now - began);
 }
+
+INTERRUPTS interrupts[] = {[IRQ_TIMER0] = beat_interrupt};
 
 void board_clock_start(void)
 {
     interrupts_off();
     for (unsigned lane = 0; lane < PULSES_LANES; lane++) {
-        fed[lane].end = 0u - START - (lane == 0 ? 0 : 11); /* as if a word had just ended */
-        give(lane, 0u - START / 2, 0);
+        uint32_t rest = lane == 0 ? shift_timing.rest : motor_timing.rest; /* as if a word had just ended */
+        feed_start(lane, 0u - START / 2);
+        board_feed_give(lane, START / 2 + rest, 0);
     }
     for (began = TIMER_NOW; TIMER_NOW == began;)
         ;
@@ -208,32 +166,17 @@ void board_clock_start(void)
 void board_play(uint32_t wake)
 {
     interrupts_off();
-    wake_tick = wake;
-    awake = false;
-    interrupts_on();
-}
-
-void board_sleep(bool more)
-{
-    interrupts_off(); /* or what comes between the look and the sleep would be slept through; WFI wakes all the same */
-    while (!awake && !changed && !line_needs_main_loop(more)) {
-        __asm__ volatile("wfi");
-        interrupts_on();
-        interrupts_off();
-    }
+    wake_at(wake);
     interrupts_on();
 }
 
 /* ---- Pins ------------------------------------------------------------------------------------------------------------- */
 
-void board_line(void)
-{
-    /* The beat looks. */
-}
+void board_line(void) {} /* the beat looks */
 
 uint8_t board_inputs(void)
 {
-    changed = false;
+    wake_clear();
     inputs_seen = SIO_IN;
     return pins_read(inputs_seen, PIN_INPUTS, RKM04_INPUTS, true);
 }
@@ -248,31 +191,31 @@ uint8_t board_switch(void)
 void board_led(unsigned motor, bool lit)
 {
     interrupts_off();
-    fed[0].levels = pins_with(fed[0].levels, motor + 8, lit);
-    set_pin(PIN_BOARD_LED, fed[0].levels & 0xf00);
+    feed_levels(0x100u << (motor - 1), pins_with(0, motor + 8, lit));
+    set_pin(PIN_BOARD_LED, feed_level() & 0xf00);
     interrupts_on();
 }
 
-static void use_pins(unsigned first, unsigned count, uint32_t pad, uint32_t function)
+/* Outputs first become outputs: no pull-up raises them before. */
+static void use_pins(unsigned first, unsigned count, uint32_t function)
 {
     for (unsigned pin = first; pin < first + count; pin++) {
-        PAD(pin) = pad;
         IO_CTRL(pin) = function;
+        PAD(pin) = PAD_UP;
     }
 }
 
 void board_start(void)
 {
+    clocks_start();
     SIO_OE_SET = 1u << PIN_DRIVER | 1u << PIN_BOARD_LED; /* at 0 */
-    use_pins(PIN_TX, 1, PAD_OUT, FUNCTION_UART);
-    use_pins(PIN_RX, 1, PAD_IN_UP, FUNCTION_UART);
-    use_pins(PIN_DRIVER, 1, PAD_OUT, FUNCTION_SIO);
-    use_pins(PIN_INPUTS, RKM04_INPUTS + 1, PAD_IN_UP, FUNCTION_SIO); /* and S1-1 */
-    use_pins(PIN_SWITCH_2, 3, PAD_IN_UP, FUNCTION_SIO);
-    use_pins(PIN_BOARD_LED, 1, PAD_OUT, FUNCTION_SIO);
+    use_pins(PIN_TX, 2, FUNCTION_UART);
+    use_pins(PIN_DRIVER, 1, FUNCTION_SIO);
+    use_pins(PIN_INPUTS, RKM04_INPUTS + 1, FUNCTION_SIO); /* and S1-1 */
+    use_pins(PIN_BOARD_LED, 4, FUNCTION_SIO);             /* and S1-2 to S1-4 */
     start_pio();
-    use_pins(PIN_DATA, 3, PAD_OUT, FUNCTION_PIO1);
-    use_pins(PIN_STEP, 2 * RKM04_MOTORS, PAD_OUT, FUNCTION_PIO0);
+    use_pins(PIN_DATA, 3, FUNCTION_PIO1);
+    use_pins(PIN_STEP, 2 * RKM04_MOTORS, FUNCTION_PIO0);
     UART0->ibrd = 406; /* 125 MHz / 16 / 19200 = 406 + 58 / 64 */
     UART0->fbrd = 58;
     UART0->line = 3u << 5 | 1u << 4; /* 8 bits, queues */

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #define REGISTER(address) (*(volatile uint32_t *)(address))
-/* 2.1.2: writing to these addresses of a register sets or clears bits of it, in one access. */
+/* 2.1.2: writing to these copies of a register sets or clears bits of it, in one access. */
 #define SET(address) REGISTER((address) + 0x2000u)
 #define CLEAR(address) REGISTER((address) + 0x3000u)
 
@@ -15,11 +15,10 @@
 #define XIP_NOCACHE_NOALLOC_BASE 0x13000000u
 
 /* 4.10.13: the serial interface to the flash. */
-#define SSI_CTRLR0 REGISTER(0x18000000)
-#define SSI_CTRLR1 REGISTER(0x18000004)
-#define SSI_SSIENR REGISTER(0x18000008)
-#define SSI_BAUDR REGISTER(0x18000014)
-#define SSI_SPI_CTRLR0 REGISTER(0x180000f4)
+struct ssi {
+    volatile uint32_t ctrlr0, ctrlr1, ssienr, mwcr, ser, baudr, unused[55], spi_ctrlr0;
+};
+#define SSI ((struct ssi *)0x18000000)
 
 /* 2.8.3: addresses that the ROM holds: of its table of functions, and of the function that looks them up by two characters. */
 extern const uint16_t rom_table, rom_lookup; /* of pico.ld */
@@ -48,7 +47,7 @@ enum { RESET_IO = 1 << 5, RESET_PADS = 1 << 8, RESET_PIO0 = 1 << 10, RESET_PIO1 
 #define IO_CTRL(pin) REGISTER(0x40014004u + 8u * (pin))
 #define PAD(pin) REGISTER(0x4001c004u + 4u * (pin))
 enum { FUNCTION_UART = 2, FUNCTION_SIO = 5, FUNCTION_PIO0 = 6, FUNCTION_PIO1 = 7 };
-enum { PAD_OUT = 0x52, PAD_IN_UP = 0x4a }; /* input and trigger on, 4 mA; with the pull-up */
+#define PAD_UP 0x5au /* input and trigger on, pull-up, 4 mA */
 #define SIO_IN REGISTER(0xd0000004)
 #define SIO_OUT_SET REGISTER(0xd0000014)
 #define SIO_OUT_CLEAR REGISTER(0xd0000018)
@@ -63,7 +62,7 @@ struct pio {
 };
 #define PIO0 ((struct pio *)0x50200000)
 #define PIO1 ((struct pio *)0x50300000)
-#define PIO_TX_FULL(machine) (1u << (16 + (machine))) /* fstat */
+#define PIO_LEVEL(pio, machine) ((pio)->flevel >> 8 * (machine) & 0xf) /* of its transmit queue */
 
 /* 4.2.8: UART0, a PL011 with queues of 32 bytes each way. */
 struct uart {
@@ -82,20 +81,9 @@ enum { UART_BUSY = 1 << 3, UART_RX_EMPTY = 1 << 4, UART_TX_FULL = 1 << 5 }; /* f
 #define WATCHDOG_CTRL REGISTER(0x40058000)
 #define PSM_WDSEL REGISTER(0x40010008) /* 2.13.5: what the watchdog resets */
 
-/* 2.4.8: the processor: interrupt enable, pending; the vectors' address. */
-#define NVIC_ENABLE REGISTER(0xe000e100)
-#define NVIC_PEND REGISTER(0xe000e200)
-#define SCB_VTOR REGISTER(0xe000ed08)
 #define IRQ_TIMER0 0u /* 2.3.2 */
 
-static inline void interrupts_off(void)
-{
-    __asm__ volatile("cpsid i" ::: "memory");
-}
-
-static inline void interrupts_on(void)
-{
-    __asm__ volatile("cpsie i" ::: "memory");
-}
+/* clocks.c: 125 MHz for processor, peripherals and PIO, microseconds for the timer; what is used comes out of its reset. */
+void clocks_start(void);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* port.c: an RKM04 on QEMU's RISC-V machine "virt": the template with its places filled in, and nothing more. Pulses are sent
- * from the main loop, so they come late by what else it does; see mps2_an385 for pulses exact to the tick.
+/* port.c: an RKM04 on QEMU's RISC-V machine "virt", as small as a port can be. Pulses are sent from the main loop, so they come
+ * late by what else it does; see mps2_an385 for pulses exact to the tick.
  *
  * The machine has no pins. What would be their registers is `pins` below. */
 #include <rkm04/unit.h>

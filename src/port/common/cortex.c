@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* start.c: what happens before main: the vectors, and memory as C expects it. */
+/* cortex.c: what happens on a Cortex-M before main: the vectors, and memory as C expects it. */
+#include "cortex.h"
+
 #include <stdint.h>
 
 #include "board.h"
-#include "mps2.h"
 
-extern uint32_t stack_top, data_image, data_begin, data_end, bss_begin, bss_end; /* of mps2_an385.ld */
+extern uint32_t stack_top, data_image, data_begin, data_end, bss_begin, bss_end; /* of the board's linker script */
 
 int main(void);
 
@@ -25,20 +26,28 @@ _Noreturn void reset(void)
 /* A processor fault: start again, as after switching on (the programs are in flash). */
 static void fault(void)
 {
-    *(volatile uint32_t *)0xe000ed0c = 0x05fa0004; /* AIRCR: system reset request */
+    board_reset();
     for (;;)
         ;
 }
 
-typedef void handler(void);
-
 __attribute__((section(".vectors"), used)) static const struct {
     uint32_t *stack;
     handler *exception[15];
-    handler *interrupt[10];
 } vectors = {
     &stack_top,
     {reset, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault},
-    {[0] = uart_receive_interrupt, [1] = uart_sent_interrupt, [2] = fault, [3] = fault, [4] = fault, [5] = fault,
-     [6] = fault, [7] = board_input_interrupt, [8] = board_timer_interrupt, [9] = uart_timer_interrupt},
 };
+
+void board_interrupts(bool on)
+{
+    if (on)
+        interrupts_on();
+    else
+        interrupts_off();
+}
+
+void board_wait(void)
+{
+    __asm__ volatile("wfi" ::: "memory");
+}
