@@ -10,6 +10,7 @@ run_packages=(gcc libc6-dev make cmake pkg-config libuv1-dev libjansson-dev libs
 package_packages=(dpkg-dev file)
 # Needed on top of that by the tests.
 test_packages=("${package_packages[@]}" check libgmp-dev valgrind socat procps clang cppcheck g++ python3-serial python3-pyte
+    python3-pymodbus python3-serial-asyncio libmodbus-dev mbpoll
     python3-dev python3-venv librsvg2-bin fonts-dejavu-core zsh fish gensio-bin ser2net iproute2 tshark sigrok-cli gtkwave
     lintian systemd chromium vim gcc-mingw-w64-x86-64-win32 wine64)
 # Needed by the tests with npm packages, if the machine has no node and npm of its own.

@@ -40,9 +40,11 @@ static void print_functions(const json_t *functions)
         printf(" T%02d", (int)json_integer_value(function));
 }
 
-/* What the panel has no room for. */
+/* What the panel has no room for: of motors with a program. */
 static void print_motor(const json_t *motor)
 {
+    if (json_object_get(motor, "memory") == NULL)
+        return;
     const json_t *parameters = json_object_get(motor, "parameters");
     const char *slot = json_string_value(json_object_get(motor, "slot"));
     printf(" motor %" JSON_INTEGER_FORMAT ":  %" JSON_INTEGER_FORMAT " of 700 commands, flash %s,  S%" JSON_INTEGER_FORMAT

@@ -70,6 +70,11 @@ static const struct help {
      "  rkmctl fault inject drop direction=to_master count=1\n  rkmctl fault clear\n"},
     {"plant", "plant [set FILE|none|motor=N NAME=VALUE...]", "Show, attach or change the simulated mechanics.",
      "  -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl plant set axis.yaml\n  rkmctl plant motor=1 jammed=true\n"},
+    {"cib", "cib status [A|B]|command A|B NUMBER [P1 [P2]]|di|do [N=LEVEL...]|pwm [N DUTY]|config [get|put FILE|apply]",
+     "A CIB module: its drives; a command to one; inputs as they show and buttons; outputs; duty of a PWM output in 0.01 %;\n"
+     "the configuration that is proposed, as a file has it: show it, read it from a file, apply it.",
+     "  -u UNIT\n" EMULATOR_OPTIONS,
+     "  rkmctl cib command A 102 3000 500\n  rkmctl cib config put two-drives.yaml\n  rkmctl cib config apply\n"},
     {"trace", "trace start FILE|stop [NUMBER]", "Begin a trace (" TRACE_ENDINGS ", " WIRE_ENDINGS "), or end it.",
      "  --force\n" EMULATOR_OPTIONS, "  rkmctl trace start run.vcd\n"},
     {"call", "call METHOD [JSON|NAME=VALUE...]", "Any other method of the control socket.", EMULATOR_OPTIONS,

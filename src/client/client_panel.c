@@ -6,7 +6,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#define MOTORS 4
+#define MOTORS 4 /* that have room */
+#define LAMPS_MAX 16
 #define TEXT_MAX 160
 
 /* ---- The grid --------------------------------------------------------------------------------------------------------- */
@@ -89,6 +90,25 @@ static unsigned mask_of(const json_t *object, const char *key)
 static bool is_powered(const struct panel_view *view)
 {
     return !json_is_false(json_object_get(view->state, "powered"));
+}
+
+/* A number of the device: "inputs", "outputs", "variables", "first_variable"; `usual`: the RKM04's, whose state has none. */
+static unsigned number_of(const struct panel_view *view, const char *key, unsigned usual)
+{
+    const json_t *device = json_object_get(view->state, "device");
+    return device != NULL ? (unsigned)json_integer_value(json_object_get(device, key)) : usual;
+}
+
+static unsigned lamps_of(const struct panel_view *view, const char *key, unsigned usual)
+{
+    unsigned count = number_of(view, key, usual);
+    return count < LAMPS_MAX ? count : LAMPS_MAX;
+}
+
+static unsigned motors_of(const struct panel_view *view)
+{
+    unsigned count = number_of(view, "axes", MOTORS);
+    return count < MOTORS ? count : MOTORS;
 }
 
 /* ---- The motors ------------------------------------------------------------------------------------------------------- */
@@ -267,7 +287,9 @@ static int choose_rows(const struct panel_view *view, int rows, int lamps, int a
         count = 0;
         for (int i = 0; i < ROWS; i++) {
             bool keys = i == ROW_KEYS || i == ROW_GAP_5, numbers = i == ROW_NUMBERS || i == ROW_VAR_NUMBERS;
-            bool shown = row_goes[i] <= most && (!keys || view->keys != NULL) && (!numbers || lamps == 3);
+            bool missing = (i >= ROW_MOTOR_1 + (int)motors_of(view) && i <= ROW_MOTOR_4) ||
+                           ((i == ROW_GAP_3 || i == ROW_VAR_NUMBERS || i == ROW_VAR) && lamps_of(view, "variables", 16) == 0);
+            bool shown = row_goes[i] <= most && (!keys || view->keys != NULL) && (!numbers || lamps == 3) && !missing;
             at[i] = shown ? count++ : -1;
         }
         if (count <= rows)
@@ -285,7 +307,8 @@ static void put_title(struct panel *panel, const struct panel_view *view, int ro
     if (row < 0)
         return;
     fill_row(panel, row, PANEL_TITLE);
-    int column = put_whole(panel, row, 1, PANEL_TITLE, "RKM04 unit %s", name);
+    int column = put_whole(panel, row, 1, PANEL_TITLE, "%s unit %s",
+                           string_of(json_object_get(view->state, "device"), "name", "RKM04"), name);
     if (!is_powered(view))
         column = put_whole(panel, row, column, PANEL_TITLE, ": no power");
     column = put_whole(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000),
@@ -334,13 +357,14 @@ void client_panel_draw(struct panel *panel, const struct panel_view *view, int r
     choose_fields(view, panel->columns, column);
     for (int i = 0; i < FIELDS; i++)
         put_field(panel, at[ROW_HEAD], column, (enum field)i, PANEL_HEAD, fields[i].head);
-    for (unsigned motor = 1; motor <= MOTORS; motor++)
+    for (unsigned motor = 1; motor <= motors_of(view); motor++)
         put_motor(panel, view, at[ROW_MOTOR_1 + motor - 1], column, motor);
-    put_numbers(panel, at[ROW_NUMBERS], 1, 8);
-    put_lamps(panel, view, at[ROW_DI], "di", 8);
-    put_lamps(panel, view, at[ROW_DO], "do", 8);
-    put_numbers(panel, at[ROW_VAR_NUMBERS], 80, 16);
-    put_lamps(panel, view, at[ROW_VAR], "var", 16);
+    unsigned inputs = lamps_of(view, "inputs", 8), outputs = lamps_of(view, "outputs", 8);
+    put_numbers(panel, at[ROW_NUMBERS], 1, inputs > outputs ? inputs : outputs);
+    put_lamps(panel, view, at[ROW_DI], "di", inputs);
+    put_lamps(panel, view, at[ROW_DO], "do", outputs);
+    put_numbers(panel, at[ROW_VAR_NUMBERS], number_of(view, "first_variable", 80), lamps_of(view, "variables", 16));
+    put_lamps(panel, view, at[ROW_VAR], "var", lamps_of(view, "variables", 16));
     put_counters(panel, view, at);
     if (view->keys != NULL)
         put_text(panel, at[ROW_KEYS], 1, PANEL_DARK, "%s", view->keys);

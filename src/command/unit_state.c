@@ -38,6 +38,14 @@ static json_t *line_json(const struct segment *segment)
                      (json_int_t)counters.overruns);
 }
 
+/* What a panel has to know of another kind than the usual one. */
+static json_t *device_json(const struct device_kind *kind)
+{
+    return json_pack("{s:s, s:i, s:i, s:i, s:i, s:i}", "name", kind->name, "axes", (int)kind->axes, "inputs", (int)kind->inputs,
+                     "outputs", (int)kind->outputs, "variables", (int)kind->variables, "first_variable",
+                     (int)kind->first_variable);
+}
+
 json_t *unit_state(struct sim *sim, unsigned number)
 {
     const struct sim_unit *unit = &sim->unit[number - 1u];
@@ -48,6 +56,8 @@ json_t *unit_state(struct sim *sim, unsigned number)
     put_member(state, "switch", json_integer(sim->config.nodes.node[number - 1u]));
     put_member(state, "powered", json_boolean(sim_powered(sim, number)));
     put_member(state, "since_us", json_integer((json_int_t)segment_since(&sim->segment, number)));
+    if (sim_device(sim) != device_kind_at(0))
+        put_member(state, "device", device_json(sim_device(sim)));
     move_to_end(state, "simulation");
     move_to_end(state, "counters");
     put_member(state, "line", line_json(&sim->segment));

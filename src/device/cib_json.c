@@ -56,11 +56,15 @@ json_t *cib_json_describe(const struct device_unit *unit, uint64_t t_us)
     json_t *all = state_json(unit, t_us, true), *duties = json_array();
     for (uint16_t output = 1; output <= CIB_OUTPUTS; output++)
         json_array_append_new(duties, json_integer(cib_read(core, CIB_OUTPUT_ZONE, output)));
+    const struct cib_rtu_counters *counters = &cib_device_read(unit)->rtu.counters;
     const struct cib_setup setup = cib_setup_read(core, CIB_INPUT_ZONE);
     json_t *more = json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:i}", "node", (int)cib_device_read(unit)->rtu.address, "di_shown",
                              (int)cib_read(core, CIB_INPUT_ZONE, 0), "buttons", (int)core->buttons, "do_register",
                              (int)cib_read(core, CIB_OUTPUT_ZONE, 0), "pwm", duties, "setup", cib_setup_json(&setup),
                              "apply_result", (int)cib_read(core, CIB_INPUT_ZONE, 0x100));
+    json_object_set_new(more, "counters", json_pack("{s:I, s:I, s:I, s:I}", "requests", (json_int_t)counters->requests, "answers",
+                                                    (json_int_t)counters->answers, "others", (json_int_t)counters->others,
+                                                    "dropped", (json_int_t)counters->dropped));
     json_object_update(all, more);
     json_decref(more);
     return all;

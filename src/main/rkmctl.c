@@ -77,7 +77,9 @@ static const char arguments[] =
     "version|store|position|command|table|progress\nset TEXT\nsend FILE\nraw HEX\n"
     "pmc COMMAND [...]\nstate|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
     "snapshot|restore NAME|file=PATH\npower on|off\nswitch NODE [reset]\nclock [CLOCK]\nfault [inject KIND|clear] [...]\n"
-    "plant [set FILE|none|motor=N ...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\nshell\nwindow [OPTION...]";
+    "plant [set FILE|none|motor=N ...]\n"
+    "cib status|command|di|do|pwm|config [...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\n"
+    "shell\nwindow [OPTION...]";
 
 static const char doc[] =
     "Send one request to an RKM04, real or virtual, and show the answer; or inspect and control an emulator, `rkm04 serve': its "
@@ -108,6 +110,7 @@ static const char doc[] =
     "  switch       the address switch S1\n"
     "  fault        list injected faults; inject KIND NAME=VALUE...; clear [ID]\n"
     "  plant        show the simulated mechanics; set FILE; none; motor=N jammed=true ...\n"
+    "  cib          a CIB module: status, command, di, do, pwm, config get, put FILE or apply\n"
     "  clock        show or set it: real, xN, max, stepped\n"
     "  trace        start FILE (" TRACE_ENDINGS ", " WIRE_ENDINGS "), stop [NUMBER]\n"
     "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""A Modbus master with pymodbus for cib.sh: cib_client.py registers|motion|silence PORT."""
+import sys
+import time
+
+import serial
+from pymodbus.client import ModbusSerialClient
+from pymodbus.pdu import ExceptionResponse
+
+ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE = 1, 2, 3
+HOLDING = [*range(0, 9), *range(0x10, 0x15), *range(0x20, 0x25), *range(0x100, 0x10C), *range(0x110, 0x116), *range(0x120, 0x126)]
+INPUT = [*range(0, 3), *range(0x10, 0x1B), *range(0x20, 0x2B), 0x30, 0x31, *range(0x100, 0x10C), *range(0x110, 0x116),
+         *range(0x120, 0x126)]
+
+
+def refused(answer, code):
+    assert isinstance(answer, ExceptionResponse) and answer.exception_code == code, f"expected exception {code}, got {answer}"
+
+
+def words(answer):
+    assert not answer.isError(), answer
+    return answer.registers
+
+
+def check_tables(bus, unit):
+    """Every register there is, and none besides; blocks up to the gaps."""
+    for address in range(0, 0x140):
+        for read, there in ((bus.read_holding_registers, HOLDING), (bus.read_input_registers, INPUT)):
+            answer = read(address, 1, unit)
+            if address in there:
+                assert len(words(answer)) == 1
+            else:
+                refused(answer, ILLEGAL_ADDRESS)
+    assert len(words(bus.read_holding_registers(0, 9, unit))) == 9
+    refused(bus.read_holding_registers(0, 10, unit), ILLEGAL_ADDRESS)
+    assert words(bus.read_input_registers(0x30, 2, unit)) == [0x0808, 0x0102]
+
+
+def check_writes(bus, unit):
+    """Every holding register takes a value, and shows it, but APPLY."""
+    for address in HOLDING:
+        if address != 0x100 and address not in (0x10, 0x20):
+            assert not bus.write_register(address, 7, unit).isError()
+            assert words(bus.read_holding_registers(address, 1, unit)) == [7]
+    for address, value in ((0, 256), (1, 10001), (8, 10001), (0x100, 2)):
+        refused(bus.write_register(address, value, unit), ILLEGAL_VALUE)
+    refused(bus.write_register(9, 0, unit), ILLEGAL_ADDRESS)
+    refused(bus.write_registers(8, [1, 1], unit), ILLEGAL_ADDRESS)
+    refused(bus.write_registers(0, [1, 10001], unit), ILLEGAL_VALUE)
+    assert words(bus.read_holding_registers(0, 2, unit)) == [7, 7]
+    assert not bus.write_register(0x100, 1, unit).isError()
+    assert words(bus.read_input_registers(0x100, 1, unit)) == [0x101], "7 is no use of an output"
+
+
+def check_bits(bus, unit):
+    assert not bus.write_coils(0, [True, False] * 4, unit).isError()
+    assert bus.read_coils(0, 8, unit).bits[:8] == [True, False] * 4
+    assert not bus.write_coil(1, True, unit).isError()
+    assert words(bus.read_holding_registers(0, 1, unit)) == [0x57]
+    refused(bus.write_coil(8, True, unit), ILLEGAL_ADDRESS)
+    refused(bus.write_coils(1, [True] * 8, unit), ILLEGAL_ADDRESS)
+    refused(bus.read_coils(0, 9, unit), ILLEGAL_ADDRESS)
+    assert not any(bus.read_discrete_inputs(0, 16, unit).bits)
+    refused(bus.read_discrete_inputs(0, 17, unit), ILLEGAL_ADDRESS)
+
+
+def registers(bus, port):
+    for unit in (1, 17):
+        check_tables(bus, unit)
+        check_writes(bus, unit)
+        check_bits(bus, unit)
+    assert bus.read_coils(0, 1, 5).isError(), "there is no unit 5"
+
+
+def motion(bus, port):
+    assert not bus.write_registers(0x10, [1, 102, 0, 40, 200], 1).isError()
+    end = time.monotonic() + 20
+    while (status := words(bus.read_input_registers(0x11, 1, 1))[0]) & 1:
+        assert time.monotonic() < end
+    assert status & 8, "TRG"
+    assert words(bus.read_input_registers(0x13, 2, 1)) == [0, 40]
+
+
+def silence(bus, port):
+    """Half a request, and then, behind silence, a whole one; and both halves within it."""
+    bus.close()
+    request = bytes.fromhex("010400300002") + b"\x71\xc4"
+    answer = bytes.fromhex("01040408080102")
+    with serial.Serial(port, 19200, timeout=10) as wire:
+        wire.write(request[:4])
+        time.sleep(0.3)
+        wire.write(request)
+        assert wire.read(9)[:7] == answer
+        wire.write(request[:4])
+        time.sleep(0.02)
+        wire.write(request[4:])
+        assert wire.read(9)[:7] == answer
+
+
+def main():
+    what, port = sys.argv[1:]
+    bus = ModbusSerialClient(port, baudrate=19200, parity="N", timeout=3 if what != "registers" else 1, retries=0)
+    assert bus.connect()
+    {"registers": registers, "motion": motion, "silence": silence}[what](bus, port)
+    bus.close()
+
+
+if __name__ == "__main__":
+    main()
