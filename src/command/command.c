@@ -10,7 +10,7 @@
 
 #define LIST_SIZE 1024u /* bytes of the names of all methods */
 
-static const struct command_method *const tables[] = {unit_methods, plant_methods, fault_methods};
+static const struct command_method *const tables[] = {unit_methods, plant_methods, fault_methods, service_methods};
 
 static const struct command_method *find_in_table(const struct command_method *method, const char *name)
 {

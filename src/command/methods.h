@@ -7,6 +7,7 @@
 
 extern const struct command_method unit_methods[];  /* command_unit.c */
 extern const struct command_method plant_methods[]; /* plant_command.c */
+extern const struct command_method service_methods[]; /* service_command.c */
 extern const struct command_method fault_methods[]; /* fault_command.c */
 
 #endif

@@ -213,6 +213,47 @@ struct device_method {
     bool changes; /* anything: then recordings have it */
 };
 
+/* ---- Servers ------------------------------------------------------------------------------------------------------------ */
+
+#define DEVICE_BUS_UNITS 16u     /* on a bus */
+#define DEVICE_CLIENTS_MAX 128u  /* of all servers of a bus at a time */
+#define DEVICE_SERVICES_MAX 4u   /* of a kind */
+#define DEVICE_PEER_SIZE 80u     /* bytes of a client's address */
+
+/* What a server keeps of a client: service->size bytes of plain memory, all zero at first. */
+struct device_client;
+
+/* What a server sees of its bus. */
+struct device_bus {
+    uint64_t now;                               /* us of the bus: the present one */
+    unsigned units;
+    struct device_unit *unit[DEVICE_BUS_UNITS]; /* at the present us; NULL: it has no power */
+    unsigned clients;                           /* of this server */
+    const char *peer[DEVICE_CLIENTS_MAX];       /* their addresses, "127.0.0.1:4000", in the order in which they came */
+};
+
+/* A server on TCP for many clients, in virtual time: Modbus TCP, lines of text. It reaches all units of the bus and belongs to none
+ * of them: clients and their state outlive power cuts; restoring a snapshot hangs them up. `rkm04 serve --service NAME=HOST:PORT`
+ * listens; without it the commands service.open, service.bytes and service.close do the same. */
+struct device_service {
+    const char *name;        /* "modbus-tcp"; NULL: the end of the table */
+    const char *description; /* for --help */
+    size_t size;             /* bytes of what it keeps of a client */
+    unsigned clients;        /* at most so many at a time, up to DEVICE_CLIENTS_MAX */
+    const char *refusal;     /* what one more is told before it is hung up; NULL: nothing */
+    /* A client has come; NULL: there is nothing to do. */
+    void (*open)(struct device_client *client, const struct device_bus *bus);
+    /* Bytes of a client. Returns how many it takes now; the others come again when send() has nothing more. If it takes none of
+     * them then, the client is hung up. */
+    size_t (*receive)(struct device_client *client, const struct device_bus *bus, const uint8_t *bytes, size_t length);
+    /* What is to be sent to the client now, a part of at most `room` bytes. Returns its length; 0: nothing more at this us. */
+    size_t (*send)(struct device_client *client, const struct device_bus *bus, uint8_t *bytes, size_t room);
+    /* Is the client to be hung up, when all has been sent? NULL: it never is. */
+    bool (*is_over)(const struct device_client *client);
+    /* The us of the bus at which send() has to be asked although no bytes have come; DEVICE_NEVER. NULL: never. */
+    uint64_t (*next)(const struct device_client *client, const struct device_bus *bus);
+};
+
 /* A kind of device. Every function is set unless it says otherwise. */
 struct device_kind {
     const char *name;        /* "rkm04": of options, scenarios, recordings */
@@ -316,6 +357,7 @@ struct device_kind {
     const struct device_option *options; /* NULL: none */
     const struct device_readings *readings; /* NULL: none */
     const struct device_method *methods; /* NULL: none */
+    const struct device_service *services; /* ends with a row without name; NULL: none */
     const char *const *settings;
     void (*put_settings)(const struct device_config *config, json_t *object);
     bool (*read_setting)(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);

@@ -153,6 +153,10 @@ json_t *snapshots_put(struct sim_snapshots *store, const struct snapshot *snapsh
         return refuse(refusal, REFUSED_STATE, "the snapshot does not fit this bus: %s is different", misfit);
     if (!snapshot_restore(store->sim, snapshot))
         return refuse(refusal, REFUSED_MEMORY, "out of memory, or the flash image of a unit cannot be written");
+    if (sim_services_are_open(store->sim)) { /* their clients are of another present; the journal has to know it */
+        struct refusal none;
+        json_decref(sim_command(store->sim, "service.close", NULL, &none));
+    }
     uint64_t now = sim_now(store->sim), taken = snapshot_tick(snapshot);
     if (store->journal)
         journal_turn(store->journal, page, page ? NULL : store->text, store->length, now - taken);

@@ -50,6 +50,14 @@ static void pass_time(struct tally *tally, uint64_t tick)
     close_span(tally, tick);
 }
 
+static uint64_t hash_service(const struct watch_service *service)
+{
+    uint64_t all = hash(service->length, service->act, 0);
+    for (size_t i = 0; i < service->length; i++)
+        all = mix_hash(all + service->bytes[i]);
+    return all;
+}
+
 static void on_event(void *context, const struct watch_event *event)
 {
     struct tally *tally = context;
@@ -59,6 +67,8 @@ static void on_event(void *context, const struct watch_event *event)
     uint64_t what = (uint64_t)event->kind << 32 | (uint32_t)event->value, more = watch_ns(event);
     if (event->kind == WATCH_BYTE)
         more = event->byte.start << 20 ^ event->byte.senders << 1 ^ event->byte.lost;
+    if (event->kind == WATCH_SERVICE)
+        more = hash_service(event->service);
     stream->digest += hash(event->tick, what, more);
     stream->events++;
     stream->changed = tally->changed = true;
@@ -96,6 +106,13 @@ static void on_out(void *context, const uint8_t *bytes, size_t length)
         tally->config.out(tally->config.context, bytes, length);
 }
 
+static void on_service_out(void *context, unsigned client, const uint8_t *bytes, size_t length)
+{
+    struct tally *tally = context;
+    if (tally->config.service_out)
+        tally->config.service_out(tally->config.context, client, bytes, length);
+}
+
 static void on_adapter(void *context, bool plugged)
 {
     struct tally *tally = context;
@@ -117,6 +134,7 @@ void tally_begin(struct tally *tally, struct sim *sim, const struct tally_calls 
     tally->config = sim->config;
     sim->config.out = on_out;
     sim->config.adapter = on_adapter;
+    sim->config.service_out = on_service_out;
     sim->config.context = tally;
     sim_watch(sim, &tally->watcher);
 }
@@ -137,6 +155,7 @@ void tally_end(struct tally *tally)
     sim_unwatch(tally->sim, &tally->watcher);
     tally->sim->config.out = tally->config.out;
     tally->sim->config.adapter = tally->config.adapter;
+    tally->sim->config.service_out = tally->config.service_out;
     tally->sim->config.context = tally->config.context;
     free(tally->heard);
 }

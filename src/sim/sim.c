@@ -282,8 +282,8 @@ void sim_set_timed(struct sim *sim, bool timed)
         return;
     if (sim->journal)
         sim->journal->timed(sim->journal->context, sim_now(sim), timed);
-    for (uint64_t last = earlier(sim_now(sim) + LONGEST_ANSWER, SIM_TIME_MAX); sim_due(sim) <= last;)
-        sim_advance(sim, sim_due(sim));
+    for (uint64_t last = earlier(sim_now(sim) + LONGEST_ANSWER, SIM_TIME_MAX); segment_due(&sim->segment) <= last;)
+        sim_advance(sim, segment_due(&sim->segment));
     segment_set_timed(&sim->segment, timed);
 }
 
@@ -301,7 +301,7 @@ bool sim_time_is_over(const struct sim *sim)
 
 uint64_t sim_due(const struct sim *sim)
 {
-    return earlier(segment_due(&sim->segment), wire_monitor_due(&sim->monitor));
+    return earlier(segment_due(&sim->segment), earlier(wire_monitor_due(&sim->monitor), sim_services_next(sim)));
 }
 
 static uint64_t plants_next(const struct sim *sim)
@@ -313,14 +313,20 @@ static uint64_t plants_next(const struct sim *sim)
     return next;
 }
 
+/* When something happens around the units. */
+static uint64_t next_around(const struct sim *sim)
+{
+    return earlier(sim_services_next(sim), earlier(plants_next(sim), faults_next(&sim->faults)));
+}
+
 uint64_t sim_next_event(const struct sim *sim)
 {
-    return earlier(segment_next_event(&sim->segment), earlier(plants_next(sim), faults_next(&sim->faults)));
+    return earlier(segment_next_event(&sim->segment), next_around(sim));
 }
 
 uint64_t sim_next_report(const struct sim *sim)
 {
-    return earlier(segment_next_report(&sim->segment), earlier(plants_next(sim), faults_next(&sim->faults)));
+    return earlier(segment_next_report(&sim->segment), next_around(sim));
 }
 
 /* The first slot of a unit after `tick`: its time began when it was powered up. */
@@ -339,7 +345,7 @@ static uint64_t leap_end(const struct sim *sim, uint64_t tick)
     uint64_t now = sim_now(sim), end = earlier(tick, faults_next(&sim->faults)), bounce = plants_next(sim), due = sim_due(sim);
     uint64_t event = earlier(segment_next_event(&sim->segment), due);
     event = event > now ? event : now;
-    end = earlier(end, wire_monitor_due(&sim->monitor));
+    end = earlier(end, earlier(wire_monitor_due(&sim->monitor), sim_services_next(sim)));
     if ((sim->faults.kinds >> FAULT_POWER & 1u) != 0)
         end = earlier(end, due > now ? due : now);
     for (unsigned number = 1; number <= sim->segment.units; number++) {
@@ -362,6 +368,8 @@ void sim_advance(struct sim *sim, uint64_t tick)
         apply_plant_changes(sim); /* they were before the faults that begin or end now */
         if (faults_next(&sim->faults) <= sim_now(sim))
             faults_update(&sim->faults);
+        if (sim_services_next(sim) <= sim_now(sim))
+            sim_services_run(sim);
         watch_deliver(&sim->watch, sim_now(sim) + 1u); /* of the present tick there is only what was delivered */
     } while (sim_now(sim) < tick);
 }
@@ -567,6 +575,7 @@ void sim_end(struct sim *sim)
     segment_end(&sim->segment);
     watch_end(&sim->watch);
     wire_monitor_end(&sim->monitor);
+    sim_services_free(sim);
     if (sim->snapshots)
         sim->free_snapshots(sim->snapshots);
     free(sim->plant_text);

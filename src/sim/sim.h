@@ -24,6 +24,7 @@
 
 struct sim;
 struct sim_snapshots;  /* of the room `record` */
+struct sim_services;   /* sim_service.c */
 struct command_method; /* command.h */
 
 #define SIM_COMMAND_TABLES 4u /* that rooms above `command` may attach */
@@ -55,8 +56,10 @@ struct sim_config {
     uint64_t seed;                 /* of faults with a probability */
     struct sim_flash flash;        /* all NULL: memory that lives as long as the sim */
     segment_out *out;              /* bytes that reach the host; NULL: none */
+    /* Bytes for a client of a server (sim_service_open()); none: it is hung up. NULL: they go nowhere. */
+    void (*service_out)(void *context, unsigned client, const uint8_t *bytes, size_t length);
     void (*adapter)(void *context, bool plugged); /* the fault `unplugged` begins or ends; NULL: not reported */
-    void *context;                 /* of `out` and `adapter` */
+    void *context;                 /* of `out`, `service_out` and `adapter` */
 };
 
 struct sim_unit {
@@ -77,6 +80,7 @@ struct sim {
     struct wire_monitor monitor;
     struct faults faults;
     const struct sim_journal *journal; /* NULL: none */
+    struct sim_services *services;     /* NULL: no client yet */
     struct sim_snapshots *snapshots;   /* NULL: none yet */
     void (*free_snapshots)(struct sim_snapshots *snapshots); /* set by who sets `snapshots`; called by sim_end() */
     const struct command_method *commands[SIM_COMMAND_TABLES]; /* command_attach(); the first NULL ends them */
@@ -171,6 +175,41 @@ bool sim_configure_plants(struct sim *sim, const char *name, const char *text, s
 int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);
 int sim_flash_erase(struct sim_unit *unit, unsigned block);
 int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, const void *data, unsigned length);
+
+/* ---- Servers of the device: sim_service.c. The commands service.* call these ------------------------------------------- */
+
+#define SIM_SERVICE_SENT_MAX 65536u /* bytes that are kept for the result of a command */
+
+/* What was sent to a client within a call. */
+struct sim_service_sent {
+    size_t length;
+    bool is_cut; /* it was more */
+    uint8_t bytes[SIM_SERVICE_SENT_MAX];
+};
+
+/* The server of this name; NULL: the device has none. */
+const struct device_service *sim_service_named(const struct sim *sim, const char *name);
+
+/* A client comes from the address `peer`. Returns its number, the lowest that is free, 1..DEVICE_CLIENTS_MAX; 0: there are too
+ * many, or out of memory. sim_service_start() is due when its number is known. */
+unsigned sim_service_open(struct sim *sim, const struct device_service *service, const char *peer);
+
+/* Send what is to be sent to a client now. `sent`: NULL, or gets it, too. */
+void sim_service_start(struct sim *sim, unsigned number, struct sim_service_sent *sent);
+
+/* Bytes of a client. It may be hung up afterwards. Returns false if there is no such client. */
+bool sim_service_receive(struct sim *sim, unsigned number, const uint8_t *bytes, size_t length, struct sim_service_sent *sent);
+
+/* The client has gone, or is hung up; or all of them. */
+void sim_service_close(struct sim *sim, unsigned number);
+void sim_services_close(struct sim *sim);
+bool sim_service_is_open(const struct sim *sim, unsigned number);
+bool sim_services_are_open(const struct sim *sim);
+
+/* When something is to be sent of itself; DEVICE_NEVER. Send what is due. Free all. For sim.c. */
+uint64_t sim_services_next(const struct sim *sim);
+void sim_services_run(struct sim *sim);
+void sim_services_free(struct sim *sim);
 
 /* ---- Watching --------------------------------------------------------------------------------------------------------- */
 

@@ -25,6 +25,7 @@ static const char *const names[WATCH_KINDS] = {
     [WATCH_MESSAGE] = "message",
     [WATCH_PLANT] = "plant",
     [WATCH_INJECTED] = "injected",
+    [WATCH_SERVICE] = "service",
 };
 
 const char *watch_kind_name(enum watch_kind kind)
@@ -47,6 +48,14 @@ static void free_event(const struct watch_event *event)
         free((void *)event->message);
     else if (event->kind == WATCH_PLANT || event->kind == WATCH_INJECTED)
         free((void *)event->text);
+    else if (event->kind == WATCH_SERVICE)
+        free((void *)event->service);
+}
+
+const char *watch_service_act_name(enum watch_service_act act)
+{
+    static const char *const acts[] = {"open", "closed", "received", "sent"};
+    return (unsigned)act < sizeof acts / sizeof acts[0] ? acts[act] : "?";
 }
 
 static bool make_room(struct watch *watch)

@@ -29,7 +29,18 @@ enum watch_kind {
     WATCH_MESSAGE,   /* unit 0; `message`: a frame or what was dropped of one */
     WATCH_PLANT,     /* value: enum plant_event (plant.h); `text` says what */
     WATCH_INJECTED,  /* a fault on demand has acted; value: its number; `text` says what it did */
+    WATCH_SERVICE,   /* unit 0; value: number of the client of a server; `service` says what */
     WATCH_KINDS
+};
+
+enum watch_service_act { WATCH_SERVICE_OPEN, WATCH_SERVICE_CLOSED, WATCH_SERVICE_RECEIVED, WATCH_SERVICE_SENT };
+
+/* What passes between a server and a client. */
+struct watch_service {
+    const char *name; /* of the server */
+    enum watch_service_act act;
+    size_t length;    /* bytes that the server has received, or sent */
+    uint8_t bytes[];
 };
 
 #define WATCH_BIT(kind) (UINT32_C(1) << (kind))
@@ -55,6 +66,7 @@ struct watch_event {
         struct segment_byte byte;           /* WATCH_BYTE */
         const struct wire_message *message; /* WATCH_MESSAGE; valid during the call */
         const char *text;                   /* WATCH_PLANT, WATCH_INJECTED; valid during the call */
+        const struct watch_service *service; /* WATCH_SERVICE; valid during the call */
         uint32_t pulse_ns;                  /* WATCH_STEP: length of the pulse; 0: device_kind.pulse */
     };
 };
@@ -91,7 +103,10 @@ const char *watch_kind_name(enum watch_kind kind);
 /* Find a kind by its name. Returns WATCH_KINDS if there is none of that name. */
 enum watch_kind watch_kind_named(const char *name);
 
-/* Gather one; `event->order` is set here. A message or text must be a copy of its own, from malloc(): it is freed after the
+/* "open", "closed", "received", "sent". Never NULL. */
+const char *watch_service_act_name(enum watch_service_act act);
+
+/* Gather one; `event->order` is set here. A message, text or service must be a copy of its own, from malloc(): it is freed after the
  * watchers have seen it, or at once if there is no watcher for it. */
 void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event event);
 

@@ -24,6 +24,8 @@ size_t event_json_room(const struct watch_event *event)
     case WATCH_PLANT:
     case WATCH_INJECTED:
         return room + text_room(event->text);
+    case WATCH_SERVICE:
+        return room + text_room(event->service->name) + 2u * event->service->length;
     default:
         return room;
     }
@@ -93,6 +95,14 @@ static char *put_message(char *at, const struct sim *sim, const struct wire_mess
     return put_string(put_text(at, ",\"refused\":"), message->refused);
 }
 
+static char *put_service(char *at, const struct watch_service *service)
+{
+    at = put_string(put_text(at, ",\"service\":"), service->name);
+    at = put_string(put_text(at, ",\"act\":"), watch_service_act_name(service->act));
+    at = put_hex(put_text(at, ",\"bytes\":\""), service->bytes, service->length);
+    return put_text(at, "\"");
+}
+
 static char *put_value(char *at, const struct sim *sim, const struct watch_event *event)
 {
     switch ((enum watch_kind)event->kind) {
@@ -108,6 +118,8 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
         return put_string(put_text(put_string(at, plant_event_name((enum plant_event)event->value)), ",\"text\":"), event->text);
     case WATCH_INJECTED:
         return put_string(put_text(put_signed(at, event->value), ",\"text\":"), event->text);
+    case WATCH_SERVICE:
+        return put_service(put_signed(at, event->value), event->service);
     case WATCH_INPUTS:
     case WATCH_OUTPUTS:
     case WATCH_VARIABLES:

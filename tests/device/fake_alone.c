@@ -24,6 +24,11 @@ static const struct fake_unit *core_of(const struct device_unit *unit)
     return &((const struct fake_alone *)unit)->core;
 }
 
+struct fake_unit *fake_alone_core(struct device_unit *unit)
+{
+    return unit ? &alone_of(unit)->core : NULL;
+}
+
 /* ---- What the core reports ------------------------------------------------------------------------------------------ */
 
 static void on_step(void *context, uint64_t tick, int32_t position, bool forward)
@@ -288,6 +293,7 @@ const struct device_kind fake_alone_device = {
     .state = state,
     .describe = describe,
     .methods = methods,
+    .services = fake_services,
     .settings = no_settings,
     .put_settings = put_settings,
     .read_setting = read_setting,

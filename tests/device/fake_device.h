@@ -13,4 +13,10 @@ extern const struct device_framing fake_lines, fake_sums;
 /* fake_alone.c: the same core without a bus, with names of inputs and outputs. */
 extern const struct device_kind fake_alone_device;
 
+/* The core of its unit; NULL of NULL. */
+struct fake_unit *fake_alone_core(struct device_unit *unit);
+
+/* fake_service.c: its server. */
+extern const struct device_service fake_services[];
+
 #endif
