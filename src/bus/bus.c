@@ -292,6 +292,24 @@ static bool keep_journal(struct bus *bus)
     return false;
 }
 
+static void on_service_out(void *context, unsigned client, const uint8_t *bytes, size_t length)
+{
+    const struct bus *bus = context;
+    bus_services_send(bus->services, client, bytes, length);
+}
+
+static struct sim *on_sim(void *context)
+{
+    return bus_sim(context);
+}
+
+static void on_command(void *context)
+{
+    bus_changed(context);
+}
+
+static const struct bus_service_calls service_calls = {.sim = on_sim, .changed = on_command, .presence = on_presence};
+
 static void plug_adapter(void *context, bool plugged)
 {
     struct bus *bus = context;
@@ -309,6 +327,7 @@ static bool begin_sim(struct bus *bus)
         .turnaround = options->turnaround,
         .seed = options->seed,
         .out = gather_bytes,
+        .service_out = on_service_out,
         .adapter = plug_adapter,
         .context = bus,
     };
@@ -342,6 +361,8 @@ bool bus_begin(struct bus *bus, unsigned number, const struct bus_options *optio
     if (!begin_sim(bus))
         return false;
     watch_for_log(bus);
+    if (!bus_services_open(&bus->services, options, &bus->log, loop, &service_calls, bus))
+        return false;
     return configure_plant(bus) && keep_journal(bus) && bus_time_begin(&bus->time, loop);
 }
 
@@ -367,6 +388,7 @@ bool bus_end(struct bus *bus)
 {
     bool ok = true;
     bus_ports_close(&bus->ports);
+    bus_services_close(bus->services);
     if (!bus_files_end(&bus->files))
         ok = false;
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
@@ -382,5 +404,6 @@ void bus_free(struct bus *bus)
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
         free(bus->unit[at].flash_path);
     bus_ports_free(&bus->ports);
+    bus_services_free(bus->services);
     free(bus);
 }

@@ -19,6 +19,7 @@
 #include "bus_log.h"
 #include "bus_options.h"
 #include "bus_ports.h"
+#include "bus_service.h"
 #include "bus_time.h"
 #include "device/device.h"
 #include "line/line.h"
@@ -48,6 +49,7 @@ struct bus {
     struct sim sim;
     struct bus_time time;   /* drives the sim */
     struct bus_ports ports; /* bytes of clients */
+    struct bus_services *services; /* clients of the device's own servers */
     struct bus_files files; /* what is written about it */
     uint64_t taken;       /* tick for which the last bytes were handed over */
     uint64_t answered;    /* a real wire: tick at which the answer in `out` may set out */

@@ -13,6 +13,12 @@
 
 #define BUS_LINES_MAX 256u
 #define BUS_FOLDERS_MAX 16u
+/* A server of the device's own: --service NAME=ADDRESS. */
+struct bus_service_option {
+    const char *name; /* of the service, in the device's table; NULL: no more */
+    const char *address;
+};
+
 #define BUS_FILES_MAX 8u /* traces, and logs of the wires */
 
 struct bus_options {
@@ -26,6 +32,8 @@ struct bus_options {
     const char *port;           /* NULL: none */
     const char *tcp;            /* NULL: none */
     const char *rfc2217;        /* NULL: none */
+    const char *service_text[DEVICE_SERVICES_MAX]; /* --service as given; NULL: no more */
+    struct bus_service_option service[DEVICE_SERVICES_MAX];
     const char *flash;          /* NULL: memory only */
     const char *coverage;       /* NULL: no report */
     int min_coverage;           /* tenths of a per cent; -1: not asked for */

@@ -232,15 +232,15 @@ struct device_bus {
     const char *peer[DEVICE_CLIENTS_MAX];       /* their addresses, "127.0.0.1:4000", in the order in which they came */
 };
 
-/* A server on TCP for many clients, in virtual time: Modbus TCP, lines of text. It reaches all units of the bus and belongs to none
- * of them: clients and their state outlive power cuts; restoring a snapshot hangs them up. `rkm04 serve --service NAME=HOST:PORT`
- * listens; without it the commands service.open, service.bytes and service.close do the same. */
+/* A server on TCP for many clients, in virtual time: Modbus TCP, lines of text. It reaches all units of the bus. Clients and
+ * their state outlive power cuts; restoring a snapshot hangs them up. `rkm04 serve --service NAME=HOST:PORT` listens; without it
+ * the commands service.open, service.bytes and service.close do the same. */
 struct device_service {
     const char *name;        /* "modbus-tcp"; NULL: the end of the table */
     const char *description; /* for --help */
     size_t size;             /* bytes of what it keeps of a client */
     unsigned clients;        /* at most so many at a time, up to DEVICE_CLIENTS_MAX */
-    const char *refusal;     /* what one more is told before it is hung up; NULL: nothing */
+    const char *refusal;     /* what one more is sent before it is hung up; NULL: nothing */
     /* A client has come; NULL: there is nothing to do. */
     void (*open)(struct device_client *client, const struct device_bus *bus);
     /* Bytes of a client. Returns how many it takes now; the others come again when send() has nothing more. If it takes none of

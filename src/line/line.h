@@ -4,7 +4,8 @@
  *     line (here)                  the serial end: a pty of its own (line_pty.c) or a device (line_serial.c)
  *     line_settings                what a client has set, and how bytes of another speed are received
  *     net_port, rfc2217            TCP, raw or with the settings of a port
- *     net_address                  where it listens
+ *     service_port                 TCP for many clients
+ *     net_address, net_listen      where it listens
  *     link_path, lock_file         the link to the pty, and who owns it
  *     wine_link                    a COM port of Wine that leads there
  *     flash_file                   the flash of a unit in a file
@@ -121,6 +122,7 @@ void line_make_raw(struct termios *settings);
 #include "lock_file.h"
 #include "log.h"
 #include "net_port.h"
+#include "service_port.h"
 #include "wine_link.h"
 
 #endif

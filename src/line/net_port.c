@@ -19,9 +19,9 @@
 #include <sys/socket.h>
 
 #include "log.h"
+#include "net_listen.h"
 #include "text/text.h"
 
-#define BACKLOG 128     /* connections that the system keeps until the next turn of the loop */
 #define LAST_READS 8    /* of NET_IN bytes each: what is still read of a client that gives way */
 #define KEEPALIVE_S 30  /* a client that has vanished gives the line free */
 #define LINGER_MS 1000  /* how long one that only sends no more is kept without a byte, and one that is sent away at most */
@@ -467,27 +467,6 @@ static bool report_cannot_listen(const char *address, const char *why)
     return false;
 }
 
-/* The listener has been initialised. */
-static bool listen_at(struct net_port *port, const char *address)
-{
-    struct sockaddr_storage real = {0};
-    int size = sizeof real;
-    const char *wrong = net_address_read(address, &real);
-    if (wrong)
-        return report_cannot_listen(address, wrong);
-    int error = uv_tcp_bind(&port->listener, (const struct sockaddr *)&real, 0);
-    if (error == 0)
-        error = uv_listen((uv_stream_t *)&port->listener, BACKLOG, on_connection);
-    if (error == 0)
-        error = uv_tcp_getsockname(&port->listener, (struct sockaddr *)&real, &size);
-    if (error == UV_EADDRINUSE)
-        return report_cannot_listen(address, "another program listens there; port 0 takes a free one");
-    if (error != 0)
-        return report_cannot_listen(address, uv_strerror(error));
-    net_address_write(port->address, &real);
-    return true;
-}
-
 bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, enum net_kind kind,
                    const struct net_port_calls *calls, void *context)
 {
@@ -499,10 +478,11 @@ bool net_port_open(struct net_port *port, uv_loop_t *loop, const char *address, 
     if (error != 0)
         return report_cannot_listen(address, uv_strerror(error));
     port->open = true;
-    if (listen_at(port, address))
+    const char *wrong = net_listen(&port->listener, address, on_connection, port->address);
+    if (!wrong)
         return true;
     net_port_close(port);
-    return false;
+    return report_cannot_listen(address, wrong);
 }
 
 void net_port_plug(struct net_port *port, bool plugged)

@@ -32,15 +32,25 @@ static json_t *options_json(const struct device_kind *kind)
     return list;
 }
 
+static json_t *services_json(const struct device_kind *kind)
+{
+    json_t *list = kind->services ? json_array() : NULL; /* NULL: left out */
+    for (const struct device_service *service = kind->services; list && service->name; service++)
+        json_array_append_new(list, json_pack("{s:s, s:s, s:i}", "name", service->name, "description", service->description,
+                                              "clients", (int)service->clients));
+    return list;
+}
+
 static int print_json(void)
 {
     json_t *list = json_array();
     const struct device_kind *kind;
     for (unsigned at = 0; (kind = device_kind_at(at)); at++)
-        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:o}", "name", kind->name, "description",
+        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:o, s:o*}", "name", kind->name, "description",
                                               kind->description, "axes", (int)kind->axes, "inputs", (int)kind->inputs, "outputs",
                                               (int)kind->outputs, "variables", (int)kind->variables, "addresses",
-                                              (int)kind->addresses, "options", options_json(kind)));
+                                              (int)kind->addresses, "options", options_json(kind), "services",
+                                              services_json(kind)));
     char *text = json_dumps(list, JSON_INDENT(2));
     json_decref(list);
     if (!text) {

@@ -138,11 +138,34 @@ static bool do_pulses(struct running *running, const struct scenario_step *step)
 
 /* ---- Commands ------------------------------------------------------------------------------------------------------- */
 
+static char *member_text(const char *name, const json_t *value)
+{
+    char *json = value != NULL ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
+    char *text = running_text("%s %s in the result", name, json != NULL ? json : "missing");
+    free(json);
+    return text;
+}
+
+/* The members of the result that the step names. */
+static bool check_result(struct running *running, const struct scenario_step *step, const json_t *result)
+{
+    const char *name;
+    json_t *wanted;
+    json_object_foreach(step->result, name, wanted) {
+        const json_t *value = json_object_get(result, name);
+        if (value == NULL || !json_equal(value, wanted))
+            return running_failed(running, step, sim_now(running->sim), member_text(name, wanted), member_text(name, value));
+    }
+    return true;
+}
+
 static bool do_call(struct running *running, const struct scenario_step *step)
 {
     struct refusal refusal = {0};
     json_t *result = sim_command(running->sim, step->method, step->json, &refusal);
     bool ok = result != NULL;
+    if (ok && !running->over && step->result != NULL)
+        check_result(running, step, result);
     json_decref(result);
     if (running->over)
         return false;

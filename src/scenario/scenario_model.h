@@ -57,6 +57,7 @@ struct scenario_step {
     uint64_t time;                  /* ticks to let pass */
     const char *method;             /* of a command */
     json_t *json;                   /* a condition, or parameters of a command */
+    json_t *result;                 /* what members of its result have to be; NULL: anything */
     struct scenario_bytes bytes, wanted;
     char *wrong;                    /* of a program: what a unit will refuse in it; NULL: nothing */
     struct scenario_pulses pulses;

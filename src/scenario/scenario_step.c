@@ -38,7 +38,7 @@ static const struct {
     {"reset", read_reset, ACTION_CALL, true, {"unit"}},
     {"fault", read_fault, ACTION_CALL, true, {NULL}},
     {"clear", read_clear, ACTION_CALL, true, {NULL}},
-    {"call", read_call, ACTION_CALL, true, {"params"}},
+    {"call", read_call, ACTION_CALL, true, {"params", "result"}},
 };
 #define ACTIONS (sizeof actions / sizeof actions[0])
 
@@ -412,9 +412,12 @@ static bool read_clear(struct scenario_reader *reader, const struct config_node 
 static bool read_call(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step)
 {
     const char *method = read_text(config_get(node, "call"), "call, a method");
-    const struct config_node *params = config_get(node, "params");
+    const struct config_node *params = config_get(node, "params"), *result = config_get(node, "result");
     if (method == NULL)
         return false;
+    if (result != NULL && config_type(result) != CONFIG_MAP)
+        return config_error(result, "expected a map, members of the result with their values");
+    step->result = result != NULL ? config_json(result) : NULL;
     return set_command(reader, config_get(node, "call"), step, method, params != NULL ? config_json(params) : json_object());
 }
 
@@ -492,7 +495,8 @@ void scenario_step_free(struct scenario_step *step)
     scenario_bytes_free(&step->bytes);
     scenario_bytes_free(&step->wanted);
     json_decref(step->json);
-    step->json = NULL;
+    json_decref(step->result);
+    step->json = step->result = NULL;
     free(step->wrong);
     step->wrong = NULL;
 }

@@ -41,7 +41,7 @@ static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 struct serve {
     struct bus_options options;
-    char tcp[NET_NAME_SIZE], rfc2217[NET_NAME_SIZE]; /* of the options, in digits */
+    char tcp[NET_NAME_SIZE], rfc2217[NET_NAME_SIZE], service[DEVICE_SERVICES_MAX][NET_NAME_SIZE]; /* of options, in digits */
     struct bus *bus[BUS_LINES_MAX];
     struct line_watch watch;
     struct coverage coverage;
@@ -97,7 +97,7 @@ static void on_presence(void *context)
     if (!serve->options.exit_when_idle)
         return;
     for (unsigned i = 0; i < serve->options.lines; i++) {
-        if (serve->bus[i] && bus_ports_clients(&serve->bus[i]->ports) > 0) {
+        if (serve->bus[i] && bus_ports_clients(&serve->bus[i]->ports) + bus_services_clients(serve->bus[i]->services) > 0) {
             uv_timer_stop(&serve->idle);
             return;
         }
@@ -150,11 +150,19 @@ static bool start_signals(struct serve *serve)
     return true;
 }
 
+static unsigned count_services(const struct bus_options *options)
+{
+    unsigned count = 0;
+    while (count < DEVICE_SERVICES_MAX && options->service[count].name)
+        count++;
+    return count;
+}
+
 /* Descriptors that are open for good when the emulator is ready. */
 static rlim_t count_files(const struct bus_options *options)
 {
     rlim_t line = 1u + (options->pty || options->port ? FILES_SERIAL : 0) + (options->tcp != NULL) + (options->rfc2217 != NULL) +
-                  (options->record != NULL) + (options->flash ? options->nodes.count : 0);
+                  count_services(options) + (options->record != NULL) + (options->flash ? options->nodes.count : 0);
     for (unsigned i = 0; i < BUS_FILES_MAX; i++)
         line += (rlim_t)(options->trace[i] != NULL) + (options->wire[i] != NULL);
     return FILES_LOOP + options->lines * line + (options->pty ? FILES_WATCH : 0) + (options->no_control ? 0 : FILES_CONTROL) +
@@ -328,6 +336,15 @@ static bool find_address(const char **address, char found[NET_NAME_SIZE])
     return !wrong;
 }
 
+static bool find_addresses(struct serve *serve)
+{
+    struct bus_options *options = &serve->options;
+    bool ok = find_address(&options->tcp, serve->tcp) && find_address(&options->rfc2217, serve->rfc2217);
+    for (unsigned at = 0; ok && at < DEVICE_SERVICES_MAX; at++)
+        ok = find_address(&options->service[at].address, serve->service[at]);
+    return ok;
+}
+
 static bool start_serve(struct serve *serve)
 {
     const struct bus_options *options = &serve->options;
@@ -398,8 +415,8 @@ static enum exit_status run_serve(struct serve *serve)
 {
     serve->status = STATUS_FAILURE;
     serve->window = -1;
-    if (!allow_files(&serve->options) || !read_plant(&serve->options) || !find_address(&serve->options.tcp, serve->tcp) ||
-        !find_address(&serve->options.rfc2217, serve->rfc2217) || !check_uv("make an event loop", uv_loop_init(&serve->loop)))
+    if (!allow_files(&serve->options) || !read_plant(&serve->options) || !find_addresses(serve) ||
+        !check_uv("make an event loop", uv_loop_init(&serve->loop)))
         return STATUS_FAILURE;
     if (start_serve(serve)) {
         serve->status = STATUS_SUCCESS;

@@ -29,6 +29,7 @@ enum key {
     KEY_CLOCK,
     KEY_LINES,
     KEY_TCP,
+    KEY_SERVICE,
     KEY_RFC2217,
     KEY_RTS,
     KEY_TURNAROUND,
@@ -74,6 +75,8 @@ static const struct argp_option table[] = {
      "Offer the bus over TCP as plain bytes; default host 127.0.0.1, port 0: a free one. No pty without --link",
      0},
     {"rfc2217", KEY_RFC2217, "HOST:PORT", 0, "The same with RFC 2217: settings, purge, break and modem lines", 0},
+    {"service", KEY_SERVICE, "NAME=HOST:PORT", 0,
+     "Listen for clients of a server that the device has itself (`rkm04 devices --json' lists them); up to four", 0},
     {"baud", KEY_BAUD, "RATE", 0, "19200 (default): each byte takes 520.8 us in both directions; 0: bytes take no time", 0},
     {"turnaround", KEY_TURNAROUND, "US", 0,
      "Time from the end of a request to the start of the answer, 0 to 1000000 us; default 521, one character", 0},
@@ -253,6 +256,40 @@ static void add_folder(struct bus_options *options, const char *text, struct arg
         argp_error(state, "--allow-folder: expected at most %u folders", BUS_FOLDERS_MAX);
 }
 
+static void add_service(struct bus_options *options, const char *text, const struct argp_state *state)
+{
+    unsigned at = 0;
+    while (at < DEVICE_SERVICES_MAX && options->service_text[at])
+        at++;
+    if (at == DEVICE_SERVICES_MAX)
+        argp_error(state, "--service: expected at most %u", DEVICE_SERVICES_MAX);
+    options->service_text[at] = text;
+}
+
+/* "modbus-tcp=127.0.0.1:502", when the device is known. */
+static void read_service(struct bus_options *options, unsigned at, const struct argp_state *state)
+{
+    const struct device_kind *kind = options->device.kind;
+    const char *text = options->service_text[at], *equal = strchr(text, '=');
+    size_t length = equal ? (size_t)(equal - text) : 0;
+    char names[200] = "";
+    for (const struct device_service *service = kind->services; service && service->name; service++) {
+        if (strlen(service->name) == length && strncmp(service->name, text, length) == 0)
+            options->service[at].name = service->name;
+        snprintf(names + strlen(names), sizeof names - strlen(names), names[0] ? ", %s" : "%s", service->name);
+    }
+    if (!names[0])
+        argp_error(state, "--service: the device %s has no servers", kind->name);
+    if (!options->service[at].name)
+        argp_error(state, "--service: `%s' is wrong: expected NAME=HOST:PORT with one of %s", text, names);
+    if (!net_address_valid(equal + 1))
+        argp_error(state, "--service: `%s' is wrong: expected " NET_ADDRESS_EXPECTED, equal + 1);
+    options->service[at].address = equal + 1;
+    for (unsigned before = 0; before < at; before++)
+        if (options->service[before].name == options->service[at].name)
+            argp_error(state, "--service: expected %s once", options->service[at].name);
+}
+
 static bool read_late(const char *text, struct argp_state *state)
 {
     if (strcmp(text, "catch-up") != 0 && strcmp(text, "skip") != 0)
@@ -286,6 +323,8 @@ static void check_ports(struct bus_options *options, const struct argp_state *st
                         : options->wine    ? "wine"
                                            : NULL;
     bool net = options->tcp || options->rfc2217;
+    for (unsigned at = 0; at < DEVICE_SERVICES_MAX && options->service_text[at]; at++)
+        read_service(options, at, state);
     options->pty = device->receive && !options->port && (!net || options->link || options->wine);
     if (given && !device->receive)
         argp_error(state, "--%s: the device %s has no bus", given, device->name);
@@ -377,6 +416,9 @@ static error_t read_line_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_RFC2217:
         options->rfc2217 = read_address("rfc2217", text, state);
+        return 0;
+    case KEY_SERVICE:
+        add_service(options, text, state);
         return 0;
     case KEY_STRICT_LINE:
         options->strict_line = true;

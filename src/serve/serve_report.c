@@ -43,6 +43,8 @@ static void log_ports(const struct bus *bus)
         bus_log(&bus->log, "%s on tcp:%s", units, ports->tcp->address);
     if (ports->rfc2217)
         bus_log(&bus->log, "%s on rfc2217://%s", units, ports->rfc2217->address);
+    for (unsigned at = 0; bus_services_address(bus->services, at); at++)
+        bus_log(&bus->log, "%s: %s on %s", units, bus->options->service[at].name, bus_services_address(bus->services, at));
 }
 
 static void log_flash(struct bus *bus)
@@ -107,9 +109,12 @@ static json_t *ports_json(const struct bus *bus)
 {
     const struct bus_ports *ports = &bus->ports;
     bool pty = bus->options->pty;
-    return json_pack("{s:s?, s:s?, s:s?, s:s?, s:s?}", "pty", pty ? ports->line.path : NULL, "link",
+    json_t *services = bus_services_address(bus->services, 0) ? json_object() : NULL; /* NULL: left out */
+    for (unsigned at = 0; services && bus_services_address(bus->services, at); at++)
+        json_object_set_new(services, bus->options->service[at].name, json_string(bus_services_address(bus->services, at)));
+    return json_pack("{s:s?, s:s?, s:s?, s:s?, s:s?, s:o*}", "pty", pty ? ports->line.path : NULL, "link",
                      pty ? ports->link.path : NULL, "port", bus->options->port, "tcp", ports->tcp ? ports->tcp->address : NULL,
-                     "rfc2217", ports->rfc2217 ? ports->rfc2217->address : NULL);
+                     "rfc2217", ports->rfc2217 ? ports->rfc2217->address : NULL, "services", services);
 }
 
 /* With several lines the ports at the top are those of line 0, and `lines` has all. */

@@ -39,7 +39,7 @@ static void list_peers(const struct sim_services *all, const struct device_servi
         bus->peer[i] = order[i]->peer;
 }
 
-static void look_at_bus(struct sim *sim, const struct device_service *service, struct device_bus *bus)
+static void describe_bus(struct sim *sim, const struct device_service *service, struct device_bus *bus)
 {
     bus->now = sim_now(sim);
     bus->units = sim_units(sim);
@@ -133,7 +133,7 @@ bool sim_service_receive(struct sim *sim, unsigned number, const uint8_t *bytes,
     struct device_bus bus;
     if (!client)
         return false;
-    look_at_bus(sim, client->service, &bus);
+    describe_bus(sim, client->service, &bus);
     report(sim, number, WATCH_SERVICE_RECEIVED, bytes, length);
     for (size_t at = 0, taken = 1; at < length && taken > 0; at += taken) {
         taken = client->service->receive(client->state, &bus, bytes + at, length - at);
@@ -193,7 +193,7 @@ unsigned sim_service_open(struct sim *sim, const struct device_service *service,
     *client = (struct sim_client){.service = service, .state = state, .since = all->arrived++, .next = DEVICE_NEVER};
     strncpy(client->peer, peer, sizeof client->peer - 1u);
     all->last = at >= all->last ? at + 1u : all->last;
-    look_at_bus(sim, service, &bus);
+    describe_bus(sim, service, &bus);
     report(sim, at + 1u, WATCH_SERVICE_OPEN, NULL, 0);
     if (service->open)
         service->open(state, &bus);
@@ -206,7 +206,7 @@ void sim_service_start(struct sim *sim, unsigned number, struct sim_service_sent
     struct sim_client *client = client_of(sim, number);
     if (!client)
         return;
-    look_at_bus(sim, client->service, &bus);
+    describe_bus(sim, client->service, &bus);
     pump(sim, number, &bus, sent);
     if (is_over(client))
         sim_service_close(sim, number);

@@ -84,7 +84,8 @@ START_TEST(clients_are_counted_and_limited)
 {
     for (unsigned i = 0; i < 8; i++)
         open_one();
-    fake_rig_expect_refusal(&rig, "service.open", "{\"service\": \"lines\"}", "service lines: too many clients: expected at most 8");
+    fake_rig_expect_refusal(&rig, "service.open", "{\"service\": \"lines\"}",
+                            "service lines: too many clients: expected at most 8");
     fake_rig_do(&rig, "service.close", "{\"client\": 3}");
     fake_rig_expect_refusal(&rig, "service.bytes", "{\"client\": 3, \"text\": \"\"}", "there is no client 3");
     expect("service.open", "{\"service\": \"lines\", \"peer\": \"last\"}", "client", "3");
@@ -232,6 +233,48 @@ START_TEST(snapshot_in_a_file_is_restored_among_clients)
 }
 END_TEST
 
+static enum scenario_end run_story(const char *text, char **said)
+{
+    static const struct scenario_files files = {0};
+    struct scenario_result result = {0};
+    size_t length;
+    FILE *errors = open_memstream(said, &length);
+    struct scenario *scenario = scenario_read("test.yaml", text, strlen(text), &files, errors);
+    enum scenario_end came = scenario ? scenario_run(scenario, NULL, NULL, NULL, &result) : SCENARIO_FAILED;
+    if (scenario && came == SCENARIO_FAILED)
+        fprintf(errors, "line %zu: expected %s, seen %s", result.line, result.expected, result.seen);
+    fclose(errors);
+    scenario_result_free(&result);
+    scenario_free(scenario);
+    return came;
+}
+
+START_TEST(scenario_is_a_client_and_looks_at_results)
+{
+    static const char *const head =
+        "device: alone\nsteps:\n  - {call: service.open, params: {service: lines}, result: {client: 1}}\n";
+    static const struct {
+        const char *step, *said;
+    } stories[] = {
+        {"  - {call: service.bytes, params: {client: 1, text: \"POS?\\n\"}, result: {text: \"0\\r\\n\", open: true}}\n", NULL},
+        {"  - {call: service.bytes, params: {client: 1, text: \"POS?\\n\"}, result: {text: \"1\\r\\n\"}}\n",
+         "line 4: expected text \"1\\r\\n\" in the result, seen text \"0\\r\\n\" in the result"},
+        {"  - {call: service.bytes, params: {client: 1, text: \"\"}, result: {test: 1}}\n",
+         "expected test 1 in the result, seen test missing in the result"},
+        {"  - {call: service.close, result: 1}\n", "test.yaml:4:35: error: expected a map"},
+        {"  - {call: service.bytes, params: {client: 2, text: \"\"}}\n", "refused: client: there is no client 2"},
+    };
+    for (size_t i = 0; i < sizeof stories / sizeof *stories; i++) {
+        char text[500], *said;
+        snprintf(text, sizeof text, "%s%s", head, stories[i].step);
+        enum scenario_end came = run_story(text, &said);
+        ck_assert_msg(came == (stories[i].said ? SCENARIO_FAILED : SCENARIO_PASSED), "%s%s", text, said);
+        ck_assert_msg(!stories[i].said || strstr(said, stories[i].said), "%s%s", text, said);
+        free(said);
+    }
+}
+END_TEST
+
 static Suite *fake_service_suite(void)
 {
     Suite *suite = suite_create("fake_service");
@@ -246,6 +289,7 @@ static Suite *fake_service_suite(void)
     tcase_add_test(all, traces_have_what_passes);
     tcase_add_test(all, recording_has_the_clients_and_replays);
     tcase_add_test(all, snapshot_in_a_file_is_restored_among_clients);
+    tcase_add_test(all, scenario_is_a_client_and_looks_at_results);
     suite_add_tcase(suite, all);
     return suite;
 }

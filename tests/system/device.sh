@@ -233,4 +233,73 @@ test_exec_advances_a_device_without_a_bus() {
     holds "$complained" "inputs.txt:1:8: error: expected an input 1 to 3 or lmt+, near, DI3, found 'far'" "stderr"
 }
 
+# A server of the device's own: many clients, of which none delays another one.
+test_clients_of_a_server() {
+    local wrong
+    for wrong in lines line=0 lines=x =0; do
+        exits 2 "$RKM04" serve --device alone --service "$wrong"
+        holds "$complained" "--service:" "--service $wrong"
+    done
+    exits 2 "$RKM04" serve --device alone --service lines=0 --service lines=0
+    holds "$complained" "expected lines once" "stderr"
+    exits 2 "$RKM04" serve --service lines=0
+    holds "$complained" "--service: the device rkm04 has no servers" "stderr"
+    start alone "$RKM04" serve --device alone --service lines=localhost:0 --control "$folder/alone.control" \
+        --record "$folder/alone.record"
+    soon "the device is ready" ready alone
+    exits 0 python3 - "$folder/alone.out" <<'END'
+import json, re, socket, sys
+
+ready = json.loads(re.search("^READY (.*)", open(sys.argv[1]).read(), re.M)[1])
+host, port = ready["services"]["lines"].rsplit(":", 1)
+
+
+def connect(room=None):
+    client = socket.socket()
+    if room:
+        client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, room)
+    client.settimeout(20)
+    client.connect((host, int(port)))
+    return client, client.makefile("rb")
+
+
+def line(reader, wanted):
+    came = reader.readline()
+    assert came == wanted + b"\r\n", (came, wanted)
+
+
+first, first_reads = connect()
+line(first_reads, b"HELLO 1")
+flood, flood_reads = connect(4096)
+line(flood_reads, b"HELLO 2")
+flood.setblocking(False)
+try:
+    for _ in range(100000):
+        flood.send(b"IN?\n" * 200)
+except BlockingIOError:
+    pass
+else:
+    raise SystemExit("a client that does not read is read without end")
+first.sendall(b"TELL\nMOVE 15\n")
+for wanted in b"OK", b"POS":
+    assert first_reads.readline().startswith(wanted)
+others = [connect() for _ in range(7)]
+for number, (client, reads) in enumerate(others[:6]):
+    line(reads, b"HELLO %d" % (3 + number))
+line(others[6][1], b"FULL")
+assert others[6][1].read() == b""
+others[0][0].sendall(b"BYE\n")
+assert others[0][1].read() == b""
+others[1][0].close()
+flood.close()
+last, last_reads = connect()
+assert last_reads.readline().startswith(b"HELLO")
+last.sendall(b"WHO\n")
+line(last_reads, b"%s:%d" % first.getsockname())
+END
+    exits 0 "$RKMCTL" --control "$folder/alone.control" shutdown
+    status_of "$started"
+    exits 0 "$RKM04" replay "$folder/alone.record"
+}
+
 run_cases "$@"
