@@ -3,8 +3,10 @@
 # which look for the same and more. tests/system/security.sh looks whether it is in the programs.
 option(RKM04_HARDEN "Harden optimised builds: PIE, RELRO, stack protector, fortified library calls" ON)
 
-add_compile_options(-Werror=format-security)
-if(RKM04_HARDEN AND NOT RKM04_SANITIZE)
+if(NOT WIN32)
+  add_compile_options(-Werror=format-security)
+endif()
+if(RKM04_HARDEN AND NOT RKM04_SANITIZE AND NOT WIN32)
   set(optimised $<CONFIG:Release,RelWithDebInfo,MinSizeRel>)
   # -U: builders of packages define a level of their own. -fPIE, not -fPIC, which would keep the core from calling its own
   # functions directly; in the Python extension the options of its target do that.

@@ -3,6 +3,7 @@
 # A COM port of Wine that leads to a unit (--wine), and a Windows program that uses it.
 
 . "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/../../tools/wine.sh"
 
 : "${PORT_CLIENT=}" "${MODEM_LINES=}"
 
@@ -85,32 +86,18 @@ test_what_is_no_port_of_a_prefix_is_refused() {
 
 # ---- With Wine ---------------------------------------------------------------------------------------------------------
 
-wine=$(command -v wine || command -v wine64 || echo /usr/lib/wine/wine64)
-wineserver=$(command -v wineserver || echo /usr/lib/wine/wineserver64)
-
-# in_wine COMMAND...: a Windows program in the prefix of this case, which is made by the first one.
-in_wine() {
-    env -u DISPLAY WINEPREFIX="$folder/prefix" WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml=" LC_ALL=C.UTF-8 \
-        timeout 200 "$wine" "$@" 2>"$folder/wine.err"
-}
-
-# The server of the prefix ends, and with it all that runs there.
-end_wine() {
-    WINEPREFIX=$folder/prefix timeout 60 "$wineserver" -k 2>/dev/null
-    WINEPREFIX=$folder/prefix timeout 60 "$wineserver" -w 2>/dev/null
-}
+in_wine() { wine_in "$folder/prefix" "$@" 2>"$folder/wine.err"; }
 
 leave_wine() {
-    end_wine
+    end_wine "$folder/prefix"
     leave
 }
 
 begin_wine() {
     [[ -f $PORT_CLIENT ]] || skip_case "the programs for Windows are not built; apt-get install gcc-mingw-w64-x86-64-win32"
-    [[ -x $wine ]] || skip_case "there is no Wine; apt-get install wine64"
+    has_wine || skip_case "there is no Wine; apt-get install wine64"
     trap leave_wine EXIT
-    in_wine "$PORT_CLIENT" >/dev/null
-    [[ -d $folder/prefix/dosdevices ]] || fail "Wine makes no prefix"
+    make_wine "$folder/prefix" || fail "Wine makes no prefix"
 }
 
 # passes CHECK...: all checks of the Windows program pass at the port; at once, so that Wine is started once.
@@ -134,7 +121,7 @@ test_a_Windows_program_uses_a_unit_through_a_COM_port_of_Wine_and_over_TCP() {
     passes lines events version
     unset LD_PRELOAD
     in_wine reg add 'HKLM\Software\Wine\Ports' /v COM1 /d "$folder/bus" /f >/dev/null || fail "reg add"
-    end_wine
+    end_wine "$folder/prefix"
     port=COM1
     passes version # Wine has made the link itself
     same "$folder/bus" "$(com 1)" "COM1"

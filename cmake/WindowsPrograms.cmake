@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+# rkm04.exe: the rooms that need no event loop, with src/windows in place of what POSIX has (docs/WINDOWS.md).
+find_library(JANSSON jansson REQUIRED)
+find_library(YAML yaml REQUIRED)
+enable_language(RC)
+
+# What POSIX has of these rooms, src/windows has for Windows.
+set(posix_only device/device_kinds_added.c options/host_address.c options/process.c options/socket_address.c plot/raster.c program_tools/text_diff.c)
+set(posix ${CMAKE_CURRENT_SOURCE_DIR}/windows/posix)
+
+function(use_windows target)
+  target_include_directories(${target} BEFORE PUBLIC ${posix})
+  target_include_directories(${target} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}
+    ${RKM04_WINDOWS_LIBRARIES}/include)
+  target_compile_definitions(${target} PRIVATE _GNU_SOURCE __USE_MINGW_ANSI_STDIO=1 _FILE_OFFSET_BITS=64 YAML_DECLARE_STATIC)
+  # The compiler takes the formats of messages for those of Windows, whose write() takes no size_t; both are checked elsewhere.
+  target_compile_options(${target} PRIVATE -include ${posix}/posix.h -Wno-format -Wno-format-extra-args -Wno-conversion)
+endfunction()
+
+add_rooms(rkm04-sim ${SIM_ROOMS} plot run windows)
+get_target_property(sources rkm04-sim SOURCES)
+foreach(source ${posix_only})
+  list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+endforeach()
+set_target_properties(rkm04-sim PROPERTIES SOURCES "${sources};${page_js}")
+use_windows(rkm04-sim)
+target_link_libraries(rkm04-sim PUBLIC rkm04-core ${JANSSON} ${YAML})
+
+add_executable(rkm04 main/main.c windows/rkm04.rc)
+use_windows(rkm04)
+target_link_libraries(rkm04 PRIVATE rkm04-sim -static pthread)
+set_target_properties(rkm04 PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+
+# A zip with the program, the documents and a prompt (cpack --preset windows).
+install(TARGETS rkm04 RUNTIME DESTINATION .)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-prompt.cmd DESTINATION .)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD-PARTY.md
+  ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION .)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION . PATTERN man EXCLUDE)
+set(CPACK_GENERATOR ZIP)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_FILE_NAME rkm04-${PROJECT_VERSION}-windows)
+include(CPack)

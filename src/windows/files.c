@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT */
+/* files.c: files by path and descriptor. */
+#include <errno.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <windows.h>
+
+#undef stat
+#undef fstat
+#undef open
+#undef fopen
+#undef fclose
+
+/* Returns -1, with errno as POSIX has it. */
+static int fail(void)
+{
+    switch (GetLastError()) {
+    case ERROR_FILE_NOT_FOUND:
+    case ERROR_PATH_NOT_FOUND:
+    case ERROR_INVALID_NAME:
+    case ERROR_BAD_PATHNAME:
+        errno = ENOENT;
+        break;
+    case ERROR_ACCESS_DENIED:
+    case ERROR_SHARING_VIOLATION:
+    case ERROR_WRITE_PROTECT:
+        errno = EACCES;
+        break;
+    case ERROR_FILE_EXISTS:
+    case ERROR_ALREADY_EXISTS:
+        errno = EEXIST;
+        break;
+    case ERROR_DISK_FULL:
+        errno = ENOSPC;
+        break;
+    case ERROR_TOO_MANY_OPEN_FILES:
+        errno = EMFILE;
+        break;
+    default:
+        errno = EIO;
+        break;
+    }
+    return -1;
+}
+
+static const char *native(const char *path)
+{
+    return strcmp(path, "/dev/null") == 0 ? "NUL" : path;
+}
+
+int windows_open(const char *path, int flags, ...)
+{
+    static const DWORD accesses[] = {GENERIC_READ, GENERIC_WRITE, GENERIC_READ | GENERIC_WRITE};
+    DWORD how = flags & O_EXCL ? CREATE_NEW : flags & O_CREAT ? OPEN_ALWAYS : OPEN_EXISTING;
+    HANDLE file = CreateFileA(native(path), accesses[flags & (O_WRONLY | O_RDWR)],
+                              FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, NULL, how, FILE_ATTRIBUTE_NORMAL, NULL);
+    if (file == INVALID_HANDLE_VALUE) {
+        DWORD found = GetFileAttributesA(path);
+        if (found != INVALID_FILE_ATTRIBUTES && (found & FILE_ATTRIBUTE_DIRECTORY)) {
+            errno = EISDIR;
+            return -1;
+        }
+        return fail();
+    }
+    int fd = _open_osfhandle((intptr_t)file, _O_BINARY | (flags & _O_NOINHERIT));
+    if (fd < 0)
+        CloseHandle(file);
+    else if (flags & O_TRUNC)
+        _chsize_s(fd, 0);
+    return fd;
+}
+
+FILE *windows_fopen(const char *path, const char *mode)
+{
+    bool reads = mode[0] == 'r', both = strchr(mode, '+') != NULL;
+    int flags = both ? O_RDWR : reads ? O_RDONLY : O_WRONLY;
+    int fd = windows_open(path, flags | (reads ? 0 : O_CREAT) | (mode[0] == 'w' ? O_TRUNC : 0) | O_CLOEXEC);
+    FILE *file = fd >= 0 ? _fdopen(fd, both ? "r+b" : reads ? "rb" : "wb") : NULL;
+    if (!file && fd >= 0)
+        _close(fd);
+    if (file && mode[0] == 'a')
+        fseek(file, 0, SEEK_END);
+    return file;
+}
+
+static int stat_handle(HANDLE file, struct windows_stat *status)
+{
+    BY_HANDLE_FILE_INFORMATION found;
+    DWORD type = GetFileType(file);
+    *status = (struct windows_stat){.st_mode = type == FILE_TYPE_PIPE ? S_IFIFO : S_IFCHR};
+    if (type != FILE_TYPE_DISK)
+        return 0;
+    if (!GetFileInformationByHandle(file, &found))
+        return fail();
+    bool folder = found.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY;
+    status->st_dev = found.dwVolumeSerialNumber;
+    status->st_ino = (uint64_t)found.nFileIndexHigh << 32 | found.nFileIndexLow;
+    status->st_mode = (folder ? S_IFDIR : S_IFREG) | 0644;
+    status->st_size = (int64_t)((uint64_t)found.nFileSizeHigh << 32 | found.nFileSizeLow);
+    return 0;
+}
+
+int windows_fstat(int fd, struct windows_stat *status)
+{
+    HANDLE file = (HANDLE)_get_osfhandle(fd);
+    if (file == INVALID_HANDLE_VALUE) {
+        errno = EBADF;
+        return -1;
+    }
+    return stat_handle(file, status);
+}
+
+int windows_stat(const char *path, struct windows_stat *status)
+{
+    HANDLE file = CreateFileA(native(path), 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, NULL, OPEN_EXISTING,
+                              FILE_FLAG_BACKUP_SEMANTICS, NULL);
+    if (file == INVALID_HANDLE_VALUE)
+        return fail();
+    int result = stat_handle(file, status);
+    CloseHandle(file);
+    return result;
+}
+
+int windows_rename(const char *from, const char *to)
+{
+    return MoveFileExA(from, to, MOVEFILE_REPLACE_EXISTING) ? 0 : fail();
+}
+
+int windows_unlink(const char *path)
+{
+    return DeleteFileA(path) ? 0 : fail();
+}
+
+char *realpath(const char *path, char *found)
+{
+    struct windows_stat status;
+    return windows_stat(path, &status) == 0 ? _fullpath(found, path, found ? _MAX_PATH : 0) : NULL;
+}
+
+/* The X at the end of the path become a name that is free. */
+int mkostemp(char *path, int flags)
+{
+    static unsigned count;
+    static const char digits[] = "0123456789abcdefghijklmnopqrstuvwxyz";
+    size_t end = strlen(path);
+    for (unsigned tries = 0; tries < 1000; tries++) {
+        uint64_t number = (uint64_t)GetCurrentProcessId() * 1000003u + GetTickCount() + count++ * 7919u;
+        for (size_t i = 1; i <= 6; i++, number /= 36)
+            path[end - i] = digits[number % 36];
+        int fd = windows_open(path, flags | O_RDWR | O_CREAT | O_EXCL);
+        if (fd >= 0 || errno != EEXIST)
+            return fd;
+    }
+    return -1;
+}
+
+FILE *windows_tmpfile(void)
+{
+    char folder[MAX_PATH], path[MAX_PATH];
+    if (!GetTempPathA(sizeof folder, folder) || !GetTempFileNameA(folder, "rkm", 0, path)) {
+        fail();
+        return NULL;
+    }
+    HANDLE file = CreateFileA(path, GENERIC_READ | GENERIC_WRITE | DELETE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
+                              NULL, CREATE_ALWAYS, FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, NULL);
+    int fd = file != INVALID_HANDLE_VALUE ? _open_osfhandle((intptr_t)file, _O_BINARY) : fail();
+    return fd >= 0 ? _fdopen(fd, "w+b") : NULL;
+}
+
+ssize_t pread(int fd, void *bytes, size_t length, int64_t offset)
+{
+    int64_t before = _lseeki64(fd, 0, SEEK_CUR);
+    if (before < 0 || _lseeki64(fd, offset, SEEK_SET) < 0)
+        return -1;
+    int got = _read(fd, bytes, (unsigned)length);
+    _lseeki64(fd, before, SEEK_SET);
+    return got;
+}
+
+/* Windows has no modes: who may read a file is inherited from its folder. */
+int fchmod(int fd, unsigned mode)
+{
+    (void)fd;
+    (void)mode;
+    return 0;
+}
+
+int fsync(int fd)
+{
+    return _commit(fd);
+}
+
+ssize_t getline(char **line, size_t *room, FILE *in)
+{
+    size_t length = 0;
+    int byte;
+    while ((byte = getc(in)) != EOF) {
+        if (length + 2 > *room) {
+            size_t more = *room < 256 ? 256 : 2 * *room;
+            char *larger = realloc(*line, more);
+            if (!larger)
+                return -1;
+            *line = larger;
+            *room = more;
+        }
+        (*line)[length++] = (char)byte;
+        (*line)[length] = '\0';
+        if (byte == '\n')
+            break;
+    }
+    return length > 0 ? (ssize_t)length : -1;
+}

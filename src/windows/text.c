@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/* text.c: texts, and messages of the program. */
+#include <err.h>
+#include <errno.h>
+#include <stdarg.h>
+
+char *strndup(const char *text, size_t length)
+{
+    size_t kept = strnlen(text, length);
+    char *copy = malloc(kept + 1);
+    if (copy) {
+        memcpy(copy, text, kept);
+        copy[kept] = '\0';
+    }
+    return copy;
+}
+
+void *memrchr(const void *bytes, int wanted, size_t length)
+{
+    const unsigned char *at = bytes;
+    while (length > 0)
+        if (at[--length] == (unsigned char)wanted)
+            return (void *)(at + length);
+    return NULL;
+}
+
+void *memmem(const void *bytes, size_t length, const void *wanted, size_t wanted_length)
+{
+    const char *at = bytes;
+    for (; wanted_length <= length; at++, length--)
+        if (memcmp(at, wanted, wanted_length) == 0)
+            return (void *)at;
+    return NULL;
+}
+
+static void report(int error, const char *format, va_list values)
+{
+    fprintf(stderr, "rkm04: ");
+    vfprintf(stderr, format, values);
+    fprintf(stderr, error ? ": %s\n" : "%s\n", error ? strerror(error) : "");
+}
+
+void warn(const char *format, ...)
+{
+    int error = errno;
+    va_list values;
+    va_start(values, format);
+    report(error, format, values);
+    va_end(values);
+}
+
+void warnx(const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    report(0, format, values);
+    va_end(values);
+}
+
+void err(int status, const char *format, ...)
+{
+    int error = errno;
+    va_list values;
+    va_start(values, format);
+    report(error, format, values);
+    va_end(values);
+    exit(status);
+}
+
+void errx(int status, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    report(0, format, values);
+    va_end(values);
+    exit(status);
+}

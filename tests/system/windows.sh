@@ -1,0 +1,123 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# rkm04.exe under Wine does what rkm04 does here, byte for byte.
+
+. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/../../tools/wine.sh"
+
+: "${RKM04_EXE=}"
+[[ -f $RKM04_EXE ]] || skip_all "rkm04.exe is not built; apt-get install gcc-mingw-w64-x86-64-win32"
+has_wine || skip_all "there is no Wine; apt-get install wine64"
+examples=$(cd "$(dirname "$0")/../../examples" && pwd)
+
+# One prefix for all cases: it takes its time.
+prefix=$(mktemp -d)
+trap 'end_wine "$prefix"; rm -rf "$prefix"' EXIT
+make_wine "$prefix" || skip_all "Wine makes no prefix"
+
+program='\C100 S100 V1000 A2000 F5000 R W100 L3 F100 R E'
+
+exe() { wine_in "$prefix" "$RKM04_EXE" "$@"; }
+
+# alike ARGUMENTS...: both programs print the same, complain the same, and end the same; $said is what they print.
+alike() {
+    local here there
+    said=$("$RKM04" "$@" 2>"$folder/here.err" </dev/null; echo "status $?")
+    here=$said
+    there=$(exe "$@" 2>"$folder/there.err" </dev/null; echo "status $?")
+    same "$here" "$there" "rkm04 $*"
+    cmp -s "$folder/here.err" "$folder/there.err" || fail "rkm04 $*: complains otherwise"
+}
+
+begin() {
+    cd "$folder" || fail "cd"
+    printf '%s\n' "$program" >program.rks
+}
+
+test_the_scenarios_of_the_examples_pass() {
+    alike test "$examples"/{faults,hand-over,linear-axis,turntable}.yaml "$examples"/manual/*.yaml
+    holds "$said" ", 0 failed" "the result"
+}
+
+test_traces_are_the_same_byte_for_byte() {
+    local form
+    begin
+    for form in csv vcd jsonl; do
+        "$RKM04" exec --trace "here.$form" program.rks >here.out 2>&1 || fail "exec here"
+        exe exec --trace "there.$form" program.rks >there.out 2>&1 || fail "exec there"
+        cmp "here.$form" "there.$form" || fail "the trace .$form"
+        cmp here.out there.out || fail "the state"
+    done
+}
+
+test_tools_for_programs_say_the_same() {
+    begin
+    printf 'L3 F100 R\nQ5 E E' >wrong.rks
+    for arguments in "check program.rks" "check wrong.rks" "check --json wrong.rks" "fmt --check program.rks" \
+        "explain program.rks" "estimate program.rks" "exec --json program.rks" "plot -o - program.rks" "devices --json"; do
+        # shellcheck disable=SC2086
+        alike $arguments
+    done
+    cp program.rks there.rks
+    "$RKM04" fmt program.rks && exe fmt there.rks || fail "fmt"
+    cmp program.rks there.rks || fail "the formatted program"
+}
+
+test_wrong_usage_is_refused_in_the_same_words() {
+    begin
+    for arguments in "" "exce" "exec" "exec --nope" "exec --until" "exec --until=5x program.rks" "exec -Z" \
+        "exec --json=1 program.rks" "test none.yaml" "replay" "--version"; do
+        # shellcheck disable=SC2086
+        alike $arguments
+    done
+}
+
+test_a_file_of_another_kind_is_not_overwritten() {
+    begin
+    echo precious >mine.csv
+    exe exec --trace mine.csv program.rks >/dev/null 2>said.err && fail "exec overwrites a file"
+    holds "$(<said.err)" "mine.csv" "the message"
+    exe exec --trace program.rks program.rks >/dev/null 2>&1 && fail "exec overwrites its program"
+    same "precious $program" "$(<mine.csv) $(<program.rks)" "the files"
+    exe exec --force --trace mine.csv program.rks >/dev/null 2>&1 || fail "--force"
+    exe exec --trace mine.csv program.rks >/dev/null 2>&1 || fail "a trace is overwritten by a trace"
+}
+
+test_a_recording_from_there_is_replayed_here_and_the_other_way_round() {
+    begin
+    printf 'steps:\n  - set: F500 R\n  - wait: {motor: 1, position: 400}\n  - expect: {motor: 1, position: 499}\n' >fails.yaml
+    mkdir -p here there
+    "$RKM04" test --records here fails.yaml >/dev/null 2>&1
+    exe test --records there fails.yaml >/dev/null 2>&1
+    cmp here/fails.record there/fails.record || fail "the recordings"
+    alike replay there/fails.record
+}
+
+test_paths_may_have_backslashes_and_letters_of_any_language() {
+    begin
+    mkdir "žluťoučký kůň"
+    cp program.rks "žluťoučký kůň/p.rks"
+    exe exec --json "1=žluťoučký kůň\\p.rks" >there.out 2>there.err || fail "exec"
+    "$RKM04" exec --json program.rks >here.out
+    cmp here.out there.out || fail "the state"
+    exe exec --trace="žluťoučký kůň\\t.csv" program.rks >/dev/null 2>&1 || fail "a trace"
+    [[ -s "žluťoučký kůň/t.csv" ]] || fail "the trace is elsewhere"
+}
+
+test_the_zip_has_the_program_documents_and_a_prompt() {
+    begin
+    (cd "${RKM04_EXE%/*}" && cpack -G ZIP -B "$folder/zip") >"$folder/cpack.err" 2>&1 || fail "cpack"
+    cmake -E chdir "$folder" cmake -E tar xf "$folder"/zip/rkm04-*-windows.zip || fail "the zip"
+    cd "$folder"/rkm04-*-windows || fail "the folder in it"
+    [[ -f README.md && -f LICENSE && -f docs/WINDOWS.md && -f examples/linear-axis.yaml ]] || fail "documents"
+    same "$("$RKM04" --version)" "$(wine_in "$prefix" cmd /c rkm04-prompt.cmd --version 2>/dev/null | tr -d '\r')" "the prompt"
+}
+
+test_serve_says_where_it_is_to_be_had() {
+    local said
+    exe serve 2>"$folder/there.err"
+    same 2 $? "exit status"
+    holds "$(<"$folder/there.err")" "docs/WINDOWS.md" "the message"
+}
+
+run_cases "$@"
