@@ -43,7 +43,7 @@ static void print_functions(const json_t *functions)
 /* What the panel has no room for: of motors with a program. */
 static void print_motor(const json_t *motor)
 {
-    if (json_object_get(motor, "memory") == NULL)
+    if (json_object_get(motor, "parameters") == NULL)
         return;
     const json_t *parameters = json_object_get(motor, "parameters");
     const char *slot = json_string_value(json_object_get(motor, "slot"));

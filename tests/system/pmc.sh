@@ -171,4 +171,101 @@ test_exec_runs_a_program() {
     holds "$complained" "never ends" "stderr"
 }
 
+# The python that knows pymodbus and pyserial; "none".
+for python in python3 /usr/bin/python3 none; do
+    "$python" -c 'import pymodbus, serial' 2>/dev/null && break
+done
+
+client() {
+    [[ $python != none ]] || skip_case "there is no pymodbus; apt-get install python3-pymodbus python3-serial"
+    exits 0 "$python" -W ignore "${0%/*}/pmc_client.py" "$@"
+}
+
+test_pymodbus_on_the_pty() {
+    unit --device-option face=modbus
+    client modbus "$folder/bus"
+}
+
+test_pyserial_speaks_the_lines() {
+    unit
+    client lines "$folder/bus"
+}
+
+test_a_home_search_with_a_plant_is_recorded_and_replayed() {
+    printf 'motors: {1: {offset: 5000}}\nswitches:\n' >"$folder/plant.yaml"
+    printf ' - {motor: 1, input: x.near, at_most: 1000, hysteresis: 10}\n' >>"$folder/plant.yaml"
+    printf ' - {motor: 1, input: x.home, at_most: 200, hysteresis: 5}\n' >>"$folder/plant.yaml"
+    unit --clock stepped --plant "$folder/plant.yaml" --record "$folder/a.record" --trace "$folder/a.csv"
+    export RKM04_CONTROL=$folder/bus.control
+    exits 0 "$RKMCTL" call pmc.home '{"axes": "x"}'
+    exits 0 "$RKMCTL" advance 2s
+    exits 0 "$RKMCTL" snapshot half
+    exits 0 "$RKMCTL" advance m1.idle --limit 10s
+    exits 0 "$RKMCTL" --json state
+    holds "$said" '"t_us":3883' "AX35: the search ends in slot 3883"
+    holds "$said" '"position":0,"state":"idle"' "AX35: the counter is 0"
+    holds "$said" '"true_position":200' "AX35: at 200"
+    holds "$said" '"homed":true' "AX35: homed"
+    exits 0 "$RKMCTL" restore half
+    exits 0 "$RKMCTL" advance m1.idle --limit 10s
+    exits 0 "$RKMCTL" --json state
+    holds "$said" '"true_position":200' "the same after a restore"
+    exits 0 "$RKMCTL" shutdown
+    grep -q '^431000.000,m1,step' "$folder/a.csv" || fail "AX35: step 1 has no pulse at 431 000 us"
+    exits 0 "$RKM04" replay "$folder/a.record"
+}
+
+test_traces_have_the_names_and_fractions_of_us() {
+    program
+    exits 0 "$RKM04" exec --device pmc-2hs --trace "$folder/a.vcd" "$folder/a.pmc"
+    holds "$(head -n 40 "$folder/a.vcd")" "\$timescale 1 ns" "VCD"
+    holds "$(head -n 40 "$folder/a.vcd")" "x.out0" "VCD"
+    exits 0 "$RKM04" exec --device pmc-2hs --trace - "$folder/a.pmc"
+    holds "$(head -n 20 <<<"$said")" "3236.125,m1,step,1" "CSV"
+}
+
+test_a_scenario_speaks_to_both_faces() {
+    cat >"$folder/a.yaml" <<'END'
+device: pmc-2hs
+allow_faults: true
+steps:
+  - {message: '"POS"', answer: '"POS 00000000,00000000"'}
+  - {message: '"PIC 10"', answer: none, within: 10ms}
+  - wait: {idle: true}
+  - expect: {motor: 1, position: 10}
+  - {call: pmc.move, params: {x: -5, relative: true}}
+  - wait: {idle: true}
+  - expect: {motor: 1, position: 5}
+  - di: {x.lmt-: 1}
+  - {message: '"JOG -X"', answer: none, within: 10ms}
+  - wait: {motor: 1, fault: hl-}
+  - expect: {motor: 1, position: 5}
+END
+    exits 0 "$RKM04" test "$folder/a.yaml"
+    cat >"$folder/b.yaml" <<'END'
+device: pmc-1hs
+face: modbus
+steps:
+  - {message: '03 04 4E 00 01', answer: '03 02 00 0A'}
+  - {message: '03 05 00 00 01', answer: '83 02'}
+END
+    exits 0 "$RKM04" test "$folder/b.yaml"
+}
+
+test_the_wire_log_says_what_frames_mean() {
+    unit --device-option face=modbus --wire "$folder/bus.log"
+    exits 0 "$RKMCTL" -p "$folder/bus" --face modbus pmc jog x+
+    exits 0 "$RKMCTL" -c "$folder/bus.control" shutdown
+    holds "$(<"$folder/bus.log")" "write 0000 0120: continuous move" "the log"
+}
+
+test_the_panel_has_the_axes() {
+    unit
+    exits 0 "$RKMCTL" -c "$folder/bus.control" watch --once
+    holds "$said" "pmc-2hs unit 1" "the panel"
+    exits 0 "$RKMCTL" -c "$folder/bus.control" state
+    holds "$said" "pmc-2hs unit 1" "state"
+    [[ $said != *"of 700 commands"* ]] || fail "state: has numbers of an RKM04: $said"
+}
+
 run_cases "$@"
