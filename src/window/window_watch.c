@@ -75,10 +75,9 @@ static void take_state(struct window_watch *watch, unsigned unit, const char *st
     if (motors == NULL || unit >= watch->count)
         return;
     uint64_t sum = sum_of(motors, length - (size_t)(motors - state));
-    bool moves = strstr(motors, "\"moving\"") != NULL || strstr(motors, "\"dwell\"") != NULL;
-    watch->moving = watch->moving || (moves && sum != watch->sums[unit]);
     if (sum == watch->sums[unit])
         return;
+    watch->moving = true;
     watch->sums[unit] = sum;
     int before = snprintf(head, sizeof head, "{\"event\":\"state\",\"unit\":\"%s\",\"state\":", watch->units[unit]);
     char *text = malloc((size_t)before + length + 2);

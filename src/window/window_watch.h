@@ -28,7 +28,7 @@ struct window_watch {
     json_t *about;       /* result of `ready`; NULL: not known */
     json_t *device;      /* result of `device`; NULL: not known */
     unsigned asked;      /* states that have not been answered */
-    bool moving, news;
+    bool moving, news;   /* a state has changed since the last round; something has happened */
     unsigned messages;   /* of the bus, sent since the last round */
     uint64_t round;      /* loop time of the last one */
     uv_timer_t timer;

@@ -28,5 +28,13 @@ test_the_page_looks_as_its_references() {
     serve bus --clock stepped
     drive_with references "$folder/bus.control"
 }
+test_the_panel_of_a_CIB_module_shows_drives_outputs_and_configuration() {
+    serve bus --device cib
+    drive_with cib "$folder/bus.control"
+}
+test_the_panel_of_a_PMC_does_what_its_maker_s_window_does() {
+    serve bus --device pmc-2hs
+    drive_with pmc "$folder/bus.control"
+}
 
 run_cases "$@"

@@ -22,7 +22,7 @@ function settle(map, id, value) {
 function take(object) {
   if (object.event === "called") {
     const { id, result, error } = object.answer;
-    settle(called, id, error ? { error: error.message } : result ?? {});
+    settle(called, id, error ? { error: error.message } : { ...result, error: undefined }); // `error` is that of a refusal alone
   } else if (object.event === "uncalled") {
     for (const id of [...called.keys()])
       settle(called, id, { error: "" });

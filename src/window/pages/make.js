@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Elements of the page.
+import { word } from "./words.js";
 
 export function make(name, attributes = {}, ...children) {
   const element = document.createElement(name);
@@ -27,6 +28,11 @@ export const lamp = (text) => make("span", { class: "lamp", role: "img" }, text)
 export function light(element, on, name) {
   element.classList.toggle("lit", on);
   element.setAttribute("aria-label", `${name} ${on ? 1 : 0}`);
+}
+
+// A table that may be wider than the page, and is scrolled with the keyboard then.
+export function makeScrolled(table) {
+  return make("div", { class: "motors", tabindex: "0", role: "group", "aria-label": word("state") }, table);
 }
 
 // Write a text only where it differs: an unchanged one costs nothing.

@@ -3,7 +3,7 @@
 import { ask, call, on } from "./link.js";
 import { word } from "./words.js";
 import { UnitView } from "./unit.js";
-import { describeAnswer, describeRequest, fromHex } from "./decode.js";
+import { describeAnswer, describeRequest, fromHex, spaced, text } from "./decode.js";
 import { readKinds, showFaultForm, showFaults } from "./faults.js";
 import { make, write } from "./make.js";
 
@@ -149,12 +149,19 @@ $("plant-file").onchange = async () => {
 
 // ---- Dialogue ----
 
-function describe(event) {
+// A message of the RKM04 in words; of another device as its text, or as its bytes.
+function sayMessage(event) {
   const bytes = fromHex(event.message);
+  const isText = bytes.every((byte) => (byte >= 0x20 && byte < 0x7f) || byte === 0x0a || byte === 0x0d);
+  if (emulator.device && emulator.device.name !== "rkm04")
+    return isText ? text(bytes) : spaced(event.message);
+  return bytes.length === 0 ? "" : event.answer ? describeAnswer(bytes) : describeRequest(bytes);
+}
+
+function describe(event) {
   if (event.kind !== "message")
     return `[${event.unit ?? ""}] ${event.text ?? event.value}`;
-  const from = (event.from ?? []).join("+");
-  const words = bytes.length === 0 ? "" : event.answer ? describeAnswer(bytes) : describeRequest(bytes);
+  const from = (event.from ?? []).join("+"), words = sayMessage(event);
   const wrong = event.dropped ?? event.refused;
   return `${from} ${word(event.answer ? "answer" : "ask")} ${event.snode}→${event.dnode}: ${words}${wrong ? ` (${wrong})` : ""}`;
 }
@@ -175,6 +182,13 @@ function addEvent({ bus }) {
 }
 
 // ---- All ----
+
+// Stop all motors of units of other devices than the RKM04, which has K for it. Returns how many units there were.
+export async function stopUnits() {
+  const stopped = [...views.values()].filter((view) => emulator.connected && view.panel).map((view) => view.panel.stop());
+  await Promise.all(stopped);
+  return stopped.length;
+}
 
 export function showWords() {
   $("record").textContent = word(trace ? "record-stop" : "record");

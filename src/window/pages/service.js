@@ -5,6 +5,7 @@ import { word } from "./words.js";
 import { check, saveText } from "./editor.js";
 import { Graph, drawProfile } from "./graph.js";
 import { make } from "./make.js";
+import { stopUnits } from "./panel.js";
 import { describeAnswer, describeRequest, fromHex, messages, readPositions, readTable, spaced, text, toHex } from "./decode.js";
 
 const $ = (id) => document.getElementById(id);
@@ -220,17 +221,22 @@ function showChoices() {
 $("request").onchange = showChoices;
 
 async function stopAll() {
-  const begun = performance.now();
-  const answer = await ask("stop", { node: Number($("node").value) });
+  const begun = performance.now(), took = () => Math.round(performance.now() - begun);
+  const [answer, units] = await Promise.all([ask("stop", { node: Number($("node").value) }), stopUnits()]);
   if (answer.outcome === "sent")
-    say(word("stop-done", Math.round(performance.now() - begun)));
+    say(word("stop-done", took()));
+  else if (units > 0)
+    say(word("stop-units", units, took()));
   else
     say(word("stop-failed"), true);
 }
 $("stop").onclick = stopAll;
 
 on("answer", takeAnswer);
-on("port", showPort);
+on("port", (port) => { // what has not changed says nothing: it would cover what is said about a request
+  if (port.port !== open)
+    showPort(port);
+});
 on("progress", ({ sent, total }) => {
   $("progress").hidden = total === 0 || sent >= total;
   $("progress").max = Math.max(1, total);

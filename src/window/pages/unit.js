@@ -3,10 +3,12 @@
 // has comes from `device` and `state` of the control socket (docs/CONTROL.md).
 import { word } from "./words.js";
 import { Axis } from "./axis.js";
+import { CibPanel } from "./cib.js";
 import { Graph } from "./graph.js";
 import { Listing } from "./listing.js";
 import { call } from "./link.js";
 import { group, lamp, light, make, two, write } from "./make.js";
+import { PmcPanel } from "./pmc.js";
 
 const PLANT_MS = 250;
 
@@ -19,6 +21,9 @@ const MOTOR_SHOWN = new Set(["motor", "position", "state", "index", "led", "faul
   "lit", "speed", "steps", "forward", "stopping", "held", "guards", "profile", "parameters", "functions", "loops", "calls",
   "memory", "slot"]);
 
+// Devices with a panel of their own; it shows what else their states tell.
+const panels = { "pmc-1hs": PmcPanel, "pmc-2hs": PmcPanel, cib: CibPanel };
+
 const plain = (value) => typeof value === "string" ? value : value === null ? "–" : JSON.stringify(value);
 
 export class UnitView {
@@ -29,11 +34,14 @@ export class UnitView {
       const answer = await act(method, { unit: name, ...params });
       if (answer.plant)
         this.showPlant(answer.plant);
+      return answer;
     };
     this.element = make("section", { class: "unit" });
     this.axes = [];
     this.plantAsked = 0;
-    this.listing = this.device.program > 0 ? new Listing(name) : null;
+    const Panel = panels[this.device.name];
+    this.panel = Panel ? new Panel(name, this.act) : null;
+    this.listing = this.device.program > 0 && !Panel ? new Listing(name) : null;
     this.build();
   }
 
@@ -46,9 +54,10 @@ export class UnitView {
     this.di = range(1, device.inputs, (input) => make("button", { onclick: () => this.setInput(input) }, this.inputName(input)));
     this.do = range(1, device.outputs, (output) => lamp(this.outputName(output)));
     this.var = range(device.first_variable, device.variables, (variable) => lamp(String(variable)));
-    const rows = [["DI", this.di], ["DO", this.do], ["VAR", this.var]].filter(([, list]) => list.length > 0);
-    const front = make("div", { class: "front" }, group(word("power"), [this.power, this.reset]), group("LED", this.leds),
-      this.buildAddress(), ...rows.map(([name, list]) => group(name, list)));
+    const own = Boolean(this.panel); // it shows what LEDs and variables would by name
+    const bits = [["DI", this.di], ["DO", this.do], ["VAR", own ? [] : this.var]].filter(([, list]) => list.length > 0);
+    const front = make("div", { class: "front" }, group(word("power"), [this.power, this.reset]),
+      ...(own ? [] : [group("LED", this.leds)]), this.buildAddress(), ...bits.map(([name, list]) => group(name, list)));
     const canvas = make("canvas", { class: "graph", role: "img", "aria-label": word("speed-graph") });
     const old = this.graph;
     this.graph = new Graph(canvas, 2, device.axes);
@@ -58,10 +67,11 @@ export class UnitView {
     this.axes = [];
     this.more = make("dl", { class: "more" });
     this.listing?.showWords();
+    this.panel?.build(device.axes);
     const motors = make("div", { class: "motors", tabindex: "0", role: "group", "aria-label": title.textContent });
     motors.append(this.buildTable());
-    const parts = [title, front, motors, this.more, this.listing?.element, canvas, this.plant];
-    this.element.replaceChildren(...parts.filter(Boolean));
+    const inside = this.panel ? [this.panel.element] : [motors, this.more, this.listing?.element].filter(Boolean);
+    this.element.replaceChildren(title, front, ...inside, canvas, this.plant);
     if (this.state)
       this.show(this.state);
   }
@@ -72,10 +82,11 @@ export class UnitView {
   // The address switch: S1 with four levers, or a number.
   buildAddress() {
     const { addresses } = this.device;
-    this.s1 = addresses === 16 ? range(0, 4, (bit) => make("button", { onclick: () => this.flip(bit) }, String(bit + 1))) : [];
+    const lever = (bit) => make("button", { onclick: () => this.flip(bit) }, String(bit + 1));
+    this.s1 = addresses === 16 && !this.panel ? range(0, 4, lever) : [];
     this.address = make("input", { type: "number", min: 1, max: addresses, "aria-label": word("address") });
     this.address.onchange = () => this.act("switch", { node: Number(this.address.value) });
-    this.s1Group = group("", addresses === 16 ? this.s1 : [this.address]);
+    this.s1Group = group("", this.s1.length > 0 ? this.s1 : [this.address]);
     this.s1Group.hidden = addresses <= 1;
     return this.s1Group;
   }
@@ -112,7 +123,9 @@ export class UnitView {
     this.do.forEach((element, bit) => light(element, Boolean(state.do >>> bit & 1), `DO ${this.outputName(bit + 1)}`));
     this.var.forEach((element, bit) => light(element, Boolean(state.var >>> bit & 1), `VAR ${this.device.first_variable + bit}`));
     state.motors.forEach((motor, at) => this.showMotor(motor, at, state.t_us));
-    this.showMore(state);
+    this.panel?.show(state);
+    if (!this.panel)
+      this.showMore(state);
     this.listing?.show(state);
     if (state.motors.some((motor) => motor.true_position !== null))
       this.askPlant();

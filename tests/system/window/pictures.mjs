@@ -73,7 +73,11 @@ export const cases = {
       await page.setViewportSize({ width, height });
       for (const view of ["service", "panel"]) {
         await page.click("#tab-" + view);
-        await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+        await page.evaluate(() => new Promise((done) => {
+          window.scrollTo(0, 0);
+          document.activeElement.blur();
+          requestAnimationFrame(() => requestAnimationFrame(done));
+        }));
         await compare(context, `${view}-${size}`, await page.screenshot());
       }
     }

@@ -7,6 +7,10 @@ import { connect, folder, openPage, openPanel, port, says, send, shows, write } 
 export const cases = {
   // Each message of the service program, open and save, errors, format, search.
   async service(page) {
+    await page.press("body", "F8");
+    await says(page, "status", "Stop could not be sent");
+    await page.evaluate(async () => (await import("./link.js")).ask("hello")); // answered after all that the stop has led to
+    await says(page, "status", "Stop could not be sent");
     await connect(page);
     await send(page, "1", "01.02,06.03.2009");
     await write(page, "\\ C100 S100 V1000 A2000\nF60000 R");
