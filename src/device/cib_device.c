@@ -264,12 +264,9 @@ static unsigned node(const struct device_unit *unit)
     return cib_device_read(unit)->rtu.address;
 }
 
-enum state { IDLE, MOVING, STOPPING, TURNING };
-
 static const char *state_name(unsigned state)
 {
-    static const char *const names[] = {[IDLE] = "idle", [MOVING] = "moving", [STOPPING] = "stopping", [TURNING] = "turning"};
-    return state <= TURNING ? names[state] : NULL;
+    return cib_state_name(state);
 }
 
 static const char *fault_name(unsigned fault)
@@ -287,12 +284,12 @@ static void axis(const struct device_unit *unit, unsigned number, struct device_
 {
     struct cib_drive_state state;
     cib_drive_state(&cib_device_read(unit)->unit, number - 1u, &state);
-    bool runs = state.moving || state.waiting;
+    bool runs = (state.status & CIB_MOVE) != 0 || state.waiting;
     *axis = (struct device_axis){
         .position = state.position,
         .steps = state.moving ? state.steps : 0,
         .speed = (uint32_t)(state.speed < 0 ? -state.speed : state.speed),
-        .state = state.turning ? TURNING : state.stopping ? STOPPING : state.moving ? MOVING : IDLE,
+        .state = (uint8_t)cib_state_of(&state),
         .fault = (uint8_t)state.error,
         .idle = !runs,
         .running = runs,
@@ -375,6 +372,7 @@ const struct device_kind cib_device = {
     .describe = cib_json_describe,
     .options = cib_options,
     .methods = cib_methods,
+    .services = cib_services,
     .settings = cib_setting_names,
     .put_settings = cib_put_settings,
     .read_setting = cib_read_setting,

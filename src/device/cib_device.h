@@ -33,6 +33,16 @@ static inline const struct cib_device *cib_device_read(const struct device_unit 
     return (const struct cib_device *)unit;
 }
 
+/* ---- cib_json.c --------------------------------------------------------------------------------------------------------- */
+
+/* What a drive does, in a word. */
+enum cib_state { CIB_IDLE, CIB_MOVING, CIB_STOPPING, CIB_TURNING };
+enum cib_state cib_state_of(const struct cib_drive_state *state);
+const char *cib_state_name(unsigned state); /* NULL: no state */
+
+json_t *cib_json_state(const struct device_unit *unit, uint64_t t_us);
+json_t *cib_json_describe(const struct device_unit *unit, uint64_t t_us);
+
 /* ---- cib_settings.c ----------------------------------------------------------------------------------------------------- */
 
 /* What a config has of a module. */
@@ -73,11 +83,10 @@ struct cib_setup cib_setup_read(const struct cib_unit *unit, enum cib_zone zone)
 /* Write the proposal. */
 void cib_setup_write(struct cib_unit *unit, const struct cib_setup *setup);
 
-/* ---- cib_methods.c, cib_json.c, cib_words.c ------------------------------------------------------------------------------ */
+/* ---- cib_methods.c, cib_words.c, cib_framing.c ---------------------------------------------------------------------------- */
 
 extern const struct device_method cib_methods[];
-json_t *cib_json_state(const struct device_unit *unit, uint64_t t_us);
-json_t *cib_json_describe(const struct device_unit *unit, uint64_t t_us);
+extern const struct device_service cib_services[]; /* cib_services.c */
 extern const struct device_words cib_words;
 extern const struct device_framing cib_framing;
 

@@ -7,14 +7,28 @@ static const char *drive_name(unsigned drive)
     return drive == 0 ? "A" : "B";
 }
 
+/* MOVE is on from the tick in which a command is taken (BC5). */
+enum cib_state cib_state_of(const struct cib_drive_state *state)
+{
+    if ((state->status & CIB_MOVE) == 0)
+        return CIB_IDLE;
+    return state->turning ? CIB_TURNING : state->stopping ? CIB_STOPPING : CIB_MOVING;
+}
+
+const char *cib_state_name(unsigned state)
+{
+    static const char *const names[] = {
+        [CIB_IDLE] = "idle", [CIB_MOVING] = "moving", [CIB_STOPPING] = "stopping", [CIB_TURNING] = "turning"};
+    return state <= CIB_TURNING ? names[state] : NULL;
+}
+
 /* As docs/CONTROL.md has it for every kind, and what a drive has besides. */
 static json_t *motor_json(const struct cib_unit *unit, unsigned drive, bool whole)
 {
     struct cib_drive_state state;
     cib_drive_state(unit, drive, &state);
-    const char *name = state.turning ? "turning" : state.stopping ? "stopping" : state.moving ? "moving" : "idle";
     json_t *motor = json_pack("{s:i, s:i, s:s, s:i, s:s, s:s?}", "motor", (int)drive + 1, "position", (int)state.position,
-                              "state", name, "index", 0, "led", "off", "fault",
+                              "state", cib_state_name((unsigned)cib_state_of(&state)), "index", 0, "led", "off", "fault",
                               state.error != 0 ? cib_error_name(state.error) : NULL);
     json_t *more = NULL;
     if (whole)

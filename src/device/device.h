@@ -228,6 +228,7 @@ struct device_bus {
     uint64_t now;                               /* us of the bus: the present one */
     unsigned units;
     struct device_unit *unit[DEVICE_BUS_UNITS]; /* at the present us; NULL: it has no power */
+    uint8_t node[DEVICE_BUS_UNITS];             /* their addresses, without power the last ones */
     unsigned clients;                           /* of this server */
     const char *peer[DEVICE_CLIENTS_MAX];       /* their addresses, "127.0.0.1:4000", in the order in which they came */
 };

@@ -44,8 +44,10 @@ static void describe_bus(struct sim *sim, const struct device_service *service, 
     bus->now = sim_now(sim);
     bus->units = sim_units(sim);
     bus->clients = 0;
-    for (unsigned number = 1; number <= bus->units; number++)
+    for (unsigned number = 1; number <= bus->units; number++) {
         bus->unit[number - 1u] = sim_powered(sim, number) ? sim_core(sim, number) : NULL;
+        bus->node[number - 1u] = (uint8_t)sim_device(sim)->node(sim_core(sim, number));
+    }
     list_peers(sim->services, service, bus);
 }
 

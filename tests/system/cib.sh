@@ -130,6 +130,32 @@ test_bytes_are_gathered_and_dropped_by_silence() {
     exits 0 "$python" -W ignore "$here/cib_client.py" silence "$folder/bus"
 }
 
+# address NAME: where a server listens.
+address() {
+    sed -n "s/.*: $1 on //p" "$folder/bus.err"
+}
+
+test_pymodbus_over_tcp() {
+    needs_pymodbus
+    serve_cib --node 1,17 --service modbus-tcp=127.0.0.1:0
+    exits 0 "$python" -W ignore "$here/cib_client.py" tcp "$(address modbus-tcp)"
+}
+
+test_a_plccoms_client_at_a_stopped_clock() {
+    needs_pymodbus
+    serve_cib --clock stepped --service plccoms=127.0.0.1:0
+    exits 0 "$python" -W ignore "$here/cib_client.py" lines "$(address plccoms)" "$folder/bus.control"
+}
+
+test_mbpoll_over_tcp() {
+    local at
+    command -v mbpoll >/dev/null || skip_case "there is no mbpoll; apt-get install mbpoll"
+    serve_cib --service modbus-tcp=127.0.0.1:0
+    at=$(address modbus-tcp)
+    exits 0 mbpoll -m tcp -a 1 -p "${at##*:}" -0 -1 -q -t 3:hex -r 48 -c 1 "${at%:*}"
+    holds "$said" "0x0808" "the type"
+}
+
 test_mbpoll_reads_and_writes() {
     command -v mbpoll >/dev/null || skip_case "there is no mbpoll; apt-get install mbpoll"
     local poll=(mbpoll -m rtu -a 1 -b 19200 -P none -0 -1 -q)
@@ -154,6 +180,26 @@ test_a_program_with_libmodbus() {
     "${CC:-cc}" -o "$folder/client" "$here/cib_libmodbus.c" $(pkg-config --cflags --libs libmodbus) || fail "it cannot be built"
     serve_cib --baud 0
     exits 0 "$folder/client" "$folder/bus"
+}
+
+test_the_example_of_a_scenario_passes() {
+    exits 0 "$RKM04" test "$here/../../examples/cib-feeder.yaml"
+    holds "$said" "pass " "rkm04 test"
+}
+
+test_a_recording_has_bytes_and_methods_and_is_replayed() {
+    printf 'do5-8: {use: do}\n' >"$folder/setup.yaml"
+    serve_cib --clock stepped --record "$folder/run.record" --trace "$folder/run.vcd" --trace "$folder/run.csv" \
+        --device-option "setup=$folder/setup.yaml" --device-option comm-timeout=60000
+    exits 0 cib cib command A 102 30 100
+    exits 0 cib cib do 6=1
+    exits 0 cib advance 100ms
+    exits 0 cib shutdown
+    status_of "$started"
+    same 0 "$status" "the emulator"
+    exits 0 "$RKM04" replay "$folder/run.record" --trace "$folder/again.csv"
+    cmp -s "$folder/run.csv" "$folder/again.csv" || fail "another trace: $(diff "$folder/run.csv" "$folder/again.csv" | head)"
+    holds "$(<"$folder/run.vcd")" "do1" "names of outputs in the VCD file"
 }
 
 run_cases "$@"

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""A Modbus master with pymodbus for cib.sh: cib_client.py registers|motion|silence PORT."""
+"""Clients for cib.sh: cib_client.py registers|motion|silence PORT, Modbus masters with pymodbus; tcp HOST:PORT, the same over
+TCP; lines HOST:PORT CONTROL, a PLCComS client."""
+import json
+import socket
 import sys
 import time
 
 import serial
-from pymodbus.client import ModbusSerialClient
+from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 from pymodbus.pdu import ExceptionResponse
 
 ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE = 1, 2, 3
@@ -97,12 +100,92 @@ def silence(bus, port):
         assert wire.read(9)[:7] == answer
 
 
-def main():
-    what, port = sys.argv[1:]
+def tcp(address):
+    host, port = address.rsplit(":", 1)
+    bus = ModbusTcpClient(host, port=int(port), timeout=10, retries=0)
+    assert bus.connect()
+    check_tables(bus, 17)
+    check_writes(bus, 17)
+    check_bits(bus, 17)
+    refused(bus.read_input_registers(0x30, 1, 9), 0x0B)
+    bus.close()
+    with socket.create_connection((host, int(port)), timeout=10) as wrong:  # another protocol: the connection is closed
+        wrong.sendall(bytes.fromhex("000100010006010400300001"))
+        assert wrong.recv(100) == b""
+
+
+class Lines:
+    """A client of PLCComS: lines with an end of CR LF."""
+
+    def __init__(self, address):
+        host, port = address.rsplit(":", 1)
+        self.socket = socket.create_connection((host, int(port)), timeout=10)
+        self.file = self.socket.makefile("r", encoding="ascii", newline="\r\n")
+
+    def read(self):
+        line = self.file.readline()
+        assert line.endswith("\r\n"), line
+        return line[:-2]
+
+    def ask(self, line, *answers):
+        self.socket.sendall(line.encode() + b"\r\n")
+        for answer in answers:
+            got = self.read()
+            assert got == answer, f"{line}: expected {answer}, got {got}"
+
+
+def advance(control, time):
+    with socket.socket(socket.AF_UNIX) as connection:
+        connection.connect(control)
+        request = {"jsonrpc": "2.0", "id": 1, "method": "advance", "params": {"ticks": time}}
+        connection.sendall(json.dumps(request).encode() + b"\n")
+        answer = json.loads(connection.makefile().readline())
+        assert "result" in answer, answer
+
+
+def lines(address, control):
+    """Z1 to Z4 of the specification, with two clients at a stopped clock."""
+    client, other = Lines(address), Lines(address)
+    advance(control, 50000)
+    client.ask("GET:CIB1.MCA.MCSTAT", "GET:CIB1.MCA.MCSTAT,32")
+    client.ask("get:cib1.mca.p*", "GET:CIB1.MCA.P2,0", "GET:CIB1.MCA.P1,0", "GET:CIB1.MCA.POS,0", "GET:")
+    client.ask("EN:CIB1.MCA.TRG", "WARNING:252 Changed active variables in public file: '[2/58]'")
+    advance(control, 10000)
+    for line in ("P1,-3", "P2,100", "CMD,102", "SEQ,1"):
+        other.ask(f"SET:CIB1.MCA.{line}", f"DIFF:CIB1.MCA.{line}")
+    advance(control, 31000)
+    other.ask("GET:CIB1.MCA.POS", "GET:CIB1.MCA.POS,-3")
+    advance(control, 9001)
+    assert client.read() == "DIFF:CIB1.MCA.TRG,1"
+    advance(control, 94999)
+    other.ask("SET:CIB1.MCA.SEQ,2", "DIFF:CIB1.MCA.SEQ,2")
+    advance(control, 200000)
+    assert client.read() == "DIFF:CIB1.MCA.TRG,0"
+    assert client.read() == "DIFF:CIB1.MCA.TRG,1"
+    for line, answer in (("GET:test", "ERROR:33 Unknown variable name in request: 'GET:test'"),
+                         ("FOO:1", "ERROR:32 Unknown command name in request: 'FOO:1'"),
+                         ("SET:CIB1.DO,256", "ERROR:35 Wrong parameter value in request: 'SET:CIB1.DO,256'"),
+                         ("SET:CIB1.DI,1", "ERROR:21 Unable to send data to PLC.")):
+        client.ask(line, answer)
+    Lines(address).ask("hello", "ERROR:30 Bad client request: 'hello'")
+    client.ask("LIST:*RUN", "LIST:__PLC_RUN,BOOL", "LIST:")
+
+
+def serial_client(what, port):
     bus = ModbusSerialClient(port, baudrate=19200, parity="N", timeout=3 if what != "registers" else 1, retries=0)
     assert bus.connect()
     {"registers": registers, "motion": motion, "silence": silence}[what](bus, port)
     bus.close()
+
+
+def main():
+    what, *where = sys.argv[1:]
+    if what == "tcp":
+        tcp(*where)
+    elif what == "lines":
+        lines(*where)
+    else:
+        serial_client(what, *where)
 
 
 if __name__ == "__main__":
