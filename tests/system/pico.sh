@@ -1,22 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# The firmware for the Raspberry Pi Pico in rp2040js, in virtual time; npm installs it into the build folder, once
-# (tools/setup.sh). What the emulator is made to do on top of rp2040js: tests/system/pico/{board,parts}.mjs.
+# The firmware for the Raspberry Pi Pico in rp2040js, in virtual time. What the emulator is made to do on top of rp2040js:
+# tests/system/pico/{board,parts}.mjs.
 
 . "$(dirname "$0")/lib.sh"
-. "$(dirname "$0")/../../tools/setup.sh"
-
-tree=$(cd "$(dirname "$0")/../.." && pwd)
-build=${BUILD-${TMPDIR-/tmp}}
-for tool in arm-none-eabi-gcc node; do
-    command -v "$tool" >/dev/null ||
-        skip_all "$tool not found: apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi nodejs npm"
-done
-export NODE_PATH=$build/node-pico/node_modules
-setup_pico "$build/node-pico" ||
-    skip_all "there is no node with npm, or npm cannot install rp2040js (see $build/node-pico/npm.log)"
-firmware=$build/firmware_pico
-make -s -C "$tree/src/port/pico" OUT="$firmware" >/dev/null || exit 1
+. "$(dirname "$0")/pico/board.sh"
 
 # drive TASK ARGUMENTS...: what it reports is in $said.
 drive() {
