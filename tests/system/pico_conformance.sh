@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# The conformance kit against the firmware for the Raspberry Pi Pico in rp2040js, in real time: cases that soon end. docs/TESTING.md
-# has the command for all of them.
+# The conformance kit against the firmware for the Raspberry Pi Pico in rp2040js, in real time: cases that soon end.
+# docs/TESTING.md has the command for all of them.
 
 . "$(dirname "$0")/lib.sh"
 . "$(dirname "$0")/pico/board.sh"

@@ -60,7 +60,8 @@ export class Board {
     // Off and on again; the flash stays.
     power() {
         const chip = this.chip = new RP2040();
-        chip.logger = { debug() {}, info() {}, warn: (name, text) => this.complain(name, text), error: (name, text) => this.complain(name, text) };
+        const complain = (name, text) => { throw new Error(`${name}: ${text}`); };
+        chip.logger = { debug() {}, info() {}, warn: complain, error: complain };
         this.flash ??= (() => {
             const flash = new Uint8Array(16 << 20).fill(0xff);
             flash.set(this.elf.image);
@@ -78,10 +79,6 @@ export class Board {
         const node = (this.options.node ?? 1) - 1;
         PIN.switches.forEach((pin, bit) => chip.gpio[pin].setInputValue(!(node >> bit & 1)));
         this.startStage2();
-    }
-
-    complain(name, text) {
-        throw new Error(`${name}: ${text}`);
     }
 
     addParts() {
