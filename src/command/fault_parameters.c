@@ -31,7 +31,7 @@ static const struct fault_parameter parameters[FAULT_KINDS][PARAMETERS_MAX + 1u]
     [FAULT_BREAK] = {DURATION, EVERY},
     [FAULT_UNPLUGGED] = {DURATION, EVERY},
     [FAULT_CABLE] = {UNIT, DURATION, EVERY},
-    [FAULT_INPUT] = {{"input", "number", true, NULL}, FLAG("level", true), UNIT, DURATION, EVERY},
+    [FAULT_INPUT] = {{"input", "input", true, NULL}, FLAG("level", true), UNIT, DURATION, EVERY},
 };
 
 const struct fault_parameter fault_common_parameters[] = {

@@ -11,7 +11,7 @@
 
 struct fault_parameter {
     const char *name;           /* NULL: the end of the list */
-    const char *type;           /* "number", "time", "flag", "unit", "choice" */
+    const char *type;           /* "number", "time", "flag", "unit", "input", "choice" */
     bool required;
     const char *const *choices; /* of a choice; NULL after the last one */
 };

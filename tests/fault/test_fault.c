@@ -314,7 +314,7 @@ static json_t *sample(const json_t *parameter)
         return json_string(strcmp(json_string_value(json_object_get(parameter, "name")), "every") == 0 ? "2ms" : "1ms");
     if (strcmp(type, "flag") == 0)
         return json_true();
-    ck_assert(strcmp(type, "number") == 0 || strcmp(type, "unit") == 0);
+    ck_assert(strcmp(type, "number") == 0 || strcmp(type, "unit") == 0 || strcmp(type, "input") == 0);
     return json_integer(1);
 }
 

@@ -2,7 +2,7 @@
 // An axis of a plant, drawn as what it is: a slide with its end stops, or a turntable; with the ranges of its switches. The
 // carriage or the table is dragged with the mouse or by the slider below it.
 import { word } from "./words.js";
-import { make, makeSvg, lamp, light, two, write } from "./make.js";
+import { make, makeSvg, lamp, light, write } from "./make.js";
 
 const WIDTH = 640, EDGE = 20, TRACK = 34; // of a slide
 const SIZE = 170, CENTRE = 85, RADIUS = 58; // of a turntable
@@ -11,7 +11,9 @@ const SEND_MS = 50; // between two positions while it is dragged
 const whole = (value, turn) => ((value % turn) + turn) % turn;
 
 export class Axis {
-  constructor(motor, turn, act) {
+  // `nameOf` gives the name of an input.
+  constructor(motor, turn, act, nameOf) {
+    this.nameOf = nameOf;
     this.motor = motor;
     this.turn = turn;
     this.act = act;
@@ -87,8 +89,8 @@ export class Axis {
     while (this.lamps.children.length < switches.length)
       this.lamps.append(lamp(""));
     switches.forEach((one, at) => {
-      write(this.lamps.children[at], `DI ${two(one.input)}`);
-      light(this.lamps.children[at], one.actuated, `DI ${two(one.input)}`);
+      write(this.lamps.children[at], this.nameOf(one.input));
+      light(this.lamps.children[at], one.actuated, this.nameOf(one.input));
     });
     const parts = this.turn ? this.drawTurntable(motor, switches) : this.drawSlide(motor, switches);
     this.picture.replaceChildren(...parts);
@@ -114,7 +116,7 @@ export class Axis {
       const from = x(one.from ?? this.low), to = x(one.to ?? this.high), y = TRACK + 8 + (at % 3) * 4;
       parts.push(
         makeSvg("rect", { x: from, y, width: Math.max(2, to - from), height: 3, class: one.actuated ? "range lit" : "range" }),
-        makeSvg("text", { x: Math.min(from, WIDTH - 60), y: 66 }, `DI ${two(one.input)}`));
+        makeSvg("text", { x: Math.min(from, WIDTH - 60), y: 66 }, this.nameOf(one.input)));
     });
     for (const [stop, side] of [[motor.stops?.low, -1], [motor.stops?.high, 1]])
       if (stop !== null && stop !== undefined) {
@@ -139,7 +141,7 @@ export class Axis {
       const radius = RADIUS + 7 + (index % 3) * 5, [x1, y1] = at(from, radius), [x2, y2] = at(from + width, radius);
       const [x, y] = at(from + width / 2, RADIUS - 14);
       parts.push(makeSvg("path", { d: `M${x1} ${y1}A${radius} ${radius} 0 ${width > this.turn / 2 ? 1 : 0} 1 ${x2} ${y2}`,
-        class: one.actuated ? "arc lit" : "arc" }), makeSvg("text", { x, y, "text-anchor": "middle" }, two(one.input)));
+        class: one.actuated ? "arc lit" : "arc" }), makeSvg("text", { x, y, "text-anchor": "middle" }, this.nameOf(one.input)));
     });
     const held = motor.jammed || motor.hold ? " held" : "", [x, y] = at(motor.true_position, RADIUS);
     parts.push(makeSvg("line", { x1: CENTRE, y1: CENTRE, x2: x, y2: y, class: "needle" + held }),

@@ -7,8 +7,13 @@ import { make } from "./make.js";
 const $ = (id) => document.getElementById(id);
 let told = { kinds: [], common: [] };
 
-function makeField({ name, type, required, choices }, units) {
-  const list = choices ?? { unit: units, flag: ["1", "0"] }[type] ?? null;
+// What inputs there are: names, or numbers.
+function inputsOf({ input_names: names, inputs }) {
+  return names ?? Array.from({ length: inputs ?? 8 }, (_, at) => String(at + 1));
+}
+
+function makeField({ name, type, required, choices }, emulator) {
+  const list = choices ?? { unit: emulator.units, flag: ["1", "0"], input: inputsOf(emulator.device ?? {}) }[type] ?? null;
   const field = document.createElement(list ? "select" : "input");
   field.name = name;
   field.required = required;
@@ -28,7 +33,7 @@ function readFields(form) {
     const text = field.value.trim(), { type } = field.dataset;
     if (!field.name || text === "")
       continue;
-    params[field.name] = ["number", "time", "flag"].includes(type) && /^-?\d+(\.\d+)?$/.test(text) ? Number(text) : text;
+    params[field.name] = ["number", "time", "flag", "input"].includes(type) && /^-?\d+(\.\d+)?$/.test(text) ? Number(text) : text;
   }
   return params;
 }
@@ -40,16 +45,17 @@ export async function readKinds() {
     told = answer;
 }
 
-export function showFaultForm(act, units) {
+// `emulator` gives what is attached at the time.
+export function showFaultForm(act, emulator) {
   const form = $("fault"), names = told.kinds.map((one) => one.kind);
   const chosen = form.elements.kind?.value || names[0], kind = told.kinds.find((one) => one.kind === chosen);
   const choice = make("select", { name: "kind", "aria-label": word("faults") });
   choice.append(...names.map((one) => new Option(one, one, false, one === chosen)));
   choice.onchange = () => {
-    showFaultForm(act, units);
+    showFaultForm(act, emulator);
     form.elements.kind.focus();
   };
-  const fields = [...(kind?.parameters ?? []), ...told.common].map((one) => makeField(one, units()));
+  const fields = [...(kind?.parameters ?? []), ...told.common].map((one) => makeField(one, emulator()));
   form.replaceChildren(make("label", {}, choice), ...fields, make("button", {}, word("inject")));
   form.onsubmit = async (event) => {
     event.preventDefault();

@@ -53,7 +53,7 @@ function showEmulator(now) {
   }
   if (!now.connected)
     return;
-  readKinds().then(() => showFaultForm(act, () => emulator.units));
+  readKinds().then(() => showFaultForm(act, () => emulator));
   showFaults(act);
 }
 
@@ -194,7 +194,7 @@ export function showWords() {
   $("record").textContent = word(trace ? "record-stop" : "record");
   $("steps").replaceChildren(...STEPS.map((step) => stepButton("+" + step, { ticks: step })),
     stepButton(word("idle"), { until: { idle: true }, limit: "60s" }));
-  showFaultForm(act, () => emulator.units);
+  showFaultForm(act, () => emulator);
   for (const view of views.values())
     view.build();
   for (const { bus, element } of events)

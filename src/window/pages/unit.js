@@ -187,7 +187,8 @@ export class UnitView {
   showPlant(plant) {
     const motors = plant?.motors ?? [], key = (list) => list.map((one) => `${one.motor}/${one.turn ?? ""}`).join();
     if (key(motors) !== key(this.axes)) {
-      this.axes = motors.map(({ motor, turn }) => new Axis(motor, turn, this.act));
+      const nameOf = (input) => this.device.input_names?.[input - 1] ?? `DI ${two(input)}`;
+      this.axes = motors.map(({ motor, turn }) => new Axis(motor, turn, this.act, nameOf));
       this.plant.replaceChildren(...this.axes.map((axis) => axis.element));
     }
     this.axes.forEach((axis, at) => axis.show(motors[at], (plant.switches ?? []).filter((one) => one.motor === axis.motor)));

@@ -95,6 +95,15 @@ export const cases = {
     await reads(page, 2, 2, "search");
     await button(page, "Stop at once").click();
     await reads(page, 2, 2, "idle");
+    // A fault holds an input that has a name; a switch of a plant has it, too.
+    await page.selectOption("#fault select[name=kind]", "input");
+    await page.selectOption("#fault select[name=input]", "y.near");
+    await page.press("#fault input[name=count]", "Enter");
+    await shows(page, ".unit button[aria-pressed=true]", "element.textContent === 'y.near'");
+    writeFileSync(folder + "/near.yaml", "motors:\n  1: {stops: {low: -5000}}\nswitches:\n"
+      + "  - {input: x.near, motor: 1, at_most: -9}\n");
+    await page.setInputFiles("#plant-file", folder + "/near.yaml");
+    await shows(page, ".axis svg text", "element.textContent === 'x.near'");
     for (const language of ["cs", "en"]) {
       await page.selectOption("#language", language);
       await checkAccess(page, `panel of a PMC, ${language}`);

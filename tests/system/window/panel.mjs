@@ -44,9 +44,9 @@ export const cases = {
     await page.click("#recording");
     await shows(page, "#downloads a", "element.textContent.endsWith('.record')");
     await page.selectOption("#fault select[name=kind]", "input");
-    await page.fill("#fault input[name=input]", "5");
+    await page.selectOption("#fault select[name=input]", "5");
     await page.selectOption("#fault select[name=level]", "1");
-    await page.press("#fault input[name=input]", "Enter");
+    await page.press("#fault input[name=count]", "Enter");
     await shows(page, "#faults li", "element.textContent.includes('input=5')");
     await page.click("#clear-faults");
     await page.waitForFunction(() => document.querySelectorAll("#faults li").length === 0);
