@@ -11,6 +11,8 @@
 #define LONGEST_WAY (UINT32_MAX - (uint32_t)CIB_BRAKE_ERROR_MAX)
 #define LONG_WAY_LEFT (UINT64_C(1) << 31)
 
+_Static_assert(RKM04_SEGMENTS_MAX >= 2, "brake_error takes a second segment (profile.h)");
+
 /* What waits for its slot. */
 enum order { ORDER_NONE, ORDER_PLACE, ORDER_WAY, ORDER_SPEED, ORDER_STOP, ORDER_STOP_FAST };
 
@@ -219,6 +221,7 @@ static void count_pulses(const struct cib_unit *unit, struct cib_drive *drive, u
     drive->motion.done += count;
 }
 
+/* Pulses that come together: one, if the outputs are watched. */
 static void send_pulses(struct cib_unit *unit, struct cib_drive *drive, const uint64_t *tick, size_t count)
 {
     const bool forward = drive->motion.forward;
@@ -236,12 +239,11 @@ static uint32_t room_of(const struct cib_drive *drive)
     return drive->check != 0 ? drive->check - drive->motion.done : UINT32_MAX;
 }
 
-bool drive_run(struct cib_unit *unit, struct cib_drive *drive, uint64_t limit, uint32_t most)
+bool drive_run(struct cib_unit *unit, struct cib_drive *drive, uint64_t limit)
 {
     struct rkm04_motion *motion = &drive->motion;
     uint64_t tick[64];
-    const uint32_t block = sizeof tick / sizeof *tick;
-    most = most < block ? most : block;
+    const uint32_t most = sizeof tick / sizeof *tick;
     while (motion->ramp.next <= limit) {
         if (!pulses_are_seen(unit))
             count_pulses(unit, drive, ramp_skip(&motion->ramp, limit, room_of(drive) - 1));
@@ -249,8 +251,9 @@ bool drive_run(struct cib_unit *unit, struct cib_drive *drive, uint64_t limit, u
         tick[0] = motion->ramp.next;
         const size_t count = ramp_pulses(&motion->ramp, &motion->profile, limit, tick, room < most ? room : most);
         const uint64_t last = tick[count > 0 ? count - 1 : 0];
-        if (count > 0)
-            send_pulses(unit, drive, tick, count);
+        const size_t together = unit->port->outputs ? 1 : count;
+        for (size_t i = 0; i < count; i += together)
+            send_pulses(unit, drive, tick + i, together);
         if (motion->ramp.next == CIB_NEVER || room_of(drive) == 0) {
             update_motion(unit, drive, last);
             return false;

@@ -21,9 +21,9 @@ uint64_t drive_slot_from(uint64_t tick);
 bool drive_is_stopping(const struct cib_drive *drive);
 bool drive_is_turning(const struct cib_drive *drive);
 
-/* Send the pulses due up to and including `limit`, at most `most` at once. Returns false after one that led to something: then
+/* Send the pulses due up to and including `limit`. Returns false after one that led to something: then
  * what is due may have changed, and pulses are left. */
-bool drive_run(struct cib_unit *unit, struct cib_drive *drive, uint64_t limit, uint32_t most);
+bool drive_run(struct cib_unit *unit, struct cib_drive *drive, uint64_t limit);
 
 /* Tick of the next pulse, or of a change of slope; CIB_NEVER: none. */
 uint64_t drive_next_pulse(const struct cib_drive *drive);

@@ -138,20 +138,25 @@ static void do_due(struct cib_unit *unit, uint64_t tick)
         unit->stop_slot = CIB_NEVER;
 }
 
-/* The earliest pulse or edge up to `limit`, in the order of time. Returns false if that led to something that may be due. */
+/* Pulses and edges up to `limit` in the order of time; in one tick first those of drive A, then B. Returns false if one led to
+ * something that may be due. */
 static bool run_in_order(struct cib_unit *unit, uint64_t limit)
 {
+    struct cib_drive *const a = &unit->drive[0], *const b = &unit->drive[1];
     for (;;) {
-        struct cib_drive *first = &unit->drive[0], *second = &unit->drive[1];
-        if (drive_next_pulse(second) < drive_next_pulse(first))
-            first = second;
-        const uint64_t pulse = drive_next_pulse(first);
-        if (earlier(pulse, unit->edge) > limit)
+        const uint64_t of_a = drive_next_pulse(a), of_b = drive_next_pulse(b), edge = unit->edge;
+        if (earlier(earlier(of_a, of_b), edge) > limit)
             return true;
-        if (unit->edge < pulse)
-            outputs_pass_edge(unit, unit->edge);
-        else if (!drive_run(unit, first, pulse, 1))
-            return false;
+        const uint64_t until = earlier(limit, edge);
+        if (of_a <= earlier(of_b, until)) {
+            if (!drive_run(unit, a, earlier(of_b, until)))
+                return false;
+        } else if (of_b <= until) {
+            if (!drive_run(unit, b, earlier(of_a - 1, until)))
+                return false;
+        } else {
+            outputs_pass_edge(unit, edge);
+        }
     }
 }
 
@@ -162,7 +167,7 @@ static bool run_until(struct cib_unit *unit, uint64_t limit)
         return run_in_order(unit, limit);
     bool done = true;
     for (unsigned i = 0; i < CIB_DRIVES; i++)
-        done = drive_run(unit, &unit->drive[i], limit, UINT32_MAX) && done;
+        done = drive_run(unit, &unit->drive[i], limit) && done;
     return done;
 }
 

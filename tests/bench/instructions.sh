@@ -5,7 +5,8 @@
 # (cmake/Hardening.cmake).
 #
 # Counted is what is spent inside rkm04_advance, the sink included, which stores one time stamp a pulse: once with pulses in
-# blocks (port.steps), once one by one (port.step, "single").
+# blocks (port.steps), once one by one (port.step, "single"). Of the CIB module (work "cib…") the same inside cib_advance, slot by
+# slot; "single" is with the outputs.
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 command -v valgrind >/dev/null || { echo "valgrind not found: apt-get install valgrind" >&2; exit 1; }
@@ -16,19 +17,24 @@ release="-O3 -DNDEBUG -fPIE -fstack-protector-strong -fstack-clash-protection -U
 [[ $(uname -m) != x86_64 ]] || release+=" -fcf-protection=full"
 read -ra flags <<<"${CFLAGS:-$release}"
 "${CC:-gcc}" -std=c11 -D_GNU_SOURCE -g "${flags[@]}" -Iinclude src/*.c tests/bench/bench.c -o "$folder/bench" || exit 1
+"${CC:-gcc}" -std=c11 -D_GNU_SOURCE -g "${flags[@]}" -Iinclude -Isrc src/*.c src/cib/*.c tests/bench/cib_bench.c \
+    -o "$folder/cib_bench" || exit 1
 
-# count [OPTION] NAME: sets `instructions`, and `line`, what the benchmark printed.
+# count FUNCTION PROGRAM [OPTION]... NAME: sets `instructions`, and `line`, what the benchmark printed.
 count() {
-    line=$(valgrind --quiet --tool=callgrind --toggle-collect=rkm04_advance --callgrind-out-file="$folder/out" \
-        "$folder/bench" --repeat 1 "$@") || exit 1
+    line=$(valgrind --quiet --tool=callgrind "--toggle-collect=$1" --callgrind-out-file="$folder/out" \
+        "$folder/$2" "${@:3}") || exit 1
     instructions=$(sed -n 's/^totals: //p' "$folder/out")
 }
 
-for name in constant ramp mixed exec; do
+for name in constant ramp mixed exec cibconstant cibramp; do
     for sink in blocks single; do
-        option=--repeat=1
-        [[ $sink == single ]] && option=--single
-        count "$option" "$name"
+        options=(--repeat=1)
+        [[ $sink == single ]] && options+=(--single)
+        case $name in
+        cib*) count cib_advance cib_bench "${options[@]:1}" "${name#cib}" ;;
+        *) count rkm04_advance bench "${options[@]}" "$name" ;;
+        esac
         pulses=$(sed 's/.*"pulses":\([0-9]*\).*/\1/' <<<"$line")
         awk -v name="$name" -v sink="$sink" -v pulses="$pulses" -v instructions="$instructions" 'BEGIN {
             printf "{\"bench\":\"instructions\",\"work\":\"%s\",\"sink\":\"%s\",\"pulses\":%d,\"instructions_per_pulse\":%.2f}\n",
@@ -36,6 +42,6 @@ for name in constant ramp mixed exec; do
     done
 done
 for name in idle_hour wait_hour; do
-    count "$name"
+    count rkm04_advance bench --repeat=1 "$name"
     echo "{\"bench\":\"instructions\",\"work\":\"$name\",\"instructions\":$instructions}"
 done
