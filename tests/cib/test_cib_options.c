@@ -37,6 +37,16 @@ START_TEST(BC9_a_request_in_the_last_tick_comes_in_time)
 }
 END_TEST
 
+START_TEST(BC9_the_shortest_time)
+{
+    power_up_with_timeout(1);
+    cib_advance_to(1000);
+    ck_assert_uint_eq(events(CIB_EVENT_TIMEOUT), 0);
+    cib_advance_to(1001);
+    ck_assert_uint_eq(events(CIB_EVENT_TIMEOUT), 1);
+}
+END_TEST
+
 START_TEST(BC9_it_counts_from_power_up_once_until_the_next_request)
 {
     power_up_with_timeout(5);
@@ -394,6 +404,7 @@ static Suite *cib_options_suite(void)
     tcase_add_checked_fixture(tests, setup, NULL);
     tcase_set_timeout(tests, 60);
     tcase_add_test(tests, BC9_a_request_in_the_last_tick_comes_in_time);
+    tcase_add_test(tests, BC9_the_shortest_time);
     tcase_add_test(tests, BC9_it_counts_from_power_up_once_until_the_next_request);
     tcase_add_test(tests, BC9_what_is_cleared_and_what_stays);
     tcase_add_test(tests, BC9_the_stop_comes_in_the_slot);

@@ -166,6 +166,22 @@ START_TEST(edges_are_computed_only_for_who_watches)
 }
 END_TEST
 
+START_TEST(BK2_a_pulse_comes_in_front_of_an_edge_of_its_tick)
+{
+    config.setup.use[0] = config.setup.use[1] = CIB_USE_DRIVE;
+    cib_power_up(&config);
+    command(A, 102, 2, 100);
+    set(5, 5000);
+    at(20001);
+    expect_pulse(1, 10000, 0);
+    ck_assert_uint_eq(driven_at_pulse(1), 0x03); /* the edge of this tick follows */
+    ck_assert_uint_eq(driven_at_pulse(2), 0x06);
+    ck_assert_uint_eq(edges(), 43);
+    expect_edge(22, 11000, 0x13);
+    expect_edge(42, 21000, 0x16);
+}
+END_TEST
+
 /* ---- The closed form ---- */
 
 /* Edges of PWM5 in two periods: the pulse is period * duty / 10 000, ties up. */
@@ -238,6 +254,7 @@ static Suite *cib_pwm_suite(void)
     tcase_add_test(tests, BW2_periods_begin_at_apply);
     tcase_add_test(tests, BU3_duties_of_other_outputs_are_kept_without_effect);
     tcase_add_test(tests, edges_are_computed_only_for_who_watches);
+    tcase_add_test(tests, BK2_a_pulse_comes_in_front_of_an_edge_of_its_tick);
     tcase_add_test(tests, X34_rounding);
     tcase_add_loop_test(tests, BW2_all_duties, 0, sizeof some_periods / sizeof *some_periods);
     tcase_add_test(tests, BW2_all_periods);

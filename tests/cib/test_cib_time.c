@@ -65,6 +65,35 @@ START_TEST(BK1_nothing_happens_before_the_next_event)
 }
 END_TEST
 
+static uint64_t promised;
+static unsigned reported;
+
+static void on_event(void *context, uint64_t tick, unsigned axis, enum cib_event what, uint32_t value)
+{
+    (void)context, (void)axis, (void)what, (void)value;
+    ck_assert_uint_ge(tick, promised);
+    reported++;
+}
+
+START_TEST(nothing_is_reported_before_the_next_report)
+{
+    static const struct cib_port port = {.event = on_event};
+    struct cib_config config = cib_example;
+    config.brake_error = (int8_t)(_i < 2 ? 0 : -10);
+    promised = reported = 0;
+    cib_begin(&cib, &config, &port, NULL);
+    command(_i % 2 == 0 ? A : B, 102, 3000, 500);
+    const unsigned taken = reported;
+    unsigned turns = 0;
+    while ((promised = cib_next_report(&cib)) != CIB_NEVER) {
+        cib_advance(&cib, promised + 1 - cib_now(&cib));
+        turns++;
+    }
+    ck_assert_uint_eq(reported, taken + 3); /* begun, ended, MCSTAT */
+    ck_assert_uint_lt(turns, 200); /* not pulse by pulse */
+}
+END_TEST
+
 START_TEST(BK1_the_end_of_time)
 {
     cib_power_up(&cib_example);
@@ -84,6 +113,7 @@ static Suite *cib_time_suite(void)
     tcase_add_loop_test(tests, BK1_time_may_be_cut_in_any_way, 0, 6);
     tcase_add_test(tests, pulses_are_the_same_one_by_one_and_in_blocks);
     tcase_add_test(tests, BK1_nothing_happens_before_the_next_event);
+    tcase_add_loop_test(tests, nothing_is_reported_before_the_next_report, 0, 4);
     tcase_add_test(tests, BK1_the_end_of_time);
     suite_add_tcase(suite, tests);
     return suite;
