@@ -340,25 +340,29 @@ static uint64_t earlier(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-/* The slot in which an axis has its turn, if nothing comes in. */
+/* A tick in whose slot, or behind it, an axis has its turn, if nothing comes in: while it moves, one before its motion ends. */
 static uint64_t wake_of(const struct pmc_axis *axis)
 {
     const struct pmc_motion *motion = &axis->motion;
     uint64_t wake = earlier(axis->off[0], axis->off[1]);
-    if (motion->active)
-        wake = motion->moving ? wake : earlier(wake, motion->over);
+    if (motion->moving)
+        wake = earlier(wake, ramp_quiet_until(&motion->ramp));
+    else if (motion->active)
+        wake = earlier(wake, motion->over);
     else if (axis->running)
         wake = earlier(wake, axis->due);
     return wake;
 }
+
+#define LAST_SLOT (PMC_NEVER - PMC_SLOT_TICKS) /* what lies behind it never comes */
 
 static uint64_t next_slot(const struct pmc_unit *unit)
 {
     uint64_t wake = unit->touched ? unit->now : PMC_NEVER;
     for (unsigned i = 0; i < unit->config.axes; i++)
         wake = earlier(wake, wake_of(&unit->axis[i]));
-    if (wake == PMC_NEVER)
-        return wake;
+    if (wake > LAST_SLOT || unit->now > LAST_SLOT)
+        return PMC_NEVER;
     return pmc_slot_at(wake > unit->now ? wake : unit->now);
 }
 
@@ -419,6 +423,8 @@ static uint64_t next_of_all(const struct pmc_unit *unit, bool seen)
         if (motion->moving)
             next = earlier(next, seen ? motion->ramp.next : ramp_quiet_pulses(&motion->ramp, UINT32_MAX));
     }
+    if (next > LAST_SLOT)
+        return PMC_NEVER;
     return next < unit->now ? unit->now : next;
 }
 
