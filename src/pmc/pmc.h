@@ -247,8 +247,8 @@ struct pmc_face {
     size_t (*send)(struct pmc_unit *unit, uint8_t *bytes, size_t room);
     /* Is there an answer, now or later? */
     bool (*has_answer)(const struct pmc_unit *unit);
-    /* The tick at which act() is to be called, or PMC_NEVER; NULL: never. act() comes before the pulses and the slot of that
-     * tick, and leaves a later one. */
+    /* The tick, now or later, at which act() is to be called, or PMC_NEVER; NULL: never. act() comes before the pulses and the
+     * slot of that tick, and leaves a later one. */
     uint64_t (*due)(const struct pmc_unit *unit);
     void (*act)(struct pmc_unit *unit);
     /* RST takes effect, in a slot; NULL: nothing to do. */

@@ -149,6 +149,23 @@ static void reach_speed(struct plan *plan, uint64_t k)
     }
 }
 
+/* w of the speed whose square is square / (m * sum): w^2 = W_OF_K^2 * m * square / sum, below 2^107. */
+static struct rkm04_fixed peak_of(const struct plan *plan, uint64_t square, uint64_t sum)
+{
+    /* Three digits of 64 bits, the last one behind the point; so many of its places as there is room for. */
+    const struct wide product = wide_product((uint64_t)W_OF_K * W_OF_K * plan->m, square);
+    uint64_t left, unused, high = wide_divide(wide_of(product.high), sum, &left);
+    struct wide number = {high, wide_divide((struct wide){left, product.low}, sum, &left)};
+    const uint64_t places = wide_divide((struct wide){left, 0}, sum, &unused);
+    unsigned shift = 0;
+    for (; shift < 62 && !(number.high >> 60); shift += 2)
+        number = wide_shifted(number, 2);
+    number.low |= places >> (64 - shift);
+    bool inexact;
+    const struct wide root = wide_root(number, 64 - shift / 2, &inexact);
+    return (struct rkm04_fixed){(int64_t)root.high, root.low};
+}
+
 /* From the present speed up to a peak below the speed of the motion, and down to `k_end` at `total`; `rest` is the way there in
  * 1 / Q. With two accelerations the square of the peak is square / (m * (acceleration + deceleration)). */
 static void add_peak(const struct plan *plan, uint64_t rest, uint32_t total, uint64_t k_end)
@@ -156,27 +173,9 @@ static void add_peak(const struct plan *plan, uint64_t rest, uint32_t total, uin
     const uint64_t a = plan->acceleration, d = plan->deceleration, sum = a + d;
     const uint64_t square = rest + plan->m * (d * plan->k * plan->k + a * k_end * k_end);
     const uint64_t gain = square - plan->m * sum * plan->k * plan->k;
-    struct rkm04_place top = place_of(plan->z, plan->q, false);
-    struct rkm04_fixed w = w_of(plan, plan->k);
-    if (gain > 0) {
-        add_present(plan, slope_of(plan, a));
-        top = place_of(wide_sum(wide_product(plan->z.low, sum), wide_product(gain, d)), plan->q * sum, false);
-        /* w^2 = W_OF_K^2 * m * square / sum: three digits of 64 bits, the last one behind the point. */
-        const struct wide product = wide_product((uint64_t)W_OF_K * W_OF_K * plan->m, square);
-        uint64_t left, unused, high = wide_divide(wide_of(product.high), sum, &left);
-        struct wide number = {high, wide_divide((struct wide){left, product.low}, sum, &left)};
-        const uint64_t places = wide_divide((struct wide){left, 0}, sum, &unused);
-        unsigned shift = 0; /* so many of the places as there is room for */
-        struct wide more = number;
-        for (; shift < 62 && !(more.high >> 60); shift += 2)
-            more = wide_shifted(more, 2);
-        if (shift > 0)
-            more.low |= places >> (64 - shift);
-        bool inexact;
-        const struct wide root = wide_root(more, 64 - shift / 2, &inexact);
-        w = (struct rkm04_fixed){(int64_t)root.high, root.low};
-    }
-    add_point(plan, top, w, -slope_of(plan, d));
+    const struct wide way = wide_sum(wide_product(plan->z.low, sum), wide_product(gain, d));
+    add_present(plan, slope_of(plan, a));
+    add_point(plan, place_of(way, plan->q * sum, false), peak_of(plan, square, sum), -slope_of(plan, d));
     add_end(plan, total, k_end);
 }
 

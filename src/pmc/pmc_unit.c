@@ -325,7 +325,7 @@ static void turn(struct pmc_unit *unit, struct pmc_axis *axis)
     pmc_motion_finish(unit, axis);
     if (axis->phase != 0)
         pmc_home_turn(unit, axis);
-    if (axis->run_after && axis->phase == 0 && axis->homed) {
+    if (axis->run_after && axis->phase == 0) { /* it has ended well: what else ends a search ends this, too */
         axis->run_after = false;
         pmc_program_begin(unit, axis, 0);
     }
@@ -361,9 +361,8 @@ static uint64_t next_slot(const struct pmc_unit *unit)
     uint64_t wake = unit->touched ? unit->now : PMC_NEVER;
     for (unsigned i = 0; i < unit->config.axes; i++)
         wake = earlier(wake, wake_of(&unit->axis[i]));
-    if (wake > LAST_SLOT || unit->now > LAST_SLOT)
-        return PMC_NEVER;
-    return pmc_slot_at(wake > unit->now ? wake : unit->now);
+    wake = wake > unit->now ? wake : unit->now;
+    return wake > LAST_SLOT ? PMC_NEVER : pmc_slot_at(wake);
 }
 
 static uint64_t next_act(const struct pmc_unit *unit)
@@ -396,7 +395,7 @@ void pmc_advance(struct pmc_unit *unit, uint64_t ticks)
         if (act < end && act <= slot) {
             if (act > unit->now)
                 run_axes(unit, act - 1);
-            unit->now = act > unit->now ? act : unit->now;
+            unit->now = act;
             unit->config.face->act(unit);
             continue;
         }
@@ -575,6 +574,7 @@ uint8_t pmc_outputs(const struct pmc_unit *unit)
 unsigned pmc_pulse_ticks(const struct pmc_unit *unit, unsigned axis)
 {
     const uint32_t speed = (uint32_t)unit->axis[axis].parameters.value[PMC_MULTIPLIER] * unit->axis[axis].motion.top;
-    const uint32_t half = speed > 0 ? PMC_TICKS_PER_SECOND / 2 / speed : PMC_PULSE_TICKS;
-    return half < 1 ? 1 : half > PMC_PULSE_TICKS ? PMC_PULSE_TICKS : half;
+    if (speed <= PMC_TICKS_PER_SECOND / 2 / PMC_PULSE_TICKS) /* or none has come yet */
+        return PMC_PULSE_TICKS;
+    return PMC_TICKS_PER_SECOND / 2 / speed; /* at least 1: no speed is higher than half the ticks */
 }

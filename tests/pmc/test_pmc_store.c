@@ -99,6 +99,37 @@ START_TEST(AP6_without_flash_nothing_is_stored)
 }
 END_TEST
 
+static int do_nothing(void *context, unsigned block)
+{
+    (void)context, (void)block;
+    return 0;
+}
+
+static int program_nothing(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    (void)context, (void)block, (void)offset, (void)data, (void)length;
+    return 0;
+}
+
+START_TEST(AP6_a_flash_that_lies_or_has_no_such_function)
+{
+    static const struct pmc_port ports[] = {
+        {.flash_read = flash_fake_read, .flash_erase = do_nothing, .flash_program = program_nothing},
+        {.flash_read = flash_fake_read, .flash_erase = flash_fake_erase},
+        {.flash_read = flash_fake_read, .flash_program = flash_fake_program},
+    };
+    begin();
+    for (unsigned i = 1; i <= 2; i++) {
+        fill(0, i);
+        ck_assert_int_eq(pmc_store(&unit, 0), PMC_OK);
+    }
+    fill(0, 3);
+    unit.port = &ports[_i];
+    ck_assert_int_eq(pmc_store(&unit, 0), PMC_STORE_FAILED);
+    ck_assert_uint_eq(state_after_restart(0), 2);
+}
+END_TEST
+
 /* Bring the flash to where state 1, or with `times` 2 state 2 behind it, is stored, and state 3 is about to be. */
 static void prepare(unsigned times)
 {
@@ -215,7 +246,7 @@ START_TEST(AP6_what_is_not_legal_is_no_state)
         unsigned state;
     } rows[] = {
         {0, 'X', 1}, {4, 2, 1}, {5, 1, 1}, {6, 0, 1}, /* not of this format, or of another axis */
-        {16, 0, 2},   {19, 255, 1}, /* multiplier */
+        {16, 0, 2},   {19, 255, 1}, {17, 2, 1}, /* multiplier */
         {104 + 6, 99, 1}, {104 + 7, 9, 1}, {104 + 11 * 63 + 6, PMC_OPS, 1}, /* commands */
     };
     prepare(2);
@@ -251,10 +282,11 @@ static Suite *store_suite(void)
     tcase_set_timeout(all, 60);
     tcase_add_test(all, AP6_what_is_stored_is_there_after_power_up_and_reset);
     tcase_add_test(all, AP6_without_flash_nothing_is_stored);
+    tcase_add_loop_test(all, AP6_a_flash_that_lies_or_has_no_such_function, 0, 3);
     tcase_add_loop_test(all, AP6_a_power_cut_leaves_the_old_state_or_the_new_one, 0, 3 * FAULTS);
     tcase_add_test(all, AP6_a_read_that_fails_once_or_with_the_power);
     tcase_add_test(all, AP6_reads_that_fail_at_power_up);
-    tcase_add_loop_test(all, AP6_what_is_not_legal_is_no_state, 0, 9);
+    tcase_add_loop_test(all, AP6_what_is_not_legal_is_no_state, 0, 10);
     tcase_add_test(all, AP6_generations_count_through_0);
     suite_add_tcase(suite, all);
     return suite;

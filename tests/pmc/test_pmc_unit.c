@@ -347,6 +347,12 @@ START_TEST(AX58_without_software_limits)
     must(PMC_RUN, 1, 0, 0);
     run_until_idle(0);
     ck_assert_int_eq(axis_state(0).errors, PMC_ERROR_PGM);
+    unit.axis[0].commanded = -8388600;
+    reg(0, 0, inc(-1000, 3, 0));
+    must(PMC_RUN, 1, 0, 0);
+    run_until_idle(0);
+    ck_assert_int_eq(axis_state(0).errors, PMC_ERROR_PGM);
+    unit.axis[0].commanded = 8388600;
     ck_assert_uint_eq(pulses[0], 7);
     must(PMC_JOG, 1, 1, 0);
     run_to(pmc_now(&unit) + 20 * 80000);
