@@ -122,9 +122,8 @@ void pmc_motion_change_speed(struct pmc_unit *unit, struct pmc_axis *axis)
     struct pmc_motion *motion = &axis->motion;
     if (!motion->moving || !motion->manual || motion->stopping)
         return;
-    if (motion->top < axis->speed)
+    if (pmc_plan_speed(motion, &axis->parameters, unit->now, axis->speed) && motion->top < axis->speed)
         motion->top = axis->speed;
-    pmc_plan_speed(motion, &axis->parameters, unit->now, axis->speed);
 }
 
 void pmc_motion_watch(struct pmc_unit *unit, struct pmc_axis *axis)

@@ -259,12 +259,13 @@ static struct plan present_plan(struct pmc_motion *motion, const struct pmc_para
     return plan;
 }
 
-void pmc_plan_speed(struct pmc_motion *motion, const struct pmc_parameters *parameters, uint64_t tick, uint16_t speed)
+bool pmc_plan_speed(struct pmc_motion *motion, const struct pmc_parameters *parameters, uint64_t tick, uint16_t speed)
 {
     if (on_final_ramp(motion))
-        return;
+        return false;
     struct plan plan = present_plan(motion, parameters, tick);
     plan_on(&plan, tick, (uint64_t)K_OF_SPEED * speed);
+    return true;
 }
 
 bool pmc_plan_stop(struct pmc_motion *motion, const struct pmc_parameters *parameters, uint64_t tick)

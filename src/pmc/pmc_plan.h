@@ -10,8 +10,8 @@
 void pmc_plan_begin(struct pmc_motion *motion, const struct pmc_parameters *parameters, uint64_t tick, uint16_t speed,
                     uint16_t start_speed);
 
-/* The speed becomes another one, in a slot. No effect on the final ramp. */
-void pmc_plan_speed(struct pmc_motion *motion, const struct pmc_parameters *parameters, uint64_t tick, uint16_t speed);
+/* The speed becomes another one, in a slot. Returns false on the final ramp, where nothing changes. */
+bool pmc_plan_speed(struct pmc_motion *motion, const struct pmc_parameters *parameters, uint64_t tick, uint16_t speed);
 
 /* Stop with a ramp, in a slot (AM8); on the final ramp it ends as it would. Returns false if no pulse is to come. */
 bool pmc_plan_stop(struct pmc_motion *motion, const struct pmc_parameters *parameters, uint64_t tick);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "pmc_store.h"
 
-#include <string.h>
-
 #include "crc32.h"
 #include "pmc_report.h"
 
@@ -112,10 +110,9 @@ static bool get_chunk(const uint8_t bytes[CHUNK_SIZE], struct pmc_axis *axis, un
 
 static void put_header(uint8_t bytes[HEADER_SIZE], const struct pmc_unit *unit, const struct pmc_axis *axis, uint32_t generation)
 {
-    static const uint8_t magic[] = {'P', 'M', 'C', 'S', VERSION};
-    memset(bytes, 0xFF, HEADER_SIZE);
-    memcpy(bytes, magic, sizeof magic);
-    bytes[5] = (uint8_t)pmc_index(unit, axis);
+    const uint8_t begin[] = {'P', 'M', 'C', 'S', VERSION, (uint8_t)pmc_index(unit, axis)};
+    for (unsigned i = 0; i < HEADER_SIZE; i++)
+        bytes[i] = i < sizeof begin ? begin[i] : 0xFF;
     put32(bytes + 8, generation);
 }
 
@@ -137,10 +134,12 @@ static bool read_record(const struct pmc_unit *unit, const struct pmc_axis *axis
         return false;
     *generation = get32(header + 8);
     put_header(expected, unit, axis, *generation);
-    if (memcmp(header, expected, CHECKED_SIZE) != 0)
+    bool legal = true;
+    for (unsigned i = 0; i < CHECKED_SIZE; i++)
+        legal = legal && header[i] == expected[i];
+    if (!legal)
         return false;
     uint32_t check = crc32_update(0, header, CHECKED_SIZE);
-    bool legal = true;
     for (unsigned chunk = 0; chunk < CHUNKS; chunk++) {
         if (!read_block(unit, block, HEADER_SIZE + CHUNK_SIZE * chunk, bytes, CHUNK_SIZE))
             return false;
@@ -206,7 +205,8 @@ bool pmc_store_save(const struct pmc_unit *unit, const struct pmc_axis *axis)
 static void clear(struct pmc_axis *axis)
 {
     pmc_parameters_clear(&axis->parameters);
-    memset(axis->program, 0, sizeof axis->program);
+    for (unsigned i = 0; i < PMC_REGISTERS; i++)
+        axis->program[i] = (struct pmc_command){.op = PMC_NOP};
 }
 
 void pmc_store_load(const struct pmc_unit *unit, struct pmc_axis *axis)

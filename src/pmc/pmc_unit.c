@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Power-up, time, requests, and what can be seen. */
-#include <string.h>
-
 #include "pmc_home.h"
 #include "pmc_motion.h"
 #include "pmc_program.h"
@@ -12,6 +10,12 @@
 _Static_assert(sizeof(struct pmc_unit) <= 6144, "two axes take 6 KiB of memory at most");
 
 /* ---- Power-up and RST (AU5) ---------------------------------------------------------------------------------------- */
+
+static void clear_bytes(void *at, size_t size)
+{
+    for (uint8_t *byte = at; size > 0; size--)
+        *byte++ = 0;
+}
 
 static void push(struct pmc_axis *axis, unsigned kind, int32_t value)
 {
@@ -26,7 +30,7 @@ static void clear_axis(struct pmc_unit *unit, struct pmc_axis *axis)
 {
     const bool forward = axis->forward;
     const uint8_t inputs = axis->inputs;
-    memset(axis, 0, sizeof *axis);
+    clear_bytes(axis, sizeof *axis);
     axis->forward = forward;
     axis->inputs = inputs;
     axis->motion.ramp.next = PMC_NEVER;
@@ -50,7 +54,7 @@ static void reset_axis(struct pmc_unit *unit, struct pmc_axis *axis)
 
 void pmc_init(struct pmc_unit *unit, const struct pmc_config *config, const struct pmc_port *port, void *context)
 {
-    memset(unit, 0, sizeof *unit);
+    clear_bytes(unit, sizeof *unit);
     unit->config = *config;
     unit->port = port;
     unit->context = context;
@@ -305,7 +309,8 @@ static void handle_all(struct pmc_unit *unit, struct pmc_axis *axis)
 {
     struct pmc_pending pending[PMC_PENDING_MAX];
     const unsigned pendings = axis->pendings;
-    memcpy(pending, axis->pending, sizeof pending);
+    for (unsigned i = 0; i < pendings; i++)
+        pending[i] = axis->pending[i];
     axis->pendings = 0;
     for (unsigned i = 0; i < pendings; i++)
         handle_request(unit, axis, &pending[i]);
@@ -371,14 +376,23 @@ static uint64_t next_act(const struct pmc_unit *unit)
     return face && face->due ? face->due(unit) : PMC_NEVER;
 }
 
+/* Must the next slot look at the axis though nothing changes? What emg or a limit switch has to do there is not done in this one
+ * where its error has been cleared, or the axis is free of a search, or in the ramp of its step 1, since. */
+static bool has_more_to_see(const struct pmc_axis *axis)
+{
+    const bool forward = axis->motion.forward, limited = axis->motion.moving && pmc_at_limit(axis, forward);
+    const unsigned error = forward ? PMC_ERROR_HL_PLUS : PMC_ERROR_HL_MINUS;
+    return ((axis->inputs & PMC_EMG) && !(axis->errors & PMC_ERROR_EMG)) ||
+           (limited && (axis->phase != 0 || !(axis->errors & error)));
+}
+
 static void do_slot(struct pmc_unit *unit)
 {
     unit->touched = false;
-    for (unsigned i = 0; i < unit->config.axes; i++)
+    for (unsigned i = 0; i < unit->config.axes; i++) {
         turn(unit, &unit->axis[i]);
-    for (unsigned i = 0; i < unit->config.axes; i++) /* cleared while emg is active: it comes again */
-        if ((unit->axis[i].inputs & PMC_EMG) && !(unit->axis[i].errors & PMC_ERROR_EMG))
-            unit->touched = true;
+        unit->touched = unit->touched || has_more_to_see(&unit->axis[i]);
+    }
 }
 
 static void run_axes(struct pmc_unit *unit, uint64_t limit)
@@ -484,8 +498,8 @@ enum pmc_answer pmc_set_command(struct pmc_unit *unit, unsigned axis, unsigned r
 enum pmc_answer pmc_set_program(struct pmc_unit *unit, unsigned axis, const struct pmc_command program[PMC_REGISTERS])
 {
     const enum pmc_answer answer = check_rest(unit, axis);
-    if (answer == PMC_OK)
-        memcpy(unit->axis[axis].program, program, sizeof unit->axis[axis].program);
+    for (unsigned i = 0; i < PMC_REGISTERS && answer == PMC_OK; i++)
+        unit->axis[axis].program[i] = program[i];
     return answer;
 }
 

@@ -164,6 +164,16 @@ START_TEST(AT5_the_highest_speed_there_was_counts)
     must(PMC_JOG, 1, 1, 0);
     run_through_slot(13);
     ck_assert_uint_eq(pmc_pulse_ticks(&unit, 0), 80);
+    must(PMC_STOP_NOW, 1, 0, 0);
+    run_until_idle(0);
+    must(PMC_SET_SPEED, 1, 1000, 0);
+    must(PMC_MOVE_BY, 1, 150, 0);
+    while (axis_state(0).made < 140)
+        run_to(pmc_now(&unit) + 80);
+    must(PMC_SET_SPEED, 1, 8000, 0); /* on the final ramp it changes nothing */
+    run_to(pmc_now(&unit) + SLOT);
+    ck_assert(axis_state(0).moving);
+    ck_assert_uint_eq(pmc_pulse_ticks(&unit, 0), 80);
 }
 END_TEST
 
@@ -272,6 +282,60 @@ START_TEST(AL3_limit_switches_and_ramps)
 }
 END_TEST
 
+START_TEST(AL3_an_error_that_is_cleared_on_the_ramp_comes_again)
+{
+    begin(NULL);
+    must(PMC_SET_SPEED, 1, 1000, 0);
+    must(PMC_JOG, 1, 1, 0);
+    run_through_slot(50);
+    rig_inputs(PMC_LIMIT_PLUS);
+    run_through_slot(51);
+    must(PMC_CLEAR_ERRORS, 1, 0, 0);
+    run_through_slot(52);
+    ck_assert_int_eq(axis_state(0).errors, 0);
+    ck_assert(axis_state(0).moving);
+    run_through_slot(53);
+    ck_assert_int_eq(axis_state(0).errors, PMC_ERROR_HL_PLUS);
+    run_until_idle(0);
+    must(PMC_CLEAR_ERRORS, 1, 0, 0);
+    run_to(pmc_now(&unit) + 3 * SLOT);
+    ck_assert_int_eq(axis_state(0).errors, 0); /* at rest it is none */
+}
+END_TEST
+
+START_TEST(AL3_a_search_that_is_ended_meets_the_limit_in_the_next_slot)
+{
+    begin(NULL);
+    set(0, PMC_STEPS, 0x1F01);
+    must(PMC_SEARCH, 1, 0, 0);
+    run_through_slot(50);
+    must(PMC_STOP, 1, 0, 0);
+    rig_inputs(PMC_LIMIT_MINUS);
+    run_through_slot(51);
+    ck_assert_int_eq(axis_state(0).errors, 0); /* in the slot of STO the search looks at it itself */
+    run_through_slot(52);
+    ck_assert_int_eq(axis_state(0).errors, PMC_ERROR_HL_MINUS);
+    run_until_idle(0);
+}
+END_TEST
+
+START_TEST(AH3_near_and_a_limit_that_stops_at_once_in_one_slot)
+{
+    begin(NULL);
+    set(0, PMC_FLAGS, 0x0122);
+    set(0, PMC_STEPS, 0x1F01);
+    must(PMC_SEARCH, 1, 0, 0);
+    run_through_slot(50);
+    rig_inputs(PMC_NEAR | PMC_LIMIT_MINUS);
+    run_through_slot(51);
+    ck_assert(axis_state(0).stopping); /* the sensor counts */
+    run_through_slot(52);
+    ck_assert(!axis_state(0).moving); /* and the limit in the ramp */
+    run_until_idle(0);
+    ck_assert(axis_state(0).homed);
+}
+END_TEST
+
 START_TEST(AL3_each_axis_decides_for_itself)
 {
     begin(NULL);
@@ -334,6 +398,9 @@ static Suite *face_suite(void)
     tcase_add_test(limits, AL1_a_move_to_the_very_limit);
     tcase_add_test(limits, AL1_limits_stay_within_the_counter);
     tcase_add_loop_test(limits, AL3_limit_switches_and_ramps, 0, 2);
+    tcase_add_test(limits, AL3_an_error_that_is_cleared_on_the_ramp_comes_again);
+    tcase_add_test(limits, AL3_a_search_that_is_ended_meets_the_limit_in_the_next_slot);
+    tcase_add_test(limits, AH3_near_and_a_limit_that_stops_at_once_in_one_slot);
     tcase_add_test(limits, AL3_each_axis_decides_for_itself);
     tcase_add_test(limits, AH4_the_limit_a_second_time);
     tcase_add_test(limits, AU5_only_a_search_at_power_on);

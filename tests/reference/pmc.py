@@ -194,7 +194,7 @@ def make_program(rng, number):
     story.ask(0, RUN, 0)
     if failed is None:  # without end: stopped before its next command
         story.ask(change_at(rng, slot), STOP)
-    ends = sorted(off.items(), key=lambda item: item[1])
+    ends = sorted(off.items(), key=lambda item: item[::-1])
     story.lines.append(f"run {(max([slot] + [end for _, end in ends]) + 1) * SLOT}")
 
     def check(rest):

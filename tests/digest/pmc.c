@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/* pmc.c: the digest of the PMC's core, a program of its own with the main_*.c of the RKM04's. */
+#include "digest.h"
+#include "pmc_story.h"
+
+#define LINE_MAX 100
+
+static void mix(uint64_t *digest, uint64_t word)
+{
+    *digest = (*digest ^ word) * UINT64_C(0x9E3779B97F4A7C15);
+    *digest ^= *digest >> 32;
+}
+
+static void say_line(void (*say)(const char *line), const char *name, uint64_t digest, uint64_t pulses)
+{
+    char line[LINE_MAX] = "";
+    append(line, sizeof line, name);
+    append(line, sizeof line, " ");
+    append_hex(line, sizeof line, digest);
+    append(line, sizeof line, " ");
+    append_number(line, sizeof line, pulses);
+    say(line);
+}
+
+void digest_run(void (*say)(const char *line))
+{
+    static struct pmc_digest story;
+    uint64_t all = 0, pulses = 0;
+    for (unsigned number = 1; number <= PMC_STORIES; number++) {
+        uint64_t digest = 0;
+        char name[LINE_MAX] = "pmc-";
+        pmc_story(number, (enum pmc_way)(number % PMC_WAYS), &story);
+        const uint64_t lanes[] = {story.axis[0], story.axis[1], story.outputs, story.flash, story.end};
+        for (unsigned i = 0; i < sizeof lanes / sizeof *lanes; i++)
+            mix(&digest, lanes[i]);
+        mix(&all, digest);
+        pulses += story.pulses;
+        append_number(name, sizeof name, number);
+        say_line(say, name, digest, story.pulses);
+    }
+    say_line(say, "all", all, pulses);
+}
