@@ -227,8 +227,7 @@ void pmc_plan_begin(struct pmc_motion *motion, const struct pmc_parameters *para
                     uint16_t start_speed)
 {
     struct plan plan = plan_of(motion, parameters);
-    plan.start = (uint64_t)K_OF_SPEED * start_speed;
-    plan.k = lower(plan.start, (uint64_t)K_OF_SPEED * speed);
+    plan.start = (uint64_t)K_OF_SPEED * start_speed; /* which it has at once, or its speed where that is lower */
     plan_on(&plan, tick, (uint64_t)K_OF_SPEED * speed);
 }
 

@@ -127,6 +127,10 @@ START_TEST(AU4_levels_of_inputs)
     run_through_slot(10);
     ck_assert_uint_eq(axis_state(0).inputs, PMC_EMG);
     ck_assert_uint_eq(axis_state(1).inputs, PMC_EMG | PMC_LIMIT_PLUS | PMC_LIMIT_MINUS);
+    set(1, PMC_STEPS, 0);
+    rig_inputs(0);
+    run_through_slot(11);
+    ck_assert_uint_eq(axis_state(1).inputs, 0x7F);
 }
 END_TEST
 
@@ -174,6 +178,60 @@ START_TEST(AT5_the_highest_speed_there_was_counts)
     run_to(pmc_now(&unit) + SLOT);
     ck_assert(axis_state(0).moving);
     ck_assert_uint_eq(pmc_pulse_ticks(&unit, 0), 80);
+}
+END_TEST
+
+/* ---- Reports ---- */
+
+/* What was reported of X, and of outputs, from the first report on. */
+static void check_reports(const struct happening *expected, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const struct happening *got = &happening[i];
+        ck_assert_msg(i < happenings && got->tick == expected[i].tick && got->kind == expected[i].kind &&
+                          got->what == expected[i].what && got->value == expected[i].value,
+                      "report %u", (unsigned)i);
+    }
+    ck_assert_uint_eq(happenings, count);
+}
+
+START_TEST(AT1_every_change_is_reported_once_with_its_tick)
+{
+    static const struct happening expected[] = {
+        {1 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_COMMAND, 1}, /* INC -1 */
+        {1 * SLOT, HAPPENED_DIRECTION, 0, 0, false},
+        {1 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_MOTION, 1},
+        {1 * SLOT + 80000, HAPPENED_EVENT, 0, PMC_EVENT_MOTION, 0}, /* at its pulse */
+        {12 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_COMMAND, 2}, /* OUT OUT0 ON */
+        {12 * SLOT, HAPPENED_OUTPUTS, 0, 0, 1},
+        {13 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_COMMAND, 3}, /* RPE */
+        {13 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_ERRORS, PMC_ERROR_PGM},
+        {13 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_COMMAND, 0},
+        {20 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_ERRORS, 0}, /* a clear, CLL */
+        {20 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_POSITION, 0},
+        {30 * SLOT, HAPPENED_DIRECTION, 0, 0, true}, /* JOG */
+        {30 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_MOTION, 1},
+        {40 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_MOTION, 0}, /* RST */
+        {40 * SLOT, HAPPENED_EVENT, 0, PMC_EVENT_POSITION, 0},
+        {40 * SLOT, HAPPENED_OUTPUTS, 0, 0, 0},
+    };
+    begin(NULL);
+    reg(0, 0, (struct pmc_command){.op = PMC_INC, .value = -10, .speed = 1});
+    reg(0, 1, (struct pmc_command){.op = PMC_OUT, .argument = 1});
+    reg(0, 2, (struct pmc_command){.op = PMC_RPE});
+    must(PMC_RUN, 1, 0, 0);
+    run_through_slot(19);
+    must(PMC_CLEAR_ERRORS, 1, 0, 0);
+    must(PMC_CLEAR_COMMANDED, 1, 0, 0);
+    run_through_slot(20);
+    must(PMC_CLEAR_ERRORS, 1, 0, 0); /* nothing changes */
+    must(PMC_CLEAR_COMMANDED, 1, 0, 0);
+    run_through_slot(29);
+    must(PMC_JOG, 1, 1, 0);
+    run_through_slot(39);
+    must(PMC_RESET, 0, 0, 0);
+    run_through_slot(45);
+    check_reports(expected, sizeof expected / sizeof *expected);
 }
 END_TEST
 
@@ -393,6 +451,7 @@ static Suite *face_suite(void)
     tcase_add_test(all, AU5_reset_reaches_the_face_in_the_slot);
     tcase_add_test(all, AU4_levels_of_inputs);
     tcase_add_loop_test(all, AT5_width_of_a_pulse, 0, 7);
+    tcase_add_test(all, AT1_every_change_is_reported_once_with_its_tick);
     tcase_add_test(all, AT5_the_highest_speed_there_was_counts);
     tcase_add_test(limits, AL1_the_limit_in_the_other_direction);
     tcase_add_test(limits, AL1_a_move_to_the_very_limit);

@@ -188,6 +188,8 @@ START_TEST(AX54_search_and_program_at_power_on)
     ck_assert_uint_eq(pulse[0][before], 31073889);
     ck_assert_int_eq(axis_state(0).commanded, 100);
     ck_assert(!axis_state(0).not_homed);
+    ck_assert_uint_ne(slot_of_reg(0, 1, 0), 0);
+    ck_assert_uint_eq(slot_of_reg(0, 0, 1), 0); /* once */
     must(PMC_RESET, 0, 0, 0);
     const size_t after = pulses[0];
     run_to_slot(5000);

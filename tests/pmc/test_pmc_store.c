@@ -24,7 +24,8 @@ static void fill(unsigned axis, unsigned variant)
             command = (struct pmc_command){
                 .op = PMC_INC, .value = (int32_t)(variant * 1000 + i) - 40000, .speed = 2, .ms = 65535};
         if (i % 3 == 1)
-            command = (struct pmc_command){.op = PMC_OTP, .ms = (uint16_t)(variant + 1), .number = 1, .wait = true};
+            command = (struct pmc_command){
+                .op = PMC_OTP, .ms = (uint16_t)(variant + 1), .number = i / 3 % 2, .wait = i / 6 % 2 != 0};
         reg(axis, i, command);
     }
 }

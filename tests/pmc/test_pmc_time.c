@@ -68,6 +68,24 @@ START_TEST(AT2_nothing_is_due_in_a_unit_at_rest)
 }
 END_TEST
 
+START_TEST(AT2_a_day_of_unseen_pulses_costs_little)
+{
+    const struct pmc_config config = {.axes = 1};
+    const struct pmc_request speed = {.kind = PMC_SET_SPEED, .axes = 1, .value = {8000}};
+    const struct pmc_request jog = {.kind = PMC_JOG, .axes = 1, .value = {1}};
+    pmc_init(&unit, &config, &quiet, NULL);
+    ck_assert_int_eq(pmc_set_parameter(&unit, 0, PMC_FLAGS, 0x0103), PMC_OK);
+    ck_assert_int_eq(pmc_set_parameter(&unit, 0, PMC_MULTIPLIER, 500), PMC_OK);
+    ck_assert_int_eq(pmc_set_parameter(&unit, 0, PMC_START_SPEED, 8000), PMC_OK);
+    ck_assert_int_eq(pmc_request(&unit, &speed), PMC_OK);
+    ck_assert_int_eq(pmc_request(&unit, &jog), PMC_OK);
+    pmc_advance(&unit, SLOT + UINT64_C(86400) * PMC_TICKS_PER_SECOND + 1); /* 345 600 000 000 pulses */
+    const uint32_t made = (uint32_t)UINT64_C(345600000000);
+    ck_assert_uint_eq(unit.axis[0].motion.made, made);
+    ck_assert_int_eq(unit.axis[0].commanded, (int32_t)((made & 0xFFFFFF) ^ 0x800000) - 0x800000);
+}
+END_TEST
+
 START_TEST(AT2_unseen_pulses_are_no_reports)
 {
     const struct pmc_config config = {.axes = 2};
@@ -104,6 +122,7 @@ static Suite *time_suite(void)
     tcase_set_timeout(all, 200);
     tcase_add_test(all, AT1_however_time_is_cut_the_same_comes_out);
     tcase_add_test(all, AT2_nothing_is_due_in_a_unit_at_rest);
+    tcase_add_test(all, AT2_a_day_of_unseen_pulses_costs_little);
     tcase_add_test(all, AT2_unseen_pulses_are_no_reports);
     suite_add_tcase(suite, all);
     return suite;

@@ -239,6 +239,7 @@ START_TEST(AX42_counters)
     run_through_slot(1700);
     ck_assert_int_eq(axis_state(0).actual, 0);
     ck_assert_int_eq(axis_state(0).commanded, -10);
+    ck_assert_uint_eq(axis_state(0).fifth, 8000);
     ck_assert_uint_eq(pulses[0], 100010);
 }
 END_TEST
@@ -352,6 +353,15 @@ START_TEST(AX58_without_software_limits)
     must(PMC_RUN, 1, 0, 0);
     run_until_idle(0);
     ck_assert_int_eq(axis_state(0).errors, PMC_ERROR_PGM);
+    for (int sign = -1; sign <= 1; sign += 2) { /* to the very end it may */
+        reg(0, 0, inc(sign < 0 ? -80 : 70, 3, 0));
+        reg(0, 1, op(PMC_END, 0));
+        unit.axis[0].commanded = sign * 8388600;
+        must(PMC_RUN, 1, 0, 0);
+        run_until_idle(0);
+        ck_assert_int_eq(axis_state(0).errors, 0);
+    }
+    pulses[0] = 7;
     unit.axis[0].commanded = 8388600;
     ck_assert_uint_eq(pulses[0], 7);
     must(PMC_JOG, 1, 1, 0);
@@ -432,6 +442,9 @@ START_TEST(AB4_end_the_program)
     run_through_slot(100);
     ck_assert_int_eq(axis_state(0).state, PMC_IDLE);
     ck_assert(!pmc_is_busy(&unit, 0));
+    must(PMC_RUN, 1, 0, 0); /* begins at once, whatever was waited for */
+    run_through_slot(101);
+    ck_assert_uint_eq(slot_of_reg(0, 0, 1), 101);
 }
 END_TEST
 
