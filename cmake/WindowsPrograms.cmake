@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# rkm04.exe: the rooms that need no event loop, with src/windows in place of what POSIX has (docs/WINDOWS.md).
+# rkm04.exe, the rooms that need no event loop, and rkmctl.exe, which talks to units: with src/windows in place of what POSIX has
+# (docs/WINDOWS.md).
 find_library(JANSSON jansson REQUIRED)
 find_library(YAML yaml REQUIRED)
 enable_language(RC)
@@ -12,27 +13,34 @@ function(use_windows target)
   target_include_directories(${target} BEFORE PUBLIC ${posix})
   target_include_directories(${target} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}
     ${RKM04_WINDOWS_LIBRARIES}/include)
-  target_compile_definitions(${target} PRIVATE _GNU_SOURCE __USE_MINGW_ANSI_STDIO=1 _FILE_OFFSET_BITS=64 YAML_DECLARE_STATIC)
+  target_compile_definitions(${target} PRIVATE _GNU_SOURCE __USE_MINGW_ANSI_STDIO=1 _FILE_OFFSET_BITS=64 WIN32_LEAN_AND_MEAN YAML_DECLARE_STATIC)
   # The compiler takes the formats of messages for those of Windows, whose write() takes no size_t; both are checked elsewhere.
   target_compile_options(${target} PRIVATE -include ${posix}/posix.h -Wno-format -Wno-format-extra-args -Wno-conversion)
 endfunction()
 
 add_rooms(rkm04-sim ${SIM_ROOMS} plot run windows)
 get_target_property(sources rkm04-sim SOURCES)
-foreach(source ${posix_only})
+foreach(source ${posix_only} windows/client.c windows/port.c)
   list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${source})
 endforeach()
 set_target_properties(rkm04-sim PROPERTIES SOURCES "${sources};${page_js}")
 use_windows(rkm04-sim)
-target_link_libraries(rkm04-sim PUBLIC rkm04-core ${JANSSON} ${YAML})
+target_link_libraries(rkm04-sim PUBLIC rkm04-core ${JANSSON} ${YAML} ws2_32)
 
 add_executable(rkm04 main/main.c windows/rkm04.rc)
 use_windows(rkm04)
 target_link_libraries(rkm04 PRIVATE rkm04-sim -static pthread)
-set_target_properties(rkm04 PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+
+set(client_files answer.c cut.c help.c link.c report.c request.c send.c usage.c)
+list(TRANSFORM client_files PREPEND client/client_)
+add_executable(rkmctl main/rkmctl.c windows/client.c windows/port.c windows/rkm04.rc ${client_files})
+use_windows(rkmctl)
+set_source_files_properties(client/client_link.c client/client_request.c PROPERTIES COMPILE_OPTIONS "-include;${posix}/port_names.h")
+target_link_libraries(rkmctl PRIVATE rkm04-sim -static pthread)
+set_target_properties(rkm04 rkmctl PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 
 # A zip with the program, the documents and a prompt (cpack --preset windows).
-install(TARGETS rkm04 RUNTIME DESTINATION .)
+install(TARGETS rkm04 rkmctl RUNTIME DESTINATION .)
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-prompt.cmd DESTINATION .)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD-PARTY.md
   ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION .)

@@ -197,9 +197,12 @@ static void take_argument(struct parser *parser, char *argument)
 
 error_t argp_parse(const struct argp *argp, int argc, char **argv, unsigned flags, int *arg_index, void *input)
 {
-    struct parser parser = {.state = {.root_argp = argp, .argc = argc, .argv = argv, .flags = flags, .name = argv[0]}};
-    char **arguments = calloc((size_t)argc + 1, sizeof *arguments);
-    int count = 0;
+    struct parser parser = {.state = {.root_argp = argp, .argc = argc, .argv = argv, .flags = flags}};
+    char **arguments = calloc((size_t)argc + 1, sizeof *arguments), own_name[64];
+    int count = 0, length;
+    const char *name = windows_name(argv[0], &length);
+    snprintf(own_name, sizeof own_name, "%.*s", length, name);
+    parser.state.name = own_name;
     bool over = false;
     (void)arg_index;
     if (!arguments)

@@ -83,11 +83,23 @@ static void print_group(const struct argp_option *option, int wanted)
     }
 }
 
+/* The lines of what follows the options are forms of the command, one each. */
+static void print_forms(const char *name, const char *forms)
+{
+    const char *head = "Usage:";
+    do {
+        int length = forms ? (int)strcspn(forms, "\n") : 0;
+        printf("%s %s [OPTION...]%s%.*s\n", head, name, length > 0 ? " " : "", length, length > 0 ? forms : "");
+        forms = forms && forms[length] ? forms + length + 1 : NULL;
+        head = "  or: ";
+    } while (forms);
+}
+
 void argp_help_print(const char *name, const struct argp *const *group, unsigned groups, bool usage)
 {
     const struct argp *argp = group[0];
     const char *doc = argp->doc ? argp->doc : "", *after = strchr(doc, '\v');
-    printf("Usage: %s [OPTION...]%s%s\n", name, argp->args_doc ? " " : "", argp->args_doc ? argp->args_doc : "");
+    print_forms(name, argp->args_doc);
     if (usage)
         return;
     print_text(doc, after ? (size_t)(after - doc) : strlen(doc));

@@ -2,7 +2,6 @@
 /* process.c: how a program begins and ends, as options/process.c and signals are elsewhere. */
 #include "options/process.h"
 
-#include <poll.h>
 #include <stdbool.h>
 #include <windows.h>
 
@@ -77,15 +76,4 @@ int sigaction(int number, const struct sigaction *action, struct sigaction *old)
 void (*windows_signal(int number, void (*handler)(int number)))(int number)
 {
     return number == SIGPIPE || number == SIGXFSZ ? SIG_DFL : signal(number, handler);
-}
-
-int poll(struct pollfd *fds, unsigned long count, int timeout)
-{
-    DWORD waiting = 0;
-    HANDLE file = (HANDLE)_get_osfhandle(fds->fd);
-    (void)count;
-    (void)timeout;
-    if (GetFileType(file) == FILE_TYPE_PIPE && PeekNamedPipe(file, NULL, 0, NULL, &waiting, NULL))
-        return waiting > 0;
-    return GetFileType(file) == FILE_TYPE_DISK;
 }

@@ -33,11 +33,34 @@ void *memmem(const void *bytes, size_t length, const void *wanted, size_t wanted
     return NULL;
 }
 
+const char *windows_name(const char *path, int *length)
+{
+    const char *slash = strrchr(path, '/'), *backslash = strrchr(path, '\\');
+    const char *name = slash > backslash ? slash + 1 : backslash ? backslash + 1 : path;
+    const char *end = strstr(name, ".exe");
+    *length = (int)(end ? (size_t)(end - name) : strlen(name));
+    return name;
+}
+
 static void report(int error, const char *format, va_list values)
 {
-    fprintf(stderr, "rkm04: ");
+    fprintf(stderr, "%s: ", windows_short_name());
     vfprintf(stderr, format, values);
     fprintf(stderr, error ? ": %s\n" : "%s\n", error ? strerror(error) : "");
+}
+
+void vwarnx(const char *format, va_list values)
+{
+    report(0, format, values);
+}
+
+char *windows_short_name(void)
+{
+    static char own[64];
+    int length;
+    const char *name = windows_name(_pgmptr, &length);
+    snprintf(own, sizeof own, "%.*s", length, name);
+    return own;
 }
 
 void warn(const char *format, ...)

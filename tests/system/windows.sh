@@ -113,6 +113,39 @@ test_the_zip_has_the_program_documents_and_a_prompt() {
     same "$("$RKM04" --version)" "$(wine_in "$prefix" cmd /c rkm04-prompt.cmd --version 2>/dev/null | tr -d '\r')" "the prompt"
 }
 
+# rkmctl.exe at $port of the unit $folder/bus.
+ctl_exe() { wine_in "$prefix" "${RKM04_EXE%/*}/rkmctl.exe" -p "$port" "$@"; }
+
+is_at() { [[ $(ctl_exe position 2>/dev/null) == "motor 1: $1" ]]; }
+
+test_rkmctl_talks_to_a_unit_over_TCP_and_a_COM_port() {
+    begin
+    serve bus --tcp 0 --wine "$prefix:COM33"
+    for port in COM33 "tcp:$(sed -n 's/^READY .*"tcp":"\([^"]*\)".*/\1/p' bus.out)"; do
+        same "01.02,06.03.2009" "$(ctl_exe version 2>ctl.err)" "the version at $port"
+        same "motor 1: ok" "$(ctl_exe set '\C100 S100 V1000 A2000 F500 R' 2>ctl.err)" "a program at $port"
+        soon "the last step at $port" is_at 500
+        ctl_exe -m 2 send program.rks >ctl.out 2>ctl.err || fail "send at $port"
+        same "$program" "\\$(ctl_exe -m 2 command 2>ctl.err)" "the program in the unit at $port"
+        same '{"motor":1,"position":500}' "$(ctl_exe --json position 2>ctl.err)" "as JSON at $port"
+        ctl_exe -n 5 --timeout 200 version >ctl.out 2>ctl.err
+        same 3 $? "exit status without an answer at $port"
+        ctl_exe -m 2 set '\' >ctl.out 2>ctl.err || fail "stop at $port"
+    done
+}
+
+test_rkmctl_reports_a_port_that_is_not_there_and_what_it_does_not_have() {
+    begin
+    for port in COM77 tcp:127.0.0.1:1; do
+        ctl_exe version >ctl.out 2>ctl.err
+        same 1 $? "exit status at $port"
+        holds "$(<ctl.err)" "$port" "the message"
+    done
+    wine_in "$prefix" "${RKM04_EXE%/*}/rkmctl.exe" state >ctl.out 2>ctl.err
+    same 2 $? "exit status of state"
+    holds "$(<ctl.err)" "docs/WINDOWS.md" "the message"
+}
+
 test_serve_says_where_it_is_to_be_had() {
     local said
     exe serve 2>"$folder/there.err"

@@ -95,6 +95,12 @@ struct sigaction {
 int sigaction(int number, const struct sigaction *action, struct sigaction *old);
 void (*windows_signal(int number, void (*handler)(int number)))(int number);
 
+/* The name of a program, without folder and .exe; its length is in *length. */
+const char *windows_name(const char *path, int *length);
+char *windows_short_name(void); /* of this one */
+
+#define program_invocation_short_name windows_short_name()
+
 extern int windows_exit_status; /* of a program that argp ends */
 int on_exit(void (*function)(int status, void *context), void *context);
 
