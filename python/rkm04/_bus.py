@@ -251,15 +251,17 @@ class Bus:
     plant: path of a file, its text, or a dict.
     seed: of faults with a probability, 0 to 2^63 - 1. readings: as in docs/READINGS.md, {"hold-exit": "latch"}.
     version_text: at most 255 characters. turnaround: from the end of a request to its answer, 0 to 1 s.
+    settings: of another device, as recordings have them: {"comm_timeout": 500} of a CIB module.
     timed: False: bytes take no time. journal: False: what comes in is not kept, and snapshots cannot be written to files.
     """
 
     def __init__(self, units: Union[int, str] = 1, *, device: str = "rkm04", framing: Optional[str] = None,
                  plant: PlantSource = None, seed: int = 1, readings: Optional[Mapping[str, Any]] = None,
                  version_text: Optional[str] = None, turnaround: Optional[Time] = None, timed: bool = True,
-                 journal: bool = True, transport: Optional[Transport] = None) -> None:
+                 journal: bool = True, settings: Optional[Mapping[str, Any]] = None,
+                 transport: Optional[Transport] = None) -> None:
         if transport is None:
-            given = {"framing": framing or ("hdlc" if device == "rkm04" else None), "plant": read_plant(plant),
+            given = {**(settings or {}), "framing": framing or ("hdlc" if device == "rkm04" else None), "plant": read_plant(plant),
                      "readings": readings, "version_text": version_text,
                      "turnaround": None if turnaround is None else to_us(turnaround)}
             options: Dict[str, Any] = {name: value for name, value in given.items() if value is not None}
