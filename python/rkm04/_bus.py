@@ -261,8 +261,8 @@ class Bus:
                  journal: bool = True, settings: Optional[Mapping[str, Any]] = None,
                  transport: Optional[Transport] = None) -> None:
         if transport is None:
-            given = {**(settings or {}), "framing": framing or ("hdlc" if device == "rkm04" else None), "plant": read_plant(plant),
-                     "readings": readings, "version_text": version_text,
+            given = {**(settings or {}), "framing": framing or ("hdlc" if device == "rkm04" else None),
+                     "plant": read_plant(plant), "readings": readings, "version_text": version_text,
                      "turnaround": None if turnaround is None else to_us(turnaround)}
             options: Dict[str, Any] = {name: value for name, value in given.items() if value is not None}
             options.update(units=units, device=device, seed=seed, timed=timed, journal=journal)

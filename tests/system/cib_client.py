@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Clients for cib.sh: cib_client.py registers|motion|silence PORT, Modbus masters with pymodbus; tcp HOST:PORT, the same over
-TCP; lines HOST:PORT CONTROL, a PLCComS client."""
+"""Clients for cib.sh and qemu_cib.sh: cib_client.py WHAT PORT, Modbus masters with pymodbus; tcp HOST:PORT, the same over TCP;
+lines HOST:PORT CONTROL, a PLCComS client."""
 import json
 import socket
 import sys
@@ -73,6 +73,16 @@ def registers(bus, port):
         check_writes(bus, unit)
         check_bits(bus, unit)
     assert bus.read_coils(0, 1, 5).isError(), "there is no unit 5"
+
+
+def registers_of_1(bus, port):
+    check_tables(bus, 1)
+    check_writes(bus, 1)
+    check_bits(bus, 1)
+
+
+def read_type(bus, port):
+    assert words(bus.read_input_registers(0x30, 1, 1)) == [0x0808]
 
 
 def motion(bus, port):
@@ -172,9 +182,10 @@ def lines(address, control):
 
 
 def serial_client(what, port):
-    bus = ModbusSerialClient(port, baudrate=19200, parity="N", timeout=3 if what != "registers" else 1, retries=0)
+    bus = ModbusSerialClient(port, baudrate=19200, parity="N", timeout=20 if what != "registers" else 1, retries=0)
     assert bus.connect()
-    {"registers": registers, "motion": motion, "silence": silence}[what](bus, port)
+    {"registers": registers, "registers_of_1": registers_of_1, "type": read_type, "motion": motion,
+     "silence": silence}[what](bus, port)
     bus.close()
 
 
