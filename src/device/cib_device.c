@@ -254,6 +254,22 @@ static uint32_t inputs_of(const struct device_unit *unit)
     return cib_inputs(core) | (uint32_t)core->buttons << BUTTONS_SHIFT;
 }
 
+/* BT4: coil a is DO1 - DO3, b is DO2 - DO4 with 1 or + = 1. A rotor at rest stands as if the last row had been there (BT3). */
+static bool coils(const struct device_unit *unit, unsigned axis, struct device_coils *driven)
+{
+    const struct cib_unit *core = &cib_device_read(unit)->unit;
+    const uint8_t first = (uint8_t)(4u * (axis - 1u) + 1u);
+    if (!cib_has_drive(core, axis - 1u))
+        return false;
+    const unsigned table = core->setup.drive[axis - 1u].mode & ~1u; /* unipolar and bipolar alike */
+    *driven = (struct device_coils){
+        .output = {first, (uint8_t)(first + 1u), (uint8_t)(first + 2u), (uint8_t)(first + 3u)},
+        .eighths = table == 32u ? 1 : 2,
+        .rest = table == 16u ? 8 : 9,
+    };
+    return true;
+}
+
 static uint32_t outputs_of(const struct device_unit *unit)
 {
     return cib_driven(&cib_device_read(unit)->unit);
@@ -340,6 +356,7 @@ const struct device_kind cib_device = {
     .slot = CIB_SLOT_TICKS,
     .pulse = PULSE,
     .turnaround = CIB_TURNAROUND,
+    .coils = coils,
     .deaf_to_answers = true,
     .request_max = MODBUS_FRAME_MAX,
     .answer_max = MODBUS_FRAME_MAX,

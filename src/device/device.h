@@ -198,6 +198,13 @@ struct device_words {
     void (*ignored)(struct wire_text *out, uint8_t dnode, uint8_t snode, const uint8_t *message, size_t length);
 };
 
+/* How the outputs of a device drive the coils of a motor: lead 1 and 3 are coil a, lead 2 and 4 coil b. */
+struct device_coils {
+    uint8_t output[4]; /* of lead 1 to 4, from 1; an output that is 1 makes its lead positive */
+    uint8_t eighths;   /* of a turn of the field that are a step of the counter: 1 (half steps) or 2 */
+    uint8_t rest;      /* levels of the four outputs at which a rotor stands that was never driven: output[0] in bit 0 */
+};
+
 /* Why a method was refused. */
 struct device_refusal {
     bool is_state; /* it cannot be done now; false: the parameters are wrong */
@@ -270,6 +277,7 @@ struct device_kind {
     unsigned ticks_per_us;
     unsigned slot;           /* us of the period in which it looks at inputs and executes commands */
     unsigned pulse;          /* us of a step pulse; see pulse_ticks */
+    unsigned speed_max;      /* steps/s that an axis can reach, so that plants can follow; 0: at most 128 000 */
     unsigned turnaround;     /* us from a request to its answer, unless --turnaround says otherwise; 0: one character */
     bool deaf_to_answers;    /* where bytes take no time, no unit receives the answers of others: they look like requests */
     unsigned program;        /* commands that an axis can have in memory; 0: it has no program */
@@ -292,6 +300,10 @@ struct device_kind {
     /* Ticks of the pulses that an axis makes now, if they are not all `pulse` long; called from within port->steps. NULL: they
      * are. */
     unsigned (*pulse_ticks)(const struct device_unit *unit, unsigned axis);
+
+    /* How the outputs drive the motor of an axis now; false: they do not. A plant then follows port->outputs, not port->steps.
+     * Called from within port->outputs, too. NULL: no axis is driven in this way. */
+    bool (*coils)(const struct device_unit *unit, unsigned axis, struct device_coils *coils);
 
     /* The bus. `receive` NULL: the device has none; then none of these is called, nor framing(), and all may be NULL. */
     size_t (*receive)(struct device_unit *unit, const uint8_t *bytes, size_t length); /* returns how many it took */

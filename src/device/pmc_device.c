@@ -358,12 +358,14 @@ static const char *const outputs_1hs[] = {"out0", "out1"};
 static const char *const outputs_2hs[] = {"x.out0", "x.out1", "y.out0", "y.out1"};
 
 #define PULSE_US (PMC_PULSE_TICKS / PMC_TICKS_PER_US)
+#define SPEED_MAX 4000000u /* AP2 */
 #define SLOT_US (PMC_SLOT_TICKS / PMC_TICKS_PER_US)
 
 /* What both kinds have. */
 #define PMC_DEVICE                                                                                                              \
     .size = sizeof(struct pmc_device), .addresses = PMC_ADDRESS_MAX, .ticks_per_us = PMC_TICKS_PER_US, .slot = SLOT_US,         \
-    .pulse = PULSE_US, .turnaround = 1, .program = PMC_REGISTERS, .is_program_whole = true, .flash_blocks = PMC_FLASH_BLOCKS,   \
+    .pulse = PULSE_US, .speed_max = SPEED_MAX, .turnaround = 1, .program = PMC_REGISTERS, .is_program_whole = true,             \
+    .flash_blocks = PMC_FLASH_BLOCKS,                                                                                           \
     .flash_block_size = PMC_FLASH_BLOCK_SIZE, .request_max = PMC_FRAME_MAX, .answer_max = PMC_FRAME_MAX, .attach = attach,      \
     .now = now, .advance = advance, .next_event = next_event, .next_report = next_report, .pulse_ticks = pulse_ticks,           \
     .receive = receive, .send = send, .silence_end = silence_end, .has_answer = has_answer, .answer_wait = answer_wait,         \

@@ -21,6 +21,8 @@ struct plant *plant_new(unsigned axes)
         plant->motor[at].low = INT64_MIN;
         plant->motor[at].high = INT64_MAX;
         plant->motor[at].stall.last = DEVICE_NEVER;
+        for (uint8_t lead = 0; lead < 4u; lead++)
+            plant->motor[at].lead[lead] = (uint8_t)(lead + 1u);
     }
     return plant;
 }
@@ -71,6 +73,10 @@ static void report_hold(struct plant *plant, uint64_t tick, unsigned at, enum pl
     case PLANT_STALLED:
         report(plant, tick, at, PLANT_STALL, "motor %u stalls at %lld: too fast or too steep for it", number, position);
         break;
+    case PLANT_NO_TORQUE:
+        report(plant, tick, at, PLANT_FIELD, "motor %u does not turn, at %lld: the field of its coils points away from it",
+               number, position);
+        break;
     case PLANT_NO_LEAD:
         report(plant, tick, at, PLANT_LEAD, "motor %u does not turn, at %lld: a lead is missing", number, position);
         break;
@@ -90,7 +96,7 @@ const char *plant_event_name(enum plant_event news)
 {
     static const char *const names[] = {
         [PLANT_STALL] = "stall", [PLANT_END_STOP] = "end_stop",   [PLANT_JAM] = "jam",
-        [PLANT_FREE] = "free",   [PLANT_LEAD] = "missing_lead",
+        [PLANT_FREE] = "free",   [PLANT_LEAD] = "missing_lead", [PLANT_FIELD] = "wrong_field",
     };
     return (unsigned)news < sizeof names / sizeof names[0] ? names[news] : "?";
 }
@@ -218,41 +224,78 @@ static enum plant_hold decide_pulse(struct plant_motor *motor, uint64_t tick, bo
     return hold;
 }
 
-/* Do the first pulse of a motor. */
-static void move_axis(struct plant *plant, unsigned at)
+static void set_hold(struct plant *plant, uint64_t tick, unsigned at, enum plant_hold hold)
 {
     struct plant_motor *motor = &plant->motor[at];
-    uint64_t tick = motor->pulse[motor->first].tick;
-    bool forward = motor->pulse[motor->first].forward;
-    motor->first = (motor->first + 1u) % PLANT_PULSES;
-    motor->pulses--;
-
-    enum plant_hold hold = decide_pulse(motor, tick, forward);
     if (hold != motor->hold)
         report_hold(plant, tick, at, hold);
     if (motor->hold == PLANT_MOVES || hold == PLANT_MOVES)
         motor->lost_since = 0;
     motor->hold = hold;
-    if (hold == PLANT_MOVES) {
-        motor->position += forward ? 1 : -1;
-        switches_follow(plant, at + 1u, tick + 1u);
-    } else {
+    if (hold != PLANT_MOVES) {
         motor->lost++;
         motor->lost_since++;
     }
 }
 
+static void move_step(struct plant *plant, uint64_t tick, unsigned at, bool forward)
+{
+    plant->motor[at].position += forward ? 1 : -1;
+    switches_follow(plant, at + 1u, tick + 1u);
+}
+
+/* The field has changed: the rotor turns to it. */
+static void turn_rotor(struct plant *plant, uint64_t tick, unsigned at, unsigned field)
+{
+    struct plant_motor *motor = &plant->motor[at];
+    bool opposite;
+    int turn = coils_turn(motor, field, &opposite);
+    if (turn == 0 && !opposite)
+        return;
+    enum plant_hold hold = opposite ? PLANT_NO_TORQUE : decide_pulse(motor, tick, turn > 0);
+    set_hold(plant, tick, at, hold);
+    if (hold != PLANT_MOVES)
+        return;
+    motor->angle = (uint8_t)field;
+    motor->part = (int8_t)(motor->part + turn);
+    for (; motor->part >= motor->eighths; motor->part = (int8_t)(motor->part - motor->eighths))
+        move_step(plant, tick, at, true);
+    for (; motor->part < 0; motor->part = (int8_t)(motor->part + motor->eighths))
+        move_step(plant, tick, at, false);
+}
+
+/* Do the first pulse of a motor. */
+static void move_axis(struct plant *plant, unsigned at)
+{
+    struct plant_motor *motor = &plant->motor[at];
+    uint64_t tick = motor->pulse[motor->first].tick;
+    unsigned what = motor->pulse[motor->first].what;
+    motor->first = (motor->first + 1u) % PLANT_PULSES;
+    motor->pulses--;
+    if (motor->eighths > 0) {
+        turn_rotor(plant, tick, at, what);
+        return;
+    }
+    enum plant_hold hold = decide_pulse(motor, tick, what == 1);
+    set_hold(plant, tick, at, hold);
+    if (hold == PLANT_MOVES)
+        move_step(plant, tick, at, what == 1);
+}
+
+void plant_queue(struct plant *plant, uint64_t tick, unsigned number, unsigned what)
+{
+    struct plant_motor *motor = &plant->motor[number - 1u];
+    if (motor->pulses == PLANT_PULSES)
+        move_axis(plant, number - 1u);
+    unsigned last = (motor->first + motor->pulses++) % PLANT_PULSES;
+    motor->pulse[last].tick = tick & ((UINT64_C(1) << 56) - 1u);
+    motor->pulse[last].what = what & 0xFFu;
+}
+
 void plant_step(struct plant *plant, uint64_t tick, unsigned number, bool forward)
 {
-    unsigned at = number - 1u;
-    struct plant_motor *motor = &plant->motor[at];
-    if (!motor->present)
-        return;
-    if (motor->pulses == PLANT_PULSES)
-        move_axis(plant, at);
-    unsigned last = (motor->first + motor->pulses++) % PLANT_PULSES;
-    motor->pulse[last].tick = tick;
-    motor->pulse[last].forward = forward;
+    if (plant->motor[number - 1u].present)
+        plant_queue(plant, tick, number, forward);
 }
 
 bool plant_position(const struct plant *plant, unsigned number, int64_t *position)
@@ -341,7 +384,7 @@ static void shift_motor(struct plant_motor *motor, uint64_t shift)
         shift_time(&motor->jam[i].until, shift);
     }
     for (unsigned i = 0; i < PLANT_PULSES; i++)
-        motor->pulse[i].tick += shift;
+        motor->pulse[i].tick = (motor->pulse[i].tick + shift) & ((UINT64_C(1) << 56) - 1u);
     shift_time(&motor->stall.last, shift);
     motor->stall.begin += shift;
 }

@@ -4,6 +4,7 @@
  *
  *     plant_read     a plant from a YAML map
  *     plant          the model: pulses in, changes of inputs and reports out
+ *     plant_coils    a rotor that follows the field of its coils
  *     plant_stall    what a rotor can follow
  *     plant_json     a plant as JSON
  *     plant_model    the model's data; private to the room
@@ -32,7 +33,8 @@ enum plant_event {
     PLANT_END_STOP, /* the axis is at an end stop and loses steps */
     PLANT_JAM,
     PLANT_FREE,     /* steps count again */
-    PLANT_LEAD      /* a lead of the motor is missing: it does not turn */
+    PLANT_LEAD,     /* a lead of the motor is missing: it does not turn */
+    PLANT_FIELD     /* the field of its coils has come to point away from the rotor: leads are missing or swapped */
 };
 
 #define PLANT_TEXT_SIZE 112u
@@ -56,6 +58,9 @@ struct plant_change {
 struct plant_device {
     const struct device_kind *kind;
     int64_t position[DEVICE_AXES_MAX]; /* the counters, in steps */
+    bool has_coils[DEVICE_AXES_MAX];   /* the motor follows plant_outputs(), not plant_step() */
+    struct device_coils coils[DEVICE_AXES_MAX];
+    uint32_t outputs;                  /* as they are */
 };
 
 /* Read the plant of one unit from a map, to begin at tick `now`: true positions are the counters plus the configured offsets.
@@ -72,6 +77,12 @@ uint32_t plant_levels(const struct plant *plant);
 /* A pulse. Called from within the unit: must not change the unit. */
 void plant_step(struct plant *plant, uint64_t tick, unsigned motor, bool forward);
 
+/* Most pulses of a motor between two calls of plant_take_change(). */
+#define PLANT_STEPS_MAX 512u
+
+/* The outputs have changed, as far as they drive a motor's coils. The same restriction. */
+void plant_outputs(struct plant *plant, uint64_t tick, unsigned motor, const struct device_coils *coils, uint32_t outputs);
+
 /* The next change with a tick before `tick`, in order of time; it counts for plant_levels() from now on. Returns false if there
  * is none: then everything before `tick` is done. */
 bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *change);
@@ -79,7 +90,7 @@ bool plant_take_change(struct plant *plant, uint64_t tick, struct plant_change *
 /* The next thing to report of what has been done, in order of time. Returns false if there is none. */
 bool plant_take_report(struct plant *plant, struct plant_report *report);
 
-/* "stall", "end_stop", "jam", "free", "missing_lead". Never NULL. */
+/* "stall", "end_stop", "jam", "free", "missing_lead", "wrong_field". Never NULL. */
 const char *plant_event_name(enum plant_event news);
 
 /* When something changes without a pulse (a switch bounces); DEVICE_NEVER: never. */

@@ -6,7 +6,8 @@ static json_t *hold_json(enum plant_hold hold)
     static const enum plant_event news[] = {[PLANT_AT_STOP] = PLANT_END_STOP,
                                             [PLANT_JAMMED] = PLANT_JAM,
                                             [PLANT_STALLED] = PLANT_STALL,
-                                            [PLANT_NO_LEAD] = PLANT_LEAD};
+                                            [PLANT_NO_LEAD] = PLANT_LEAD,
+                                            [PLANT_NO_TORQUE] = PLANT_FIELD};
     return hold == PLANT_MOVES ? json_null() : json_string(plant_event_name(news[hold]));
 }
 

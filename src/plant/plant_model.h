@@ -9,12 +9,13 @@
 #define PLANT_SWITCHES 32u
 #define PLANT_JAMS 16u
 #define PLANT_POINTS 16u  /* of a stall curve */
-#define PLANT_PULSES 256u /* of a motor that may wait: there are never more than those of two slots */
+#define PLANT_PULSES (2u * PLANT_STEPS_MAX) /* of a motor that may wait */
+#define PLANT_NO_FIELD 8u /* no coil is driven, or both leads of each in the same way */
 #define PLANT_REPORTS 64u
 #define PLANT_SPAN 10000u /* ticks over which speed is measured: a tick of rounding is then 1/10 000 of it */
 
 /* Why steps do not count. */
-enum plant_hold { PLANT_MOVES, PLANT_AT_STOP, PLANT_JAMMED, PLANT_STALLED, PLANT_NO_LEAD };
+enum plant_hold { PLANT_MOVES, PLANT_AT_STOP, PLANT_JAMMED, PLANT_STALLED, PLANT_NO_LEAD, PLANT_NO_TORQUE };
 
 struct plant_window {
     uint64_t from, until; /* from <= tick < until; DEVICE_NEVER: no end */
@@ -55,11 +56,17 @@ struct plant_motor {
     uint64_t lost_since; /* of these, since they began to be lost */
     enum plant_hold hold;
 
-    /* Pulses that have not been done, in a ring. */
+    /* A rotor that follows the field of its coils. Angles are eighths of a turn of the field, 0..7. */
+    uint8_t lead[4]; /* of the device, 1..4, to which lead 1..4 of the motor is connected; 0: to none */
+    uint8_t angle;   /* of the rotor */
+    uint8_t field;   /* as last queued; PLANT_NO_FIELD */
+    int8_t part;     /* eighths that the rotor is beyond `position` */
+    uint8_t eighths; /* of a step; 0: the motor follows pulses */
+
+    /* What has not been done, in a ring: the pulses, or how the field changes. */
     unsigned first, pulses;
     struct {
-        uint64_t tick;
-        bool forward;
+        uint64_t tick : 56, what : 8; /* what: 0 back, 1 forward; or the field */
     } pulse[PLANT_PULSES];
 };
 
@@ -99,6 +106,15 @@ uint32_t plant_contacts(const struct plant *plant);
 
 /* Is a motor, from 1, jammed now? */
 bool plant_is_jammed(const struct plant *plant, unsigned motor);
+
+/* Keep what happens to a motor, from 1, until its time has come. */
+void plant_queue(struct plant *plant, uint64_t tick, unsigned number, unsigned what);
+
+/* plant_coils.c: put the rotor of a motor to where these outputs, or rest, hold it. */
+void coils_begin(struct plant_motor *motor, const struct device_coils *coils, uint32_t outputs);
+
+/* Eighths by which the field turns the rotor, -3..3; 0: it stands. *opposite: the field points away from it. */
+int coils_turn(const struct plant_motor *motor, unsigned field, bool *opposite);
 
 /* A pulse comes: can the rotor follow it? */
 bool stall_follows(struct plant_stall *stall, uint64_t tick, bool forward);

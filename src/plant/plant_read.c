@@ -141,9 +141,29 @@ static bool is_nothing(const struct config_node *node)
     return text && (*text == '\0' || strcmp(text, "~") == 0 || strcmp(text, "null") == 0);
 }
 
-static bool read_motor(const struct config_node *node, int64_t counter, struct plant_motor *to)
+/* The leads of the device to which those of the motor are connected. */
+static bool read_coils(const struct config_node *motor, struct plant_motor *to)
 {
-    static const char *const names[] = {"offset", "stops", "turn", "stall", "jam", "missing_lead", NULL};
+    const struct config_node *node = config_get(motor, "coils");
+    if (!node)
+        return true;
+    if (config_type(node) != CONFIG_LIST || config_count(node) != 4)
+        return config_error(node, "expected the leads of the device at lead 1 to 4 of the motor, as in [1, 2, 3, 4]");
+    for (unsigned i = 0; i < 4; i++) {
+        int64_t lead;
+        if (!config_integer(config_at(node, i), "a lead of the device, or 0 for none", 0, 4, &lead))
+            return false;
+        for (unsigned before = 0; before < i && lead > 0; before++)
+            if (to->lead[before] == lead)
+                return config_error(config_at(node, i), "expected each lead once");
+        to->lead[i] = (uint8_t)lead;
+    }
+    return true;
+}
+
+static bool read_motor(const struct config_node *node, int64_t counter, bool has_coils, struct plant_motor *to)
+{
+    const char *const names[] = {"offset", "stops", "turn", "stall", "jam", "missing_lead", has_coils ? "coils" : NULL, NULL};
     const struct config_node *turn = config_get(node, "turn");
     to->present = true;
     if (is_nothing(node))
@@ -155,7 +175,8 @@ static bool read_motor(const struct config_node *node, int64_t counter, struct p
     if (turn && config_get(node, "stops"))
         return config_error(turn, "expected turn or stops: a turntable has no end");
     return read_stops(node, to) && read_jams(node, to) && read_stall(node, &to->stall) &&
-           read_flag(node, "missing_lead", "whether a lead is missing", &to->no_lead) && read_offset(node, counter, to);
+           read_flag(node, "missing_lead", "whether a lead is missing", &to->no_lead) && read_coils(node, to) &&
+           read_offset(node, counter, to);
 }
 
 static bool read_motors(const struct config_node *node, const struct plant_device *device, struct plant *plant)
@@ -172,7 +193,7 @@ static bool read_motors(const struct config_node *node, const struct plant_devic
         return false;
     for (size_t i = 0; i < config_count(node); i++) {
         unsigned at = (unsigned)strtoul(config_key(node, i), NULL, 10) - 1u;
-        if (!read_motor(config_at(node, i), device->position[at], &plant->motor[at]))
+        if (!read_motor(config_at(node, i), device->position[at], device->has_coils[at], &plant->motor[at]))
             return false;
     }
     return true;
@@ -305,6 +326,9 @@ struct plant *plant_read(const struct config_node *node, const struct plant_devi
         plant_free(plant);
         return NULL;
     }
+    for (unsigned at = 0; at < device->kind->axes; at++)
+        if (device->has_coils[at])
+            coils_begin(&plant->motor[at], &device->coils[at], device->outputs);
     plant->levels = plant_contacts(plant);
     return plant;
 }

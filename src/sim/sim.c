@@ -87,13 +87,14 @@ static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t
     struct sim_unit *unit = context;
     struct watch_event event = {
         .kind = WATCH_STEP, .unit = (uint8_t)unit->number, .motor = (uint8_t)motor, .pulse_ns = pulse_ns(unit, motor)};
+    const bool moves = unit->plant && !segment_kind(&unit->sim->segment)->coils;
     for (size_t i = 0; i < count; i++) {
         uint32_t way = forward ? (uint32_t)i : 0u - (uint32_t)i;
         event.tick = us_of(unit, tick[i]);
         event.order = ns_of(unit, tick[i]);
         event.value = (int32_t)((uint32_t)position + way);
         watch_add(&unit->sim->watch, WATCH_PULSES, event);
-        if (unit->plant)
+        if (moves)
             plant_step(unit->plant, event.tick, motor, forward);
     }
 }
@@ -109,6 +110,7 @@ static void on_direction(void *context, uint64_t tick, unsigned motor, bool forw
 static void on_outputs(void *context, uint64_t tick, uint32_t mask)
 {
     const struct sim_unit *unit = context;
+    sim_drive_coils(unit, us_of(unit, tick), mask);
     add_unit_event(unit, tick, phase_of(unit), WATCH_OUTPUTS, 0, (int32_t)mask);
 }
 
@@ -353,6 +355,8 @@ static uint64_t leap_end(const struct sim *sim, uint64_t tick)
             continue;
         if (event < end)
             end = earlier(end, slot_after(sim, number, event));
+        if (event < end && sim->unit[number - 1u].plant)
+            end = earlier(end, event + sim_plant_span(sim_device(sim)));
         if (bounce < end)
             end = earlier(end, slot_after(sim, number, bounce > now ? bounce - 1u : now));
     }

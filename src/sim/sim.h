@@ -171,6 +171,12 @@ void sim_update_inputs(struct sim *sim, unsigned number);
  * changed. Returns false then. Inputs follow at once. */
 bool sim_configure_plants(struct sim *sim, const char *name, const char *text, size_t length, FILE *errors);
 
+/* The outputs have changed at a tick of the bus: motors of the plant whose coils they drive follow. For sim.c. */
+void sim_drive_coils(const struct sim_unit *unit, uint64_t tick, uint32_t mask);
+
+/* us in which an axis makes no more pulses than its plant can keep. */
+uint64_t sim_plant_span(const struct device_kind *kind);
+
 /* Flash of a unit as it is, without injected faults. As in struct device_port. */
 int sim_flash_read(struct sim_unit *unit, unsigned block, unsigned offset, void *data, unsigned length);
 int sim_flash_erase(struct sim_unit *unit, unsigned block);

@@ -22,8 +22,12 @@ static struct plant *read_plant(struct sim *sim, const struct config_node *node,
 {
     const struct device_kind *kind = sim_device(sim);
     struct plant_device device = {.kind = kind};
-    for (unsigned axis = 1; axis <= kind->axes; axis++)
+    const struct device_unit *unit = sim_core(sim, number);
+    device.outputs = kind->outputs_of(unit);
+    for (unsigned axis = 1; axis <= kind->axes; axis++) {
         device.position[axis - 1u] = sim_axis(sim, number, axis).position;
+        device.has_coils[axis - 1u] = kind->coils && kind->coils(unit, axis, &device.coils[axis - 1u]);
+    }
     return plant_read(node, &device, sim_now(sim), sim->config.seed);
 }
 
@@ -89,4 +93,19 @@ bool sim_configure_plants(struct sim *sim, const char *name, const char *text, s
     for (unsigned number = 1; number <= sim_units(sim); number++)
         sim_update_inputs(sim, number);
     return true;
+}
+
+void sim_drive_coils(const struct sim_unit *unit, uint64_t tick, uint32_t mask)
+{
+    const struct device_kind *kind = segment_kind(&unit->sim->segment);
+    struct device_coils coils;
+    for (unsigned axis = 1; unit->plant && kind->coils && axis <= kind->axes; axis++)
+        if (kind->coils(unit->sim->segment.unit[unit->number - 1u].unit, axis, &coils))
+            plant_outputs(unit->plant, tick, axis, &coils, mask);
+}
+
+uint64_t sim_plant_span(const struct device_kind *kind)
+{
+    const uint64_t span = PLANT_STEPS_MAX * UINT64_C(1000000) / (kind->speed_max > 0 ? kind->speed_max : 128000u);
+    return span > 0 ? span : 1u;
 }

@@ -12,6 +12,7 @@ struct fake_alone {
     struct fake_unit core;
     const struct device_port *port;
     void *context;
+    bool has_stepped;
 };
 
 static struct fake_alone *alone_of(struct device_unit *unit)
@@ -31,11 +32,29 @@ struct fake_unit *fake_alone_core(struct device_unit *unit)
 
 /* ---- What the core reports ------------------------------------------------------------------------------------------ */
 
+/* Half steps: leads 1 to 4 in outputs 2 to 5. Nothing is driven before the first step. */
+static uint32_t outputs_at(const struct fake_alone *alone, int32_t position)
+{
+    static const uint8_t rows[] = {9, 1, 3, 2, 6, 4, 12, 8};
+    return alone->core.output | (alone->has_stepped ? (uint32_t)rows[position & 7] << 1 : 0);
+}
+
 static void on_step(void *context, uint64_t tick, int32_t position, bool forward)
 {
-    const struct fake_alone *alone = context;
+    struct fake_alone *alone = context;
+    alone->has_stepped = true;
     if (alone->port->steps)
         alone->port->steps(alone->context, 1, &tick, 1, position, forward);
+    if (alone->port->outputs)
+        alone->port->outputs(alone->context, tick, outputs_at(alone, position));
+}
+
+static bool coils(const struct device_unit *unit, unsigned axis, struct device_coils *driven)
+{
+    (void)unit;
+    (void)axis;
+    *driven = (struct device_coils){.output = {2, 3, 4, 5}, .eighths = 1, .rest = 9};
+    return true;
 }
 
 static void on_direction(void *context, uint64_t tick, bool forward)
@@ -69,8 +88,9 @@ static void on_limit(void *context, uint64_t tick, bool hit)
 static void on_output(void *context, uint64_t tick, bool on)
 {
     const struct fake_alone *alone = context;
+    uint32_t others = outputs_at(alone, alone->core.position) & ~1u;
     if (alone->port->outputs)
-        alone->port->outputs(alone->context, tick, on);
+        alone->port->outputs(alone->context, tick, others | on);
 }
 
 static bool on_load(void *context, uint8_t data[4])
@@ -99,6 +119,7 @@ static void begin(struct device_unit *unit, const struct device_config *config, 
     struct fake_alone *alone = alone_of(unit);
     alone->port = port;
     alone->context = context;
+    alone->has_stepped = false;
     fake_begin(&alone->core, config->node, &calls, alone);
 }
 
@@ -141,7 +162,7 @@ static uint32_t inputs_of(const struct device_unit *unit)
 
 static uint32_t outputs_of(const struct device_unit *unit)
 {
-    return core_of(unit)->output;
+    return outputs_at((const struct fake_alone *)unit, core_of(unit)->position);
 }
 
 static uint32_t variables_of(const struct device_unit *unit)
@@ -206,7 +227,7 @@ static json_t *state(const struct device_unit *unit, uint64_t t_us)
                               state_name(core->due != FAKE_NEVER), "index", 0, "led", "off", "fault",
                               core->limit ? fault_name(1) : NULL);
     return json_pack("{s:I, s:[o], s:i, s:i, s:i}", "t_us", (json_int_t)t_us, "motors", motor, "di", (int)core->inputs, "do",
-                     (int)core->output, "var", 0);
+                     (int)outputs_of(unit), "var", 0);
 }
 
 static json_t *describe(const struct device_unit *unit, uint64_t t_us)
@@ -257,16 +278,16 @@ static const char *unlike(const struct device_config *a, const struct device_con
 }
 
 static const char *const input_names[INPUTS] = {"lmt+", "near", "DI3"};
-static const char *const output_names[] = {"lamp"};
+static const char *const output_names[] = {"lamp", "a1", "b1", "a2", "b2"};
 static const char *const no_settings[] = {NULL};
 
 const struct device_kind fake_alone_device = {
     .name = "alone",
-    .description = "one axis at constant speed without a bus (example)",
+    .description = "one axis with coils, without a bus (example)",
     .size = sizeof(struct fake_alone),
     .axes = 1,
     .inputs = INPUTS,
-    .outputs = 1,
+    .outputs = 5,
     .input_names = input_names,
     .output_names = output_names,
     .addresses = 1,
@@ -279,6 +300,7 @@ const struct device_kind fake_alone_device = {
     .advance = advance,
     .next_event = next_event,
     .next_report = next_event,
+    .coils = coils,
     .set_inputs = set_inputs,
     .inputs_of = inputs_of,
     .outputs_of = outputs_of,

@@ -30,7 +30,9 @@ START_TEST(device_without_a_bus_moves_and_is_seen)
 {
     fake_rig_do(&rig, "alone.obey", "{\"text\": \"MOVE 2\"}");
     sim_advance(&rig.sim, 1000000);
-    ck_assert_str_eq(fake_rig_seen(&rig), "0 unit 1 motor 1 motion 1\n10000 unit 1 motor 1 step 1\n20000 unit 1 motor 1 step 2\n"
+    ck_assert_str_eq(fake_rig_seen(&rig), "0 unit 1 motor 1 motion 1\n10000 unit 1 motor 1 step 1\n"
+                                          "10000 unit 1 motor 0 outputs 2\n20000 unit 1 motor 1 step 2\n"
+                                          "20000 unit 1 motor 0 outputs 6\n"
                                           "20000 unit 1 motor 1 motion 0\n");
     fake_rig_expect_state(&rig, "motors.0.position", "2");
 }
@@ -120,7 +122,8 @@ START_TEST(inputs_have_names_beside_their_numbers)
                             "expected 1 to 3 or lmt+");
     json_t *units = fake_rig_command(&rig, "units", "{}");
     char *text = json_dumps(units, JSON_COMPACT);
-    ck_assert_msg(strstr(text, "\"inputs\":[\"lmt+\",\"near\",\"DI3\"],\"outputs\":[\"lamp\"]") != NULL, "%s", text);
+    ck_assert_msg(strstr(text, "\"inputs\":[\"lmt+\",\"near\",\"DI3\"],"
+                               "\"outputs\":[\"lamp\",\"a1\",\"b1\",\"a2\",\"b2\"]") != NULL, "%s", text);
     free(text);
     json_decref(units);
 }
@@ -130,7 +133,7 @@ START_TEST(conditions_have_the_names)
 {
     static const char *const wrong[][2] = {
         {"{\"di\": {\"far\": 1}}", "di: expected 1 to 3 or lmt+, near, DI3, found \"far\""},
-        {"{\"do\": {\"far\": 1}}", "do: expected 1 to 1 or lamp, found \"far\""},
+        {"{\"do\": {\"far\": 1}}", "do: expected 1 to 5 or lamp, a1, b1, a2, b2, found \"far\""},
     };
     struct refusal refusal;
     fake_rig_do(&rig, "alone.obey", "{\"text\": \"OUT 1\"}");
@@ -174,9 +177,80 @@ START_TEST(vcd_has_the_names)
     ck_assert_int_eq(trace_file_end(file), 0);
     fclose(out);
     ck_assert_msg(strstr(text, "$var wire 1 \" lmt+ $end\n"
-                               "$var wire 1 # near $end\n$var wire 1 $ DI3 $end\n$var wire 1 % lamp $end\n"),
+                               "$var wire 1 # near $end\n$var wire 1 $ DI3 $end\n"
+                               "$var wire 1 % lamp $end\n$var wire 1 & a1 $end\n"),
                   "%s", text);
     free(text);
+}
+END_TEST
+
+/* ---- A motor that is moved by its coils ------------------------------------------------------------------------------- */
+
+/* Where the motor is after 17 half steps forward with these leads; what was reported of it. */
+static void expect_turned(const char *coils, const char *forward, const char *back, const char *reported)
+{
+    char params[160];
+    snprintf(params, sizeof params, "{\"plant\": {\"motors\": {\"1\": {%s}}}}", coils);
+    fake_rig_do(&rig, "plant.set", params);
+    fake_rig_do(&rig, "alone.obey", "{\"text\": \"MOVE 17\"}");
+    sim_advance(&rig.sim, sim_now(&rig.sim) + 1000000);
+    fake_rig_expect_state(&rig, "motors.0.position", "17");
+    fake_rig_expect_state(&rig, "motors.0.true_position", forward);
+    fake_rig_do(&rig, "alone.obey", "{\"text\": \"MOVE -17\"}");
+    sim_advance(&rig.sim, sim_now(&rig.sim) + 1000000);
+    fake_rig_expect_state(&rig, "motors.0.true_position", back);
+    json_t *plant = fake_rig_command(&rig, "plant.get", "{}");
+    char *text = json_dumps(plant, JSON_COMPACT);
+    ck_assert_msg(strstr(text, reported) != NULL, "%s", text);
+    free(text);
+    json_decref(plant);
+}
+
+START_TEST(motor_follows_the_field_of_its_coils)
+{
+    expect_turned("", "17", "0", "\"lost\":0,");
+    expect_turned("\"coils\": [1, 2, 3, 4], \"offset\": 100", "117", "100", "\"lost\":0,");
+}
+END_TEST
+
+START_TEST(motor_with_swapped_leads_turns_back)
+{
+    expect_turned("\"coils\": [3, 2, 1, 4]", "-17", "0", "\"lost\":0,");
+    expect_turned("\"coils\": [1, 4, 3, 2]", "-17", "0", "\"lost\":0,");
+    expect_turned("\"coils\": [3, 4, 1, 2]", "17", "0", "\"lost\":0,"); /* both: forward again */
+}
+END_TEST
+
+/* It goes to and fro within a turn of the field, and where the field points away from it it stands. */
+START_TEST(motor_with_a_missing_lead_does_not_turn)
+{
+    char *text;
+    expect_turned("\"coils\": [1, 2, 3, 0]", "4", "0", "\"hold\":");
+    expect_turned("\"coils\": [0, 0, 0, 0]", "0", "0", "\"lost\":0,");
+    expect_turned("\"missing_lead\": true", "0", "0", "\"hold\":\"missing_lead\"");
+    text = strdup(fake_rig_seen(&rig));
+    ck_assert_msg(strstr(text, "unit 1 motor 1 plant 5\n") != NULL, "%s", text); /* PLANT_FIELD */
+    free(text);
+}
+END_TEST
+
+START_TEST(wiring_of_coils_is_checked)
+{
+    static const char *const wrong[][2] = {
+        {"[1, 2, 3]", "expected the leads of the device at lead 1 to 4 of the motor"},
+        {"[1, 2, 3, 5]", "a lead of the device, or 0 for none"},
+        {"[1, 2, 3, 1]", "expected each lead once"},
+        {"1", "expected the leads of the device"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char params[160];
+        snprintf(params, sizeof params, "{\"plant\": {\"motors\": {\"1\": {\"coils\": %s}}}}", wrong[i][0]);
+        fake_rig_expect_refusal(&rig, "plant.set", params, wrong[i][1]);
+    }
+    end();
+    fake_rig_begin(&rig, "1", false);
+    fake_rig_expect_refusal(&rig, "plant.set", "{\"plant\": {\"motors\": {\"1\": {\"coils\": [1, 2, 3, 4]}}}}",
+                            "found \"coils\"");
 }
 END_TEST
 
@@ -193,6 +267,10 @@ static Suite *fake_alone_suite(void)
     tcase_add_test(all, conditions_have_the_names);
     tcase_add_test(all, switch_of_a_plant_drives_a_named_input);
     tcase_add_test(all, vcd_has_the_names);
+    tcase_add_test(all, motor_follows_the_field_of_its_coils);
+    tcase_add_test(all, motor_with_swapped_leads_turns_back);
+    tcase_add_test(all, motor_with_a_missing_lead_does_not_turn);
+    tcase_add_test(all, wiring_of_coils_is_checked);
     suite_add_tcase(suite, all);
     return suite;
 }
