@@ -99,6 +99,48 @@ START_TEST(a_refused_command_is_a_fault_until_the_next_good_one)
 }
 END_TEST
 
+/* ---- Plants (BT4) -------------------------------------------------------------------------------------------------------- */
+
+static json_int_t true_position(void)
+{
+    json_t *state = cib_bus_command(&bus, "state", "{}");
+    json_int_t value =
+        json_integer_value(json_object_get(json_array_get(json_object_get(state, "motors"), 0), "true_position"));
+    json_decref(state);
+    return value;
+}
+
+/* Drive A moves 80 pulses forward; returns where the motor is then. */
+static json_int_t move_80(unsigned mode, const char *coils)
+{
+    char params[256];
+    snprintf(params, sizeof params, "{\"setup\": {\"drive_a\": {\"mode\": %u}}}", mode);
+    cib_bus_do(&bus, "cib.config.put", params);
+    cib_bus_do(&bus, "cib.apply", "{}");
+    snprintf(params, sizeof params, "{\"plant\": {\"motors\": {\"1\": {\"coils\": %s}}}}", coils);
+    cib_bus_do(&bus, "plant.set", params);
+    cib_bus_do(&bus, "cib.command", "{\"drive\": \"A\", \"command\": 102, \"p1\": 80, \"p2\": 100}");
+    cib_bus_to(&bus, sim_now(&bus.sim) + 2000000);
+    return true_position();
+}
+
+START_TEST(bt4_a_motor_follows_the_field_of_its_coils_in_every_mode)
+{
+    static const unsigned modes[] = {16, 17, 20, 21, 32, 33};
+    for (size_t i = 0; i < sizeof modes / sizeof *modes; i++)
+        ck_assert_msg(move_80(modes[i], "[1, 2, 3, 4]") == 80, "mode %u: %d", modes[i], (int)true_position());
+}
+END_TEST
+
+START_TEST(bt4_swapped_leads_turn_it_back_and_a_missing_one_keeps_it)
+{
+    json_int_t back = move_80(32, "[3, 2, 1, 4]");
+    ck_assert_msg(back >= -81 && back <= -76, "swapped: %d", (int)back);
+    json_int_t missing = move_80(32, "[1, 2, 0, 0]");
+    ck_assert_msg(missing >= -8 && missing <= 8, "missing: %d", (int)missing);
+}
+END_TEST
+
 /* ---- What goes wrong ---------------------------------------------------------------------------------------------------- */
 
 START_TEST(a_check_value_can_be_made_wrong)
@@ -211,6 +253,8 @@ static Suite *device_suite(void)
     tcase_add_test(one, a_trace_has_pulses_phases_and_status);
     tcase_add_test(one, a_trace_has_the_edges_of_pwm);
     tcase_add_test(one, a_refused_command_is_a_fault_until_the_next_good_one);
+    tcase_add_test(one, bt4_a_motor_follows_the_field_of_its_coils_in_every_mode);
+    tcase_add_test(one, bt4_swapped_leads_turn_it_back_and_a_missing_one_keeps_it);
     tcase_add_test(one, a_check_value_can_be_made_wrong);
     tcase_add_test(one, power_is_lost_with_what_the_host_applied);
     tcase_add_test(one, a_snapshot_brings_everything_back);
