@@ -82,7 +82,7 @@ START_TEST(nothing_is_reported_before_the_next_report)
     config.brake_error = (int8_t)(_i < 2 ? 0 : -10);
     promised = reported = 0;
     cib_begin(&cib, &config, &port, NULL);
-    command(_i % 2 == 0 ? A : B, 102, 3000, 500);
+    command(_i % 2 == 0 ? A : B, 102, _i < 4 ? 3000 : 1, 500);
     const unsigned taken = reported;
     unsigned turns = 0;
     while ((promised = cib_next_report(&cib)) != CIB_NEVER) {
@@ -91,6 +91,39 @@ START_TEST(nothing_is_reported_before_the_next_report)
     }
     ck_assert_uint_eq(reported, taken + 3); /* begun, ended, MCSTAT */
     ck_assert_uint_lt(turns, 200); /* not pulse by pulse */
+}
+END_TEST
+
+static unsigned order[8];
+static unsigned ordered;
+
+static void on_steps(void *context, unsigned axis, const uint64_t *tick, size_t count, int32_t position, bool forward)
+{
+    (void)context, (void)tick, (void)position, (void)forward;
+    ck_assert_uint_eq(count, 1);
+    ck_assert_uint_lt(ordered, 8);
+    order[ordered++] = axis;
+}
+
+static void on_outputs(void *context, uint64_t tick, uint16_t driven)
+{
+    (void)context, (void)tick, (void)driven;
+}
+
+START_TEST(BK2_drive_a_comes_in_front_of_drive_b)
+{
+    static const struct cib_port port = {.steps = on_steps, .outputs = on_outputs};
+    const unsigned expected[] = {2, 1, 2, 2, 1, 2};
+    struct cib_config config = cib_example;
+    config.setup.drive[A].ramps = config.setup.drive[B].ramps = 0;
+    ordered = 0;
+    cib_begin(&cib, &config, &port, NULL);
+    command(B, 102, 4, 200);
+    command(A, 102, 2, 100); /* with every other pulse of B */
+    at(30000);
+    ck_assert_uint_eq(ordered, 6);
+    for (unsigned i = 0; i < 6; i++)
+        ck_assert_uint_eq(order[i], expected[i]);
 }
 END_TEST
 
@@ -113,7 +146,8 @@ static Suite *cib_time_suite(void)
     tcase_add_loop_test(tests, BK1_time_may_be_cut_in_any_way, 0, 6);
     tcase_add_test(tests, pulses_are_the_same_one_by_one_and_in_blocks);
     tcase_add_test(tests, BK1_nothing_happens_before_the_next_event);
-    tcase_add_loop_test(tests, nothing_is_reported_before_the_next_report, 0, 4);
+    tcase_add_loop_test(tests, nothing_is_reported_before_the_next_report, 0, 6);
+    tcase_add_test(tests, BK2_drive_a_comes_in_front_of_drive_b);
     tcase_add_test(tests, BK1_the_end_of_time);
     suite_add_tcase(suite, tests);
     return suite;

@@ -3,7 +3,7 @@
  *
  *     mode MODE ACC_UNIT IDLE_OFF COMM_TIMEOUT CUT    what `begin` takes besides; advance by CUT ticks at a time, 0: in one
  *     begin START_SPEED SPEED_MAX ACCELERATION_MAX DECELERATION_MAX BRAKE_ERROR    power up
- *     command TICK NUMBER P1 P2 0                     to drive A, in the order of ticks
+ *     command TICK NUMBER P1 P2 DRIVE                 to drive 0 or 1, the only one that is looked at, in the order of ticks
  *     request TICK 0 0 0 0                            note a request
  *     end TICK 0 0 0 0                                print what is left, and an empty line
  *
@@ -19,6 +19,7 @@ static struct cib_unit unit;
 static struct cib_config config;
 static uint16_t sequence;
 static uint64_t cut;
+static unsigned drive; /* 0 or 1 */
 static struct {
     uint64_t tick;
     int32_t position;
@@ -28,7 +29,7 @@ static bool has_pulse;
 static void on_steps(void *context, unsigned axis, const uint64_t *tick, size_t count, int32_t position, bool forward)
 {
     (void)context, (void)forward;
-    if (axis != 1 || count != 1) /* with outputs, one by one */
+    if (axis != drive + 1 || count != 1) /* with outputs, one by one */
         printf("error: %zu pulses of axis %u\n", count, axis);
     pulse.tick = tick[0];
     pulse.position = position;
@@ -38,17 +39,18 @@ static void on_steps(void *context, unsigned axis, const uint64_t *tick, size_t 
 static void on_outputs(void *context, uint64_t tick, uint16_t driven)
 {
     (void)context;
+    const unsigned pattern = (unsigned)driven >> 4 * drive;
     if (has_pulse)
-        printf("p %" PRIu64 " %" PRId32 " %u\n", pulse.tick, pulse.position, driven);
+        printf("p %" PRIu64 " %" PRId32 " %u\n", pulse.tick, pulse.position, pattern);
     else
-        printf("o %" PRIu64 " %u\n", tick, driven);
+        printf("o %" PRIu64 " %u\n", tick, pattern);
     has_pulse = false;
 }
 
 static void on_event(void *context, uint64_t tick, unsigned axis, enum cib_event what, uint32_t value)
 {
     (void)context;
-    if (what == CIB_EVENT_STATUS && axis == 1)
+    if (what == CIB_EVENT_STATUS && axis == drive + 1)
         printf("s %" PRIu64 " %" PRIu32 "\n", tick, value);
 }
 
@@ -64,11 +66,12 @@ static void advance_to(uint64_t tick)
 
 static void begin(const long long *number)
 {
-    struct cib_drive_setup *drive = &config.setup.drive[0];
-    drive->start_speed = (uint16_t)number[0];
-    drive->speed_max = (uint16_t)number[1];
-    drive->acceleration_max = (uint16_t)number[2];
-    drive->deceleration_max = (uint16_t)number[3];
+    struct cib_drive_setup *setup = &config.setup.drive[0];
+    setup->start_speed = (uint16_t)number[0];
+    setup->speed_max = (uint16_t)number[1];
+    setup->acceleration_max = (uint16_t)number[2];
+    setup->deceleration_max = (uint16_t)number[3];
+    config.setup.drive[1] = *setup;
     config.brake_error = (int8_t)number[4];
     sequence = 0;
     cib_begin(&unit, &config, &port, NULL);
@@ -88,7 +91,8 @@ static void command(const long long *number)
 {
     const uint32_t p1 = (uint32_t)number[2];
     const uint16_t words[] = {++sequence, (uint16_t)number[1], (uint16_t)(p1 >> 16), (uint16_t)p1, (uint16_t)number[3]};
-    if (cib_write(&unit, 0x10, words, 5) != CIB_DONE)
+    drive = (unsigned)number[4];
+    if (cib_write(&unit, (uint16_t)(drive == 0 ? 0x10 : 0x20), words, 5) != CIB_DONE)
         puts("error: the registers were not written");
 }
 
