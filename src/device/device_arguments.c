@@ -138,7 +138,7 @@ static void list_options(const struct device_arguments *arguments, char list[DEV
     size_t length = 0;
     list[0] = '\0';
     for (const struct device_option *option = arguments->kind->options; option && option->name; option++)
-        if (is_offered(arguments, option) && length < DEVICE_ERROR_SIZE)
+        if ((option->flags & arguments->without) == 0 && length < DEVICE_ERROR_SIZE)
             length += (size_t)snprintf(list + length, DEVICE_ERROR_SIZE - length, length > 0 ? ", %s" : "%s", option->name);
 }
 

@@ -87,11 +87,13 @@ static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t
     struct sim_unit *unit = context;
     struct watch_event event = {
         .kind = WATCH_STEP, .unit = (uint8_t)unit->number, .motor = (uint8_t)motor, .pulse_ns = pulse_ns(unit, motor)};
-    const bool moves = unit->plant && !segment_kind(&unit->sim->segment)->coils;
+    const struct device_kind *kind = segment_kind(&unit->sim->segment);
+    const uint64_t since = segment_since(&unit->sim->segment, unit->number);
+    const bool moves = unit->plant && !kind->coils, is_fine = kind->ticks_per_us != 1;
     for (size_t i = 0; i < count; i++) {
         uint32_t way = forward ? (uint32_t)i : 0u - (uint32_t)i;
-        event.tick = us_of(unit, tick[i]);
-        event.order = ns_of(unit, tick[i]);
+        event.tick = since + (is_fine ? tick[i] / kind->ticks_per_us : tick[i]);
+        event.order = is_fine ? ns_of(unit, tick[i]) : 0;
         event.value = (int32_t)((uint32_t)position + way);
         watch_add(&unit->sim->watch, WATCH_PULSES, event);
         if (moves)

@@ -42,7 +42,7 @@ const char *nearest_hint(const char *word, const char *list)
         size_t name = strcspn(at, ", ");
         if (name > 0 && name <= WORD_MAX) {
             size_t found = distance(word, length, at, name);
-            if (found < nearest && found < least(length, name)) {
+            if (found < nearest && 2u * found <= least(length, name)) { /* "top" is not "low" */
                 nearest = found;
                 snprintf(hint, sizeof hint, "; did you mean `%.*s'?", (int)name, at);
             }

@@ -88,7 +88,7 @@ static const struct {
     {MOTOR("turn: 100, stops: {low: 1}"), "1:20: error: expected turn or stops: a turntable has no end"},
     {MOTOR("missing_lead: 2"), "1:28: error: expected whether a lead is missing, true or false, found 2"},
     {MOTOR("stops: 5"), "1:21: error: expected the end stops, as in {low: -50, high: 20000}"},
-    {MOTOR("stops: {top: 5}"), "1:22: error: expected low or high, found \"top\"; did you mean `low'?"},
+    {MOTOR("stops: {top: 5}"), "1:22: error: expected low or high, found \"top\""},
     {MOTOR("stops: {low: 5, high: 4}"), "1:21: error: expected a lower end stop that is not above the upper one"},
     {MOTOR("stops: {low: 5}"), "1:13: error: expected a motor between its end stops, found it at 0 (counter 0, offset 0)"},
     {MOTOR("jam: 5s"), "1:19: error: expected a jam, as in {from: 2s, to: 2500ms}"},

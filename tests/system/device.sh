@@ -76,6 +76,13 @@ test_an_unknown_device_and_options_of_another_one_are_refused() {
     holds "$complained" "expected addresses from 1 to 16, as set with switch S1" "stderr"
 }
 
+test_the_options_of_a_device_are_named_where_one_is_refused() {
+    echo 'steps: [{advance: 1s}]' >"$folder/a.yaml"
+    exits 2 "$RKM04" test --device-option framing=plain "$folder/a.yaml"
+    holds "$complained" "expected " "stderr"
+    holds "$complained" "readings" "an option that has a switch of its own in this command"
+}
+
 # The settings of a device are in --help with its name, and units begin with them.
 test_options_of_a_device() {
     exits 0 "$RKM04" serve --help
