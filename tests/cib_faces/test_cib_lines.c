@@ -168,6 +168,9 @@ START_TEST(bn1_a_line_without_colon_names_another_variable)
     expect("cib1.do", "GET:CIB1.DO,0\r\n");
     expect("SET:CIB1.PWM1,5", "DIFF:CIB1.PWM1,5\r\n");
     expect("CIB1.PWM2,6", "DIFF:CIB1.PWM2,6\r\n");
+    expect("EN:*", "WARNING:252 Changed active variables in public file: '[58/58]'\r\n");
+    expect("DI:CIB1.DO", "WARNING:252 Changed active variables in public file: '[57/58]'\r\n");
+    expect("CIB1.DI", "WARNING:252 Changed active variables in public file: '[56/58]'\r\n");
 }
 END_TEST
 
@@ -213,6 +216,45 @@ START_TEST(bn2_the_list_has_every_variable_with_its_type)
         lines++;
     ck_assert_uint_eq(lines, 59);
     ck_assert_str_eq(strrchr(heard[0], 'L'), "LIST:\r\n");
+}
+END_TEST
+
+/* Every name, in the order in which lists have them, and the register that it is. */
+START_TEST(bn2_names_stand_in_their_order)
+{
+    static const char *const plain[] = {"DI", "DO", "DRIVEN"}, *const of_drive[] = {
+        "SEQ", "CMD", "P2", "P1", "ACK", "MCSTAT", "MCERR", "ROW", "MOVE", "DIR", "INVEL", "TRG", "ERR", "POS", "VEL"};
+    static const char *const eight[] = {"DI", "DO", "PWM"};
+    char expected[4096] = "GET:__PLC_RUN,", *at = expected + strlen(expected);
+    say(0, "GET:");
+    char *got = heard[0];
+    for (char *value = got; (value = strchr(value, ',')) != NULL; value++) { /* leave the names alone */
+        const char *next = strchr(value, '\n') + 1;
+        memmove(value + 1, next, strlen(next) + 1);
+    }
+    for (size_t i = 0; i < 3; i++)
+        at += sprintf(at, "GET:CIB1.%s,", plain[i]);
+    for (size_t i = 0; i < 3; i++)
+        for (int n = 1; n <= 8; n++)
+            at += sprintf(at, "GET:CIB1.%s%d,", eight[i], n);
+    for (int drive = 'A'; drive <= 'B'; drive++)
+        for (size_t i = 0; i < sizeof of_drive / sizeof *of_drive; i++)
+            at += sprintf(at, "GET:CIB1.MC%c.%s,", drive, of_drive[i]);
+    strcpy(at, "GET:\r\n");
+    expect_heard(0, expected);
+}
+END_TEST
+
+START_TEST(bn2_drives_have_their_own_registers)
+{
+    expect("SET:CIB1.MCB.P2,77", "DIFF:CIB1.MCB.P2,77\r\n");
+    expect("SET:CIB1.MCA.P1,-2", "DIFF:CIB1.MCA.P1,-2\r\n");
+    ck_assert_uint_eq(cib_read(&unit[0], CIB_OUTPUT_ZONE, 0x24), 77);
+    ck_assert_uint_eq(cib_read(&unit[0], CIB_OUTPUT_ZONE, 0x14), 0);
+    ck_assert_uint_eq(cib_read(&unit[0], CIB_OUTPUT_ZONE, 0x12), 0xffff);
+    ck_assert_uint_eq(cib_read(&unit[0], CIB_OUTPUT_ZONE, 0x13), 0xfffe);
+    modules.address[0] = 100;
+    expect("GET:*B.P2", "GET:CIB100.MCB.P2,77\r\nGET:\r\n");
 }
 END_TEST
 
@@ -322,7 +364,12 @@ START_TEST(bc9_each_line_is_a_request)
 {
     struct cib_config config = cib_default_config;
     config.comm_timeout = 100;
+    power_up(2); /* a line is a request to all modules */
     cib_begin(&unit[0], &config, &nobody, NULL);
+    cib_begin(&unit[1], &config, &nobody, NULL);
+    expect("SET:CIB17.MCB.P1,500", "DIFF:CIB17.MCB.P1,500\r\n");
+    expect("SET:CIB17.MCB.CMD,105", "DIFF:CIB17.MCB.CMD,105\r\n");
+    expect("SET:CIB17.MCB.SEQ,1", "DIFF:CIB17.MCB.SEQ,1\r\n");
     expect("SET:CIB1.MCA.P1,500", "DIFF:CIB1.MCA.P1,500\r\n");
     expect("SET:CIB1.MCA.CMD,105", "DIFF:CIB1.MCA.CMD,105\r\n");
     expect("SET:CIB1.MCA.SEQ,1", "DIFF:CIB1.MCA.SEQ,1\r\n");
@@ -330,7 +377,8 @@ START_TEST(bc9_each_line_is_a_request)
         to(i * 90000);
         expect("hello", "ERROR:33 Unknown variable name in request: 'hello'\r\n");
     }
-    expect("GET:CIB1.MCA.VEL", "GET:CIB1.MCA.VEL,500\r\n");
+    expect("GET:CIB*.VEL",
+           "GET:CIB1.MCA.VEL,500\r\nGET:CIB1.MCB.VEL,0\r\nGET:CIB17.MCA.VEL,0\r\nGET:CIB17.MCB.VEL,500\r\nGET:\r\n");
     to(30 * 90000 + 110000);
     say(0, "GET:CIB1.MCA.INVEL"); /* the stop clears it */
     ck_assert_str_eq(heard[0], "GET:CIB1.MCA.INVEL,0\r\n");
@@ -351,6 +399,8 @@ static Suite *lines_suite(void)
     tcase_add_test(lines, bn1_a_line_has_1024_bytes_at_most);
     tcase_add_test(lines, bn1_a_longer_line_is_refused_whole);
     tcase_add_test(lines, bn2_the_list_has_every_variable_with_its_type);
+    tcase_add_test(lines, bn2_names_stand_in_their_order);
+    tcase_add_test(lines, bn2_drives_have_their_own_registers);
     tcase_add_test(lines, bn2_names_of_several_modules_have_their_addresses);
     tcase_add_test(lines, bn3_patterns);
     tcase_add_test(lines, bn4_values_are_checked);
