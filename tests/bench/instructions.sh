@@ -19,6 +19,8 @@ read -ra flags <<<"${CFLAGS:-$release}"
 "${CC:-gcc}" -std=c11 -D_GNU_SOURCE -g "${flags[@]}" -Iinclude src/*.c tests/bench/bench.c -o "$folder/bench" || exit 1
 "${CC:-gcc}" -std=c11 -D_GNU_SOURCE -g "${flags[@]}" -Iinclude -Isrc src/*.c src/cib/*.c tests/bench/cib_bench.c \
     -o "$folder/cib_bench" || exit 1
+"${CC:-gcc}" -std=c11 -D_GNU_SOURCE -g "${flags[@]}" -Iinclude -Isrc src/{ramp,ramp_pulses,wide,crc32}.c src/pmc/pmc_*.c \
+    tests/bench/bench_pmc.c -o "$folder/bench_pmc" || exit 1
 
 # count FUNCTION PROGRAM [OPTION]... NAME: sets `instructions`, and `line`, what the benchmark printed.
 count() {
@@ -27,11 +29,14 @@ count() {
     instructions=$(sed -n 's/^totals: //p' "$folder/out")
 }
 
-for name in constant ramp mixed exec cibconstant cibramp; do
+for name in constant ramp mixed exec cibconstant cibramp pmcconstant pmcramp pmctop; do
     for sink in blocks single; do
+        [[ $name$sink != pmc*single ]] || continue # the PMC's port takes blocks
         options=(--repeat=1)
         [[ $sink == single ]] && options+=(--single)
         case $name in
+        pmctop) count pmc_advance bench_pmc --quick top ;;
+        pmc*) count pmc_advance bench_pmc --once "${name#pmc}" ;;
         cib*) count cib_advance cib_bench "${options[@]:1}" "${name#cib}" ;;
         *) count rkm04_advance bench "${options[@]}" "$name" ;;
         esac

@@ -15,7 +15,7 @@ export CC=gcc
 unset CFLAGS
 
 found=$(./instructions.sh | sed -n 's/.*"work":"\([a-z]*\)","sink":"\([a-z]*\)".*_pulse":\([0-9.]*\)}/\1 \2 \3/p')
-[[ $(wc -l <<<"$found") == 12 ]] || { echo "regression: instructions.sh did not count twelve figures" >&2; exit 1; }
+[[ $(wc -l <<<"$found") == 15 ]] || { echo "regression: instructions.sh did not count fifteen figures" >&2; exit 1; }
 if [[ ${1-} == --renew ]]; then
     printf '%s\n' '# SPDX-License-Identifier: MIT' '# work, sink, instructions a pulse: regression.sh --renew' "$found" >$figures
     cat $figures
