@@ -354,7 +354,9 @@ START_TEST(AL3_an_error_that_is_cleared_on_the_ramp_comes_again)
     ck_assert(axis_state(0).moving);
     run_through_slot(53);
     ck_assert_int_eq(axis_state(0).errors, PMC_ERROR_HL_PLUS);
+    must(PMC_STOP_NOW, 1, 0, 0);
     run_until_idle(0);
+    ck_assert_int_eq(axis_state(0).errors, PMC_ERROR_HL_PLUS);
     must(PMC_CLEAR_ERRORS, 1, 0, 0);
     run_to(pmc_now(&unit) + 3 * SLOT);
     ck_assert_int_eq(axis_state(0).errors, 0); /* at rest it is none */

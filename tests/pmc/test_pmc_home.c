@@ -180,6 +180,8 @@ START_TEST(AX54_search_and_program_at_power_on)
     ck_assert_int_eq(pmc_store(&unit, 0), PMC_OK);
     pmc_rig_restart(&two_axes);
     rig_plant(0, 5000, usual, 2);
+    run_to_slot(100);
+    ck_assert_uint_eq(axis_state(0).driving, 5); /* the program has not begun */
     run_to_slot(3883);
     ck_assert_uint_eq(slot_of_reg(0, 0, 0), 0);
     const size_t before = pulses[0];

@@ -193,10 +193,13 @@ START_TEST(AX29_stop_of_a_jog)
     static const struct {
         unsigned slot, pulses, last;
     } rows[] = {{1, 2, 24000}, {5, 18, 88000}, {10, 60, 160000}, {19, 200, 312000}, {100, 1010, 960000}};
+    const unsigned i = (unsigned)_i % 5;
     begin(0, 0, 0, 0);
-    jog_and_stop(1000, rows[_i].slot);
-    ck_assert_uint_eq(pulses[0], rows[_i].pulses);
-    ck_ticks(rows[_i].pulses, rows[_i].last);
+    if (_i >= 5) /* without an end at the software limit */
+        set(0, PMC_FLAGS, 0x0103);
+    jog_and_stop(1000, rows[i].slot);
+    ck_assert_uint_eq(pulses[0], rows[i].pulses);
+    ck_ticks(rows[i].pulses, rows[i].last);
     ck_assert_int_eq(axis_state(0).errors, 0);
 }
 END_TEST
@@ -381,7 +384,7 @@ static Suite *motion_suite(void)
     tcase_add_test(rest, AX10_slow_up_and_steep_down);
     tcase_add_test(rest, AX11_four_million_pulses_a_second);
     tcase_add_test(rest, AX12_an_odd_speed_without_ramps);
-    tcase_add_loop_test(way, AX29_stop_of_a_jog, 0, 5);
+    tcase_add_loop_test(way, AX29_stop_of_a_jog, 0, 10);
     tcase_add_test(way, AX30_stop_with_another_deceleration);
     tcase_add_test(way, AX31_the_fifth_speed_changes_in_a_jog);
     tcase_add_loop_test(way, AX32_the_fifth_speed_changes_in_a_move, 0, 3);

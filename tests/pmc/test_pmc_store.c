@@ -78,12 +78,18 @@ START_TEST(AP6_what_is_stored_is_there_after_power_up_and_reset)
     ck_assert_int_eq(pmc_store(&unit, 1), PMC_OK);
     ck_assert_uint_eq(state_after_restart(1), 2);
     ck_assert_uint_eq(state_after_restart(0), 0); /* one axis alone */
+    for (unsigned i = 0; i < 4; i++) { /* each in blocks of its own */
+        fill(i % 2, 3 - i / 2);
+        ck_assert_int_eq(pmc_store(&unit, i % 2), PMC_OK);
+    }
+    ck_assert_uint_eq(state_after_restart(0), 2);
+    ck_assert_uint_eq(state_after_restart(1), 2);
     fill(1, 3);
     fill(0, 1);
     must(PMC_RESET, 0, 0, 0);
     run_through_slot(1);
     ck_assert(same(&unit.axis[1], &states[2]));
-    ck_assert(same(&unit.axis[0], &states[0]));
+    ck_assert(same(&unit.axis[0], &states[2]));
     ck_assert_uint_eq(flash.misuse, 0);
 }
 END_TEST
@@ -97,6 +103,14 @@ START_TEST(AP6_without_flash_nothing_is_stored)
     ck_assert_int_eq(small.axis[0].parameters.value[PMC_SPEED4], 8000);
     ck_assert_int_eq(pmc_store(&small, 0), PMC_STORE_FAILED);
     ck_assert_int_eq(pmc_store(&small, 2), PMC_NO_AXIS);
+    const struct pmc_command on = {.op = PMC_OUT, .argument = 1}; /* nor reported */
+    const struct pmc_request run = {.kind = PMC_RUN, .axes = 1}, jog = {.kind = PMC_JOG, .axes = 2, .value = {0, -1}};
+    ck_assert_int_eq(pmc_set_command(&small, 0, 0, &on), PMC_OK);
+    ck_assert_int_eq(pmc_request(&small, &run), PMC_OK);
+    ck_assert_int_eq(pmc_request(&small, &jog), PMC_OK);
+    pmc_advance(&small, 20 * SLOT);
+    ck_assert_uint_eq(pmc_outputs(&small), 1);
+    ck_assert_int_eq(small.axis[1].commanded, -1);
 }
 END_TEST
 
