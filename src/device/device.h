@@ -281,6 +281,7 @@ struct device_kind {
     unsigned turnaround;     /* us from a request to its answer, unless --turnaround says otherwise; 0: one character */
     bool deaf_to_answers;    /* where bytes take no time, no unit receives the answers of others: they look like requests */
     unsigned program;        /* commands that an axis can have in memory; 0: it has no program */
+    bool has_program_message; /* the steps `set` and `program` of scenarios send message 2 as the RKM04 has it */
     bool is_program_whole;   /* a text is for all axes (axis 0), not for one */
     unsigned flash_blocks, flash_block_size; /* 0: no flash */
     unsigned request_max, answer_max; /* bytes of the longest message, without framing; at most DEVICE_MESSAGE_MAX */

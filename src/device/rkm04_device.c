@@ -388,6 +388,7 @@ const struct device_kind rkm04_device = {
     .program = RKM04_PROGRAM_MAX,
     .flash_blocks = RKM04_FLASH_BLOCKS,
     .flash_block_size = RKM04_FLASH_BLOCK_SIZE,
+    .has_program_message = true,
     .request_max = RKM04_MESSAGE_MAX,
     .answer_max = ANSWER_MAX,
     .begin = begin,

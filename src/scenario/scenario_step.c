@@ -189,8 +189,9 @@ static bool set_program(struct scenario_reader *reader, const struct config_node
 {
     const struct config_node *motor_node = config_get(node, "motor"), *flag_node = config_get(node, "flag");
     int64_t motor = 1, flag = 0;
-    if (sim_device(reader->sim)->program == 0)
-        return config_error(node, "the device %s has no programs: expected message", sim_device(reader->sim)->name);
+    if (!sim_device(reader->sim)->has_program_message)
+        return config_error(node, "the device %s has no programs that a message sets: expected message or call",
+                            sim_device(reader->sim)->name);
     if (!read_unit(reader, node, true, &step->unit) || !read_within(reader, node, step) ||
         (motor_node != NULL && !config_integer(motor_node, "motor", 0, sim_device(reader->sim)->axes, &motor)) ||
         (flag_node != NULL && !config_integer(flag_node, "flag", 0, 3, &flag)))

@@ -102,6 +102,8 @@ START_TEST(scenario_of_a_device_without_a_bus)
     run_story("device: alone\nsteps:\n  - message: '04'\n", SCENARIO_FAILED, "the device alone has no bus: expected no message");
     run_story("device: alone\nsteps:\n  - bytes: '04'\n", SCENARIO_FAILED, "the device alone has no bus: expected no bytes");
     run_story("device: alone\nsteps:\n  - set: F1\n", SCENARIO_FAILED, "has no programs");
+    run_story("device: pmc-2hs\nsteps:\n  - set: F1\n", SCENARIO_FAILED,
+              "the device pmc-2hs has no programs that a message sets");
 }
 END_TEST
 
