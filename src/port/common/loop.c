@@ -6,7 +6,7 @@
 #include "wake.h"
 
 #define LEAST (BOARD_TICKS_AHEAD - 1000u) /* with so much left before the next event the unit is advanced again */
-#define LED_TICKS 100000u /* how often the LEDs are checked, at least */
+#define LED_TICKS 50000u /* how often the LEDs are checked */
 
 struct rkm04_unit unit;
 struct pulses board_pulses;
@@ -24,8 +24,9 @@ static void put(unsigned lane, uint64_t tick, uint8_t item)
 static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t count, int32_t position, bool forward)
 {
     (void)context, (void)position, (void)forward;
-    for (size_t i = 0; i < count; i++)
-        put(motor, tick[i], PULSE_STEP);
+    size_t done = pulses_put_steps(&board_pulses, motor, tick, count);
+    for (; done < count; done++)
+        put(motor, tick[done], PULSE_STEP);
 }
 
 static void on_direction(void *context, uint64_t tick, unsigned motor, bool forward)
@@ -71,8 +72,13 @@ static void transmit(void)
         line_send(bytes, count);
 }
 
-static void show_leds(void)
+/* Not at each turn: the state of a motor is worked out, its speed too. */
+static void show_leds(uint64_t now)
 {
+    static uint64_t due;
+    if (now < due)
+        return;
+    due = now + LED_TICKS;
     for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++) {
         struct rkm04_motor_state state;
         if (rkm04_motor_state(&unit, motor, &state))
@@ -109,7 +115,7 @@ void loop_turn(void)
     rkm04_set_inputs(&unit, board_inputs());
     receive();
     transmit();
-    show_leds();
+    show_leds(now);
     board_play((uint32_t)back_at(now));
     wake_wait(rkm04_sending(&unit));
 }

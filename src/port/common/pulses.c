@@ -29,6 +29,21 @@ void pulses_put(struct pulses *pulses, unsigned number, uint32_t tick, uint8_t i
     lane->in = in + 1;
 }
 
+size_t pulses_put_steps(struct pulses *pulses, unsigned number, const uint64_t *tick, size_t count)
+{
+    struct pulse_lane *lane = &pulses->lane[number];
+    uint32_t in = lane->in, room = PULSES_ROOM - (in - lane->out);
+    if (count > room)
+        count = room;
+    for (size_t i = 0; i < count; i++, in++) {
+        lane->tick[in % PULSES_ROOM] = (uint32_t)tick[i];
+        lane->item[in % PULSES_ROOM] = PULSE_STEP;
+    }
+    __atomic_signal_fence(__ATOMIC_SEQ_CST);
+    lane->in = in;
+    return count;
+}
+
 /* When does the lane continue? The pin is at 0. */
 static inline void set_next(struct pulse_lane *lane, uint32_t now)
 {

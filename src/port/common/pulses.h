@@ -11,6 +11,7 @@
 #define PULSES_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define PULSES_LANES 5u  /* motors 1..4, and 0: DO */
@@ -55,6 +56,9 @@ static inline bool pulses_room(const struct pulses *pulses, unsigned lane)
 /* Main loop: put an item in, for lane 0 (DO: item is the mask) or motor 1..4 (item: enum pulse_what), in the order of ticks.
  * There must be room. */
 void pulses_put(struct pulses *pulses, unsigned lane, uint32_t tick, uint8_t item);
+
+/* The same for steps of a motor: as many of them as there is room for. Returns their number. */
+size_t pulses_put_steps(struct pulses *pulses, unsigned lane, const uint64_t *tick, size_t count);
 
 /* Interrupt of a board that plays the lanes itself: the next item of a lane, if there is one; it is done. */
 static inline bool pulses_peek(const struct pulses *pulses, unsigned number, uint32_t *tick, uint8_t *item)

@@ -26,10 +26,10 @@ function crc32(bytes) {
     return crc >>> 0;
 }
 
-// An ELF file: { image: what goes into flash from its begin on, symbols: name -> address }.
+// An ELF file: { image: what goes into flash from its begin on, symbols: name -> address, ends: name -> address behind it }.
 export function readElf(path) {
     const file = readFileSync(path), view = new DataView(file.buffer, file.byteOffset, file.length);
-    const image = new Uint8Array(BLOCKS).fill(0xff), symbols = new Map();
+    const image = new Uint8Array(BLOCKS).fill(0xff), symbols = new Map(), ends = new Map();
     for (let i = 0, at = view.getUint32(28, true); i < view.getUint16(44, true); i++, at += 32) {
         const [kind, offset, , address, length] = [0, 4, 8, 12, 16].map((field) => view.getUint32(at + field, true));
         if (kind === 1 && length > 0)
@@ -42,16 +42,18 @@ export function readElf(path) {
             continue;
         const names = word(sections + 40 * word(section + 24) + 16);
         for (let at = word(section + 16); at < word(section + 16) + word(section + 20); at += 16) {
-            const name = names + word(at);
-            symbols.set(file.toString('latin1', name, file.indexOf(0, name)), word(at + 4));
+            const begin = names + word(at), name = file.toString('latin1', begin, file.indexOf(0, begin));
+            symbols.set(name, word(at + 4));
+            ends.set(name, word(at + 4) + word(at + 8));
         }
     }
-    return { image, symbols };
+    return { image, symbols, ends };
 }
 
 export class Board {
     // options: onByte(byte) what leaves on the bus while the driver is on; onEvent(name, number, value, nanos): step 1-4,
-    // direction 1-4, outputs, leds, driver; onCall(name, chip): a call of a function of `watch`; node: 1-16.
+    // direction 1-4, outputs, leds, driver; onCall(name, chip): a call of a function of `watch`; node: 1-16; megahertz: of the
+    // processor alone, 125 if not given; PIO, timer and UART stay as they are.
     constructor(elf, options = {}) {
         Object.assign(this, { elf, options, flash: null, inputs: 0, past: 0 });
         this.power();
@@ -227,8 +229,13 @@ export class Board {
     }
 
     // A word of the firmware's memory, by the symbol.
-    word(name, offset = 0) {
-        return this.chip.readUint32(this.elf.symbols.get(name) + offset);
+    word(name) {
+        return this.chip.readUint32(this.elf.symbols.get(name));
+    }
+
+    // By how many microseconds the latest pulse was late: the last member of board_pulses.
+    get latest() {
+        return this.chip.readUint32(this.elf.ends.get('board_pulses') - 4);
     }
 
     // Bytes on the bus, one after the other.
@@ -246,7 +253,7 @@ export class Board {
 
     // Let so much time pass.
     run(nanos) {
-        const { chip } = this, { core, clock } = chip, end = clock.nanos + nanos;
+        const { chip } = this, { core, clock } = chip, end = clock.nanos + nanos, cycle = 1000 / (this.options.megahertz ?? 125);
         while (clock.nanos < end) {
             if (core.waiting && core.pendingInterrupts & core.enabledInterrupts) {
                 core.waiting = false; // it came before WFI, with interrupts off: rp2040js would sleep through it
@@ -257,7 +264,7 @@ export class Board {
                 this.waiting += pass;
             } else {
                 const cycles = core.executeInstruction();
-                clock.tick(cycles * 8);
+                clock.tick(cycles * cycle);
                 if (core.IPSR !== 0) {
                     this.interrupt += cycles;
                 } else if (this.interrupt > 0) {

@@ -138,6 +138,49 @@ function load(elf, seconds) {
     console.log(`cycles_per_pulse ${Math.round((1 - free) * 125e6 / 64000)}`);
 }
 
+// Cycles of the processor for a pulse, in the main loop and in interrupts: at full speed and on a ramp; the longest interrupt.
+function figures(elf) {
+    let pulses = 0, worst = 0;
+    const count = (name, program, from, length) => {
+        const host = start(elf, { onEvent: (what) => { pulses += what === 'step'; } }), { board } = host;
+        host.set(program);
+        board.run(from);
+        const idle = board.waiting, before = board.inInterrupts;
+        pulses = 0;
+        board.run(length);
+        const all = (length - board.waiting + idle) / 8 / pulses, interrupts = (board.inInterrupts - before) / pulses;
+        worst = Math.max(worst, board.worst);
+        console.log(`${name}_main_loop ${Math.round(all - interrupts)}\n${name}_interrupts ${Math.round(interrupts)}`);
+    };
+    count('level', '\\ S2000 V16000 A60000 F16000000 R', 500 * MS, 500 * MS);
+    count('ramp', '\\ S100 V16000 A20000 F16000000 R', 20 * MS, 700 * MS);
+    console.log(`worst_interrupt ${worst}`);
+}
+
+// How late the latest pulse is with the processor at a lower clock: four motors at full speed begin together; a request of 1024 bytes comes; three begin compounds of ten segments while one runs.
+function late(elf, megahertz) {
+    const host = new Host(), board = new Board(elf, { onByte: host.onByte, megahertz: Number(megahertz) });
+    const full = '\\ S2000 V16000 A60000 F16000000 R', found = [];
+    const after = (milliseconds) => {
+        board.run(milliseconds * MS);
+        found.push(board.latest);
+        board.chip.writeUint32(elf.ends.get('board_pulses') - 4, 0);
+    };
+    board.run(100 * MS);
+    host.attach(board).set(full);
+    after(500);
+    host.ask(`\x020${'F16000000 V16000 A60000 '.repeat(43).slice(0, 1010).replace(/\S*$/, '')}`);
+    after(50);
+    host.set('\\ S137');
+    host.set(full, 4);
+    board.run(300 * MS);
+    const speeds = [9973, 15013, 501, 7013, 16000, 99, 12007, 1999, 15991, 777];
+    for (const motor of [1, 2, 3])
+        host.set(`${speeds.map((speed, i) => `F${1000 + i} V${speed} A${1000 + 997 * i} Y`).join(' ')} R`, motor);
+    after(300);
+    console.log(`late ${found.join(' ')}`);
+}
+
 // Store Flash, and power off in the middle of it, at every operation of the flash: the old program or the new one.
 function store(elf) {
     const host = start(elf), { board } = host, old = 'C100 F120 R', fresh = 'C100 F77 R B7 R';
@@ -178,7 +221,7 @@ function store(elf) {
     console.log(`power cut at ${cuts} operations`);
 }
 
-const tasks = { answers, driver, longRequest, manual, load, store };
+const tasks = { answers, driver, longRequest, manual, load, figures, late, store };
 const [task, firmware, ...rest] = process.argv.slice(2);
 try {
     tasks[task](readElf(firmware), ...rest);
