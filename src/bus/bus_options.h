@@ -39,7 +39,7 @@ struct bus_options {
     int min_coverage;           /* tenths of a per cent; -1: not asked for */
     const char *clock_text;     /* as given: "real", "x10", "max", "stepped" */
     struct virtual_clock clock;
-    unsigned baud;              /* 19200, or 0: bytes take no time */
+    unsigned baud;              /* of the units, or 0: bytes take no time */
     uint32_t turnaround;        /* us */
     enum line_rts rts;
     bool strict_line;

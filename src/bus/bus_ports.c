@@ -29,13 +29,13 @@ uint64_t bus_ports_dropped(const struct bus_ports *ports)
 
 static bool is_strict(const struct bus_ports *ports)
 {
-    return ports->options->strict_line && !line_settings_equal(ports->known, line_settings_unit);
+    return ports->options->strict_line && !line_settings_equal(ports->known, ports->unit);
 }
 
 /* The settings of the client who is there. Raw TCP has none. */
 static struct line_settings present_settings(const struct bus_ports *ports)
 {
-    struct line_settings settings = line_settings_unit;
+    struct line_settings settings = ports->unit;
     if (ports->rfc2217 && ports->rfc2217->attached)
         return ports->net;
     if (ports->options->pty && ports->line.clients > 0)
@@ -47,11 +47,11 @@ static struct line_settings present_settings(const struct bus_ports *ports)
 static void apply_new_settings(struct bus_ports *ports)
 {
     char change[LINE_SETTINGS_CHANGE_MAX];
-    if (!line_settings_changed(&ports->known, present_settings(ports), change))
+    if (!line_settings_changed(&ports->known, present_settings(ports), ports->unit, change))
         return;
     bus_log(ports->log, "%s", change);
-    line_receiver_begin(&ports->to_units, ports->known, line_settings_unit, false);
-    line_receiver_begin(&ports->to_client, line_settings_unit, ports->known, true);
+    line_receiver_begin(&ports->to_units, ports->known, ports->unit, false);
+    line_receiver_begin(&ports->to_client, ports->unit, ports->known, true);
 }
 
 /* ---- To the units --------------------------------------------------------------------------------------------------- */
@@ -151,7 +151,7 @@ static void on_event(void *context, enum line_event event)
         else
             bus_log_detail(ports->log, "a client has opened the bus");
         ports->dropped_logged = ports->line.dropped;
-        ports->known = line_settings_unit;
+        ports->known = ports->unit;
         break;
     case LINE_SHARED:
         bus_log(ports->log, "another client has opened the bus: each gets only a part of the answers");
@@ -295,7 +295,7 @@ static void on_net_event(void *context, enum net_event event, const char *peer)
     case NET_ATTACHED:
         ports->refused = 0;
         bus_log_detail(ports->log, "the client %s has opened the bus", peer);
-        ports->known = ports->net = line_settings_unit;
+        ports->known = ports->net = ports->unit;
         break;
     case NET_REFUSED:
         log_refused(ports, peer);
@@ -373,7 +373,7 @@ static bool open_line(struct bus_ports *ports, uv_loop_t *loop, struct line_watc
     if (options->port) {
         if (!line_serial_open(&ports->line, options->port, options->rts))
             return false;
-        if (options->rts == LINE_RTS_TOGGLES && !bus_rts_begin(&ports->rts, &ports->line, loop))
+        if (options->rts == LINE_RTS_TOGGLES && !bus_rts_begin(&ports->rts, &ports->line, ports->unit.baud, loop))
             return false;
     } else if (options->pty) {
         if (options->link && !name_expand(options->link, NULL, ports->log->number, path)) {
@@ -397,6 +397,8 @@ void bus_ports_prepare(struct bus_ports *ports, const struct bus_options *option
                        const struct bus_ports_calls *calls, void *context)
 {
     ports->options = options;
+    ports->unit = line_settings_unit;
+    ports->unit.baud = device_baud(options->device.kind, &options->device.config);
     ports->log = log;
     ports->calls = calls;
     ports->context = context;
@@ -407,10 +409,12 @@ void bus_ports_prepare(struct bus_ports *ports, const struct bus_options *option
 bool bus_ports_open(struct bus_ports *ports, uv_loop_t *loop, struct line_watch *watch)
 {
     const struct bus_options *options = ports->options;
-    ports->known = ports->net = line_settings_unit;
+    ports->known = ports->net = ports->unit;
     ports->watch = watch;
     if (!open_line(ports, loop, watch))
         return false;
+    if (ports->line.fd >= 0 && ports->unit.baud != line_settings_unit.baud)
+        line_settings_set_baud(ports->line.fd, ports->unit.baud);
     if (options->tcp && !(ports->tcp = open_net(ports, loop, options->tcp, NET_RAW)))
         return false;
     if (options->rfc2217 && !(ports->rfc2217 = open_net(ports, loop, options->rfc2217, NET_RFC2217)))
@@ -537,7 +541,7 @@ static void plug_in_adapter(struct bus_ports *ports)
         return;
     }
     ports->out = ports->retry_logged = false;
-    ports->known = ports->net = line_settings_unit;
+    ports->known = ports->net = ports->unit;
     plug_network(ports, true);
     if (ports->options->pty)
         bus_log(ports->log, "the adapter is plugged in again: %s, link %s", ports->line.path, ports->link.path);

@@ -41,6 +41,7 @@ struct bus_ports {
     uint64_t dropped_logged;        /* of line.dropped, those in the log already */
     unsigned refused;               /* network clients, since one had the line */
 
+    struct line_settings unit;                /* of the units */
     struct line_settings known;               /* of the client, as logged last */
     struct line_settings net;                 /* of the RFC 2217 client */
     struct line_receiver to_units, to_client; /* --strict-line and known is not as the unit has it */

@@ -5,8 +5,8 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-#define NS_PER_SECOND 1000000000u
-#define NS_PER_BYTE 520834u /* 10 bits at 19200 baud */
+#define NS_PER_SECOND UINT64_C(1000000000)
+#define BITS_PER_BYTE 10u
 #define NS_PER_LOOK 200000u /* between two looks whether the device has sent all */
 
 static void set_timer(struct bus_rts *rts, uint64_t when)
@@ -29,9 +29,10 @@ static void on_timer(uv_poll_t *handle, int status, int events)
         set_timer(rts, uv_hrtime() + NS_PER_LOOK);
 }
 
-bool bus_rts_begin(struct bus_rts *rts, struct line *line, uv_loop_t *loop)
+bool bus_rts_begin(struct bus_rts *rts, struct line *line, unsigned baud, uv_loop_t *loop)
 {
     rts->line = line;
+    rts->baud = baud;
     rts->timer.data = rts;
     rts->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
     int error = rts->timer_fd < 0 ? -errno : uv_poll_init(loop, &rts->timer, rts->timer_fd);
@@ -47,7 +48,7 @@ void bus_rts_lower_after(struct bus_rts *rts, size_t length)
     uint64_t now = uv_hrtime();
     if (rts->sent_until < now)
         rts->sent_until = now;
-    rts->sent_until += length * NS_PER_BYTE;
+    rts->sent_until += (length * BITS_PER_BYTE * NS_PER_SECOND + rts->baud - 1u) / rts->baud;
     set_timer(rts, rts->sent_until);
 }
 

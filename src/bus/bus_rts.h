@@ -9,6 +9,7 @@
 
 struct bus_rts {
     struct line *line;
+    unsigned baud;       /* of the line */
     int timer_fd;        /* -1: none */
     uv_poll_t timer;
     uint64_t sent_until; /* ns at which the device will have sent all */
@@ -16,7 +17,7 @@ struct bus_rts {
 
 /* Make the timer. Returns false if it did not work (reported). bus_rts_free() is due in either case; before that
  * rts->timer_fd is to be -1. */
-bool bus_rts_begin(struct bus_rts *rts, struct line *line, uv_loop_t *loop);
+bool bus_rts_begin(struct bus_rts *rts, struct line *line, unsigned baud, uv_loop_t *loop);
 
 /* RTS is on, `length` bytes have been written: switch it off when they are out. */
 void bus_rts_lower_after(struct bus_rts *rts, size_t length);

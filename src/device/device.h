@@ -31,6 +31,7 @@
 #define DEVICE_MESSAGE_MAX 9216u  /* bytes of a message, without framing */
 #define DEVICE_NEVER UINT64_MAX   /* no time */
 #define DEVICE_TURNAROUND 521u    /* us: one character */
+#define DEVICE_BAUD 19200u        /* of the bus, where a kind has no other */
 #define DEVICE_AXES_MAX 16u       /* of a unit; axis 1..DEVICE_AXES_MAX, 0 is the unit */
 #define DEVICE_BITS_MAX 32u       /* inputs, outputs, variables: bit 0 is the first */
 #define DEVICE_SETTINGS_SIZE 128u /* bytes that a kind has for its own settings */
@@ -278,6 +279,8 @@ struct device_kind {
     unsigned slot;           /* us of the period in which it looks at inputs and executes commands */
     unsigned pulse;          /* us of a step pulse; see pulse_ticks */
     unsigned speed_max;      /* steps/s that an axis can reach, so that plants can follow; 0: at most 128 000 */
+    /* Speed of the bus with these settings, 9600..115200 baud, a divisor of 115200. NULL: DEVICE_BAUD. */
+    unsigned (*baud)(const struct device_config *config);
     unsigned turnaround;     /* us from a request to its answer, unless --turnaround says otherwise; 0: one character */
     bool deaf_to_answers;    /* where bytes take no time, no unit receives the answers of others: they look like requests */
     unsigned program;        /* commands that an axis can have in memory; 0: it has no program */
@@ -394,6 +397,9 @@ struct device_kind {
 
 /* The framing of messages with these settings; of a device without a bus one that finds none. */
 const struct device_framing *device_framing_of(const struct device_kind *kind, const struct device_config *config);
+
+/* The speed of the bus of units with these settings. */
+unsigned device_baud(const struct device_kind *kind, const struct device_config *config);
 
 /* us from the end of a request to its answer where nothing else is said. */
 unsigned device_turnaround(const struct device_kind *kind);

@@ -112,6 +112,11 @@ const struct device_framing *device_framing_of(const struct device_kind *kind, c
     return kind->receive ? kind->framing(config) : &none;
 }
 
+unsigned device_baud(const struct device_kind *kind, const struct device_config *config)
+{
+    return kind->baud ? kind->baud(config) : DEVICE_BAUD;
+}
+
 unsigned device_turnaround(const struct device_kind *kind)
 {
     return kind->turnaround > 0 ? kind->turnaround : DEVICE_TURNAROUND;

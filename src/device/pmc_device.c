@@ -349,6 +349,12 @@ static const char *led_name(unsigned led)
     return led == DEVICE_LED_OFF ? "off" : NULL; /* it has none */
 }
 
+static unsigned baud_of(const struct device_config *config)
+{
+    const struct pmc_own own = pmc_own_of(config);
+    return own.baud > 0 ? own.baud : PMC_BAUD;
+}
+
 /* ---- Kinds ---------------------------------------------------------------------------------------------------------- */
 
 static const char *const inputs_1hs[] = {"in0", "in1", "near", "home", "z", "lmt+", "lmt-", "emg"};
@@ -362,19 +368,19 @@ static const char *const outputs_2hs[] = {"x.out0", "x.out1", "y.out0", "y.out1"
 #define SLOT_US (PMC_SLOT_TICKS / PMC_TICKS_PER_US)
 
 /* What both kinds have. */
-#define PMC_DEVICE                                                                                                              \
-    .size = sizeof(struct pmc_device), .addresses = PMC_ADDRESS_MAX, .ticks_per_us = PMC_TICKS_PER_US, .slot = SLOT_US,         \
-    .pulse = PULSE_US, .speed_max = SPEED_MAX, .turnaround = 1, .program = PMC_REGISTERS, .is_program_whole = true,             \
-    .flash_blocks = PMC_FLASH_BLOCKS,                                                                                           \
-    .flash_block_size = PMC_FLASH_BLOCK_SIZE, .request_max = PMC_FRAME_MAX, .answer_max = PMC_FRAME_MAX, .attach = attach,      \
-    .now = now, .advance = advance, .next_event = next_event, .next_report = next_report, .pulse_ticks = pulse_ticks,           \
-    .receive = receive, .send = send, .silence_end = silence_end, .has_answer = has_answer, .answer_wait = answer_wait,         \
-    .counters = counters_of, .has_check_value = has_check_value, .find_check_value = find_check_value, .exchange = exchange,    \
-    .set_inputs = set_inputs, .inputs_of = inputs_of, .outputs_of = outputs_of, .variables_of = variables_of, .node = node,     \
-    .axis = axis, .plan = pmc_device_plan, .command_text = command_text, .set_text = set_text, .is_stuck = is_stuck,            \
-    .state_name = pmc_state_name, .fault_name = pmc_fault_name, .led_name = led_name, .state = pmc_json_state,                  \
-    .describe = pmc_json_describe, .methods = pmc_methods, .settings = pmc_setting_names, .put_settings = pmc_put_settings,     \
-    .read_setting = pmc_read_setting, .unlike = pmc_settings_difference, .framing = pmc_framing, .words = &pmc_words,           \
+#define PMC_DEVICE \
+    .size = sizeof(struct pmc_device), .addresses = PMC_ADDRESS_MAX, .ticks_per_us = PMC_TICKS_PER_US, .slot = SLOT_US, \
+    .pulse = PULSE_US, .speed_max = SPEED_MAX, .baud = baud_of, .turnaround = 1, .program = PMC_REGISTERS, \
+    .is_program_whole = true, .flash_blocks = PMC_FLASH_BLOCKS, .flash_block_size = PMC_FLASH_BLOCK_SIZE, .request_max = PMC_FRAME_MAX, \
+    .answer_max = PMC_FRAME_MAX, .attach = attach, .now = now, .advance = advance, .next_event = next_event, \
+    .next_report = next_report, .pulse_ticks = pulse_ticks, .receive = receive, .send = send, .silence_end = silence_end, \
+    .has_answer = has_answer, .answer_wait = answer_wait, .counters = counters_of, .has_check_value = has_check_value, \
+    .find_check_value = find_check_value, .exchange = exchange, .set_inputs = set_inputs, .inputs_of = inputs_of, \
+    .outputs_of = outputs_of, .variables_of = variables_of, .node = node, .axis = axis, .plan = pmc_device_plan, \
+    .command_text = command_text, .set_text = set_text, .is_stuck = is_stuck, .state_name = pmc_state_name, \
+    .fault_name = pmc_fault_name, .led_name = led_name, .state = pmc_json_state, .describe = pmc_json_describe, \
+    .methods = pmc_methods, .settings = pmc_setting_names, .put_settings = pmc_put_settings, \
+    .read_setting = pmc_read_setting, .unlike = pmc_settings_difference, .framing = pmc_framing, .words = &pmc_words, \
     .repeat_size = sizeof(struct pmc_repeat), .find_repeat = pmc_find_repeat, .is_endless = is_endless
 
 const struct device_kind pmc_1hs_device = {

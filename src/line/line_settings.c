@@ -7,6 +7,7 @@
 
 #ifndef TCGETS2 /* where the first structure has them already */
 #define TCGETS2 TCGETS
+#define TCSETS2 TCSETS
 #define termios2 termios
 #endif
 
@@ -69,19 +70,31 @@ char *line_settings_text(struct line_settings settings, char text[LINE_SETTINGS_
     return text;
 }
 
-bool line_settings_changed(struct line_settings *known, struct line_settings now, char change[LINE_SETTINGS_CHANGE_MAX])
+bool line_settings_changed(struct line_settings *known, struct line_settings now, struct line_settings unit,
+                           char change[LINE_SETTINGS_CHANGE_MAX])
 {
-    char client[LINE_SETTINGS_TEXT_MAX], unit[LINE_SETTINGS_TEXT_MAX];
+    char client[LINE_SETTINGS_TEXT_MAX], text[LINE_SETTINGS_TEXT_MAX];
     if (line_settings_equal(*known, now))
         return false;
     *known = now;
     line_settings_text(now, client);
-    if (line_settings_equal(now, line_settings_unit))
+    if (line_settings_equal(now, unit))
         snprintf(change, LINE_SETTINGS_CHANGE_MAX, "client is %s, as the unit is", client);
     else
         snprintf(change, LINE_SETTINGS_CHANGE_MAX, "client is %s, unit is %s", client,
-                 line_settings_text(line_settings_unit, unit));
+                 line_settings_text(unit, text));
     return true;
+}
+
+void line_settings_set_baud(int fd, unsigned baud)
+{
+    struct termios2 settings;
+    if (ioctl(fd, TCGETS2, &settings) != 0)
+        return;
+    settings.c_cflag &= ~((tcflag_t)CBAUD | (tcflag_t)CBAUD << IBSHIFT);
+    settings.c_cflag |= BOTHER | (tcflag_t)BOTHER << IBSHIFT;
+    settings.c_ispeed = settings.c_ospeed = baud;
+    ioctl(fd, TCSETS2, &settings);
 }
 
 /* ---- The receiver --------------------------------------------------------------------------------------------------- */

@@ -22,7 +22,7 @@ struct line_settings {
 #define LINE_SETTINGS_TEXT_MAX 24
 #define LINE_SETTINGS_CHANGE_MAX 80
 
-extern const struct line_settings line_settings_unit; /* 19200 8N1 */
+extern const struct line_settings line_settings_unit; /* of an RKM04: 19200 8N1 */
 
 /* Read the settings of a terminal. With the master of a pty they are the client's. Speeds of any number are taken. Linux gives
  * a pty 8 data bits and no parity, whatever the client asks for. Returns false if `fd` is no terminal. */
@@ -36,10 +36,14 @@ bool line_settings_equal(struct line_settings a, struct line_settings b);
 /* "19200 8N1", "9600 7E1.5". Returns `text`. */
 char *line_settings_text(struct line_settings settings, char text[LINE_SETTINGS_TEXT_MAX]);
 
-/* Has the client changed its settings? `known`: what was reported last, or line_settings_unit when a client comes; it becomes
- * `now`. Returns true on a change; `change` is then "client is 9600 8N1, unit is 19200 8N1", or "client is 19200 8N1, as the
- * unit is". A client sets the line up after it has opened it: look again whenever bytes come. */
-bool line_settings_changed(struct line_settings *known, struct line_settings now, char change[LINE_SETTINGS_CHANGE_MAX]);
+/* Has the client changed its settings? `unit`: those of the unit. `known`: what was reported last, or `unit` when a client comes;
+ * it becomes `now`. Returns true on a change; `change` is then "client is 9600 8N1, unit is 19200 8N1", or "client is 19200
+ * 8N1, as the unit is". A client sets the line up after it has opened it: look again whenever bytes come. */
+bool line_settings_changed(struct line_settings *known, struct line_settings now, struct line_settings unit,
+                           char change[LINE_SETTINGS_CHANGE_MAX]);
+
+/* Set the speed of a terminal, if it is one. */
+void line_settings_set_baud(int fd, unsigned baud);
 
 /* ---- Bytes received -------------------------------------------------------------------------------------------------- */
 

@@ -101,7 +101,9 @@ static bool begin(struct handle *handle, struct refusal *refusal)
     if (!read_config(handle->options, &config, refusal))
         return false;
     *refusal = (struct refusal){REFUSED_MEMORY, "out of memory"};
-    handle_host_configure(handle, line_settings_unit);
+    handle->host.unit = line_settings_unit;
+    handle->host.unit.baud = device_baud(config.device, &config.unit);
+    handle_host_configure(handle, handle->host.unit);
     handle->sim.interrupted = is_interrupted;
     handle->sim.interrupted_context = handle;
     return sim_begin(&handle->sim, &config) && snapshots_attach(&handle->sim) && set_plant(handle, handle->options, refusal) &&

@@ -34,6 +34,7 @@ struct handle_byte {
 };
 
 struct handle_host {
+    struct line_settings unit;  /* those of the units */
     struct line_settings settings;
     bool differs;               /* they are not those of the units */
     struct line_receiver to_units, to_host;

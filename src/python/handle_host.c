@@ -14,9 +14,9 @@ void handle_host_configure(struct handle *handle, struct line_settings settings)
     if (host->settings.baud != 0 && line_settings_equal(host->settings, settings))
         return;
     host->settings = settings;
-    host->differs = !line_settings_equal(settings, line_settings_unit);
-    line_receiver_begin(&host->to_units, settings, line_settings_unit, false);
-    line_receiver_begin(&host->to_host, line_settings_unit, settings, true);
+    host->differs = !line_settings_equal(settings, host->unit);
+    line_receiver_begin(&host->to_units, settings, host->unit, false);
+    line_receiver_begin(&host->to_host, host->unit, settings, true);
 }
 
 /* ---- Sending ---------------------------------------------------------------------------------------------------------- */
@@ -112,11 +112,12 @@ void handle_host_receive(void *context, const uint8_t *bytes, size_t length)
 {
     struct handle *handle = context;
     struct line_received heard[LINE_RECEIVER_MAX];
+    uint64_t byte = wire_byte_parts(&handle->sim.segment.wire) / WIRE_TICK; /* ticks */
     for (size_t i = 0; i < length; i++) {
         size_t number = 1;
         heard[0].byte = bytes[i];
         if (handle->host.differs) /* the byte began as long ago as it takes */
-            number = line_receiver_byte(&handle->host.to_host, bytes[i], sim_now(&handle->sim) - WIRE_BYTE / WIRE_TICK, heard);
+            number = line_receiver_byte(&handle->host.to_host, bytes[i], sim_now(&handle->sim) - byte, heard);
         for (size_t at = 0; at < number; at++)
             keep(handle, heard[at].byte);
     }

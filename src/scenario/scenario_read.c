@@ -109,6 +109,17 @@ static bool read_device(struct scenario_reader *reader, const struct config_node
                         nearest_hint(name, device_kind_names(names)));
 }
 
+/* The rate of the unit; of one that has several it is chosen. */
+static bool read_rate(struct sim_config *config, const struct config_node *node, const char *text)
+{
+    const struct device_option *option = device_option_named(config->device, "baud");
+    char rate[16], error[DEVICE_ERROR_SIZE];
+    if (option)
+        return option->read(&config->unit, text, error) || config_error(node, "%s", error);
+    snprintf(rate, sizeof rate, "%u", device_baud(config->device, &config->unit));
+    return strcmp(text, rate) == 0 || config_error(node, "expected baud, %s or 0, found \"%.20s\"", rate, text);
+}
+
 static bool read_line(struct scenario *scenario, const struct config_node *root)
 {
     bool ok = true;
@@ -121,8 +132,7 @@ static bool read_line(struct scenario *scenario, const struct config_node *root)
                    ? config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED)
                    : config_error(config_get(root, "units"), NODE_LIST_FORMAT, config->device->addresses);
     config->timed = baud == NULL || strcmp(baud, "0") != 0;
-    if (baud != NULL && strcmp(baud, "0") != 0 && strcmp(baud, "19200") != 0)
-        ok = config_error(config_get(root, "baud"), "expected baud, 19200 or 0, found \"%.20s\"", baud);
+    ok = (baud == NULL || strcmp(baud, "0") == 0 || read_rate(config, config_get(root, "baud"), baud)) && ok;
     ok = read_time_up_to(root, "turnaround", SEGMENT_TURNAROUND_MAX, &turnaround) && ok;
     config->turnaround = (uint32_t)turnaround;
     return ok;

@@ -18,6 +18,7 @@
 #define IDLE_DEFAULT 10u /* s */
 #define IDLE_MAX 86400   /* s */
 #define NO_TURNAROUND UINT32_MAX /* not given */
+#define NO_BAUD UINT32_MAX          /* --baud is not given */
 
 enum key {
     KEY_NODE = 'n',
@@ -77,11 +78,14 @@ static const struct argp_option table[] = {
     {"rfc2217", KEY_RFC2217, "HOST:PORT", 0, "The same with RFC 2217: settings, purge, break and modem lines", 0},
     {"service", KEY_SERVICE, "NAME=HOST:PORT", 0,
      "Listen for clients of a server that the device has itself (`rkm04 devices --json' lists them); up to four", 0},
-    {"baud", KEY_BAUD, "RATE", 0, "19200 (default): each byte takes 520.8 us in both directions; 0: bytes take no time", 0},
+    {"baud", KEY_BAUD, "RATE", 0,
+     "The rate of the unit (default; of an RKM04 19200): each byte takes its time, 520.8 us, in both directions; 0: bytes take "
+     "no time", 0},
     {"turnaround", KEY_TURNAROUND, "US", 0,
      "Time from the end of a request to the start of the answer, 0 to 1000000 us; default 521, one character", 0},
     {"strict-line", KEY_STRICT_LINE, NULL, 0,
-     "Bytes of a client with another speed or character format than 19200 8N1 are garbled or lost, as on a real bus", 0},
+     "Bytes of a client with another speed or character format than the unit (RKM04: 19200 8N1) are garbled or lost, as on a "
+     "real bus", 0},
     {"lines", KEY_LINES, "N", 0,
      "Number of buses, 1 to 256, each with all these units and a pty (bus0, bus1, ...) or TCP port (PORT, PORT+1, ...) of its "
      "own; default 1", 0},
@@ -166,10 +170,20 @@ static unsigned read_bounded_number(const char *name, const char *text, unsigned
 
 static unsigned read_baud(const char *text, struct argp_state *state)
 {
-    long value = read_number(text, 19200);
-    if (value != 0 && value != 19200)
-        argp_error(state, "--baud: `%s' is wrong: expected 19200, the rate of the unit, or 0 for no pacing", text);
+    long value = read_number(text, 115200);
+    if (value < 0)
+        argp_error(state, "--baud: `%s' is wrong: expected the rate of the unit, or 0 for no pacing", text);
     return (unsigned)value;
+}
+
+/* The rate of the unit, unless it is 0. */
+static void complete_baud(struct bus_options *options, const struct argp_state *state)
+{
+    unsigned baud = device_baud(options->device.kind, &options->device.config);
+    if (options->baud != 0 && options->baud != baud && options->baud != NO_BAUD)
+        argp_error(state, "--baud: `%u' is wrong: expected %u, the rate of the unit, or 0 for no pacing", options->baud, baud);
+    if (options->baud != 0)
+        options->baud = baud;
 }
 
 /* Per cent with at most one decimal, in tenths. */
@@ -349,6 +363,7 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
         argp_error(state, "--flash: expected %%l in the name, for the number of the bus, with --lines");
     if (options->flash && options->nodes.count > 1 && !name_pattern_has(options->flash, 'n'))
         argp_error(state, "--flash: expected %%n in the name, for the address, with several units");
+    complete_baud(options, state);
     if (options->baud == 0 && options->strict_line)
         argp_error(state, "--strict-line needs bytes that take time: expected it without --baud 0");
     if (options->baud == 0 && options->turnaround != NO_TURNAROUND)
@@ -534,7 +549,7 @@ void serve_options_read(struct bus_options *options, int argc, char **argv)
         .nodes = {.count = 1, .node = {1}},
         .lines = 1,
         .clock_text = "real",
-        .baud = 19200,
+        .baud = NO_BAUD,
         .turnaround = NO_TURNAROUND,
         .min_coverage = -1,
         .seed = 1,

@@ -82,7 +82,7 @@ void serve_report_start(const struct bus_options *options, struct bus *const *bu
     else if (options->baud == 0 || options->clock.stands)
         log_at(0, "framing %s, bytes take no time, clock %s", framing_name(options), options->clock_text);
     else
-        log_at(0, "framing %s, bytes paced at 19200 baud, turnaround %" PRIu32 " us, clock %s", framing_name(options),
+        log_at(0, "framing %s, bytes paced at %u baud, turnaround %" PRIu32 " us, clock %s", framing_name(options), options->baud,
                options->turnaround, options->clock_text);
     if (!options->flash)
         log_at(0, "no flash image: stored programs are lost when the emulator ends (--flash FILE keeps them)");

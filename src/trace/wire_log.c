@@ -10,7 +10,11 @@ static void log_head(struct wire_text *out, const struct sim *sim)
 {
     wire_text_string(out, "# rkm04 wire log 1: ");
     wire_text_string(out, sim->monitor.framing->link->name);
-    wire_text_string(out, sim->segment.config.timed ? ", 19200 baud" : ", bytes take no time");
+    wire_text_string(out, sim->segment.config.timed ? ", " : ", bytes take no time");
+    if (sim->segment.config.timed) {
+        wire_text_number(out, sim->segment.config.baud, 0);
+        wire_text_string(out, " baud");
+    }
     wire_text_string(out, sim_units(sim) == 1 ? ", unit" : ", units");
     for (unsigned number = 1; number <= sim_units(sim); number++) {
         wire_text_put(out, ' ');

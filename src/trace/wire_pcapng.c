@@ -44,7 +44,6 @@ enum serial_event {
 };
 
 #define COMMENT_MAX 60000u /* characters; an option may have 65535 */
-#define BAUD 19200u
 
 static void put_little(struct wire_text *out, uint64_t value, unsigned bytes)
 {
@@ -126,7 +125,7 @@ static void pcapng_head(struct wire_text *out, const struct sim *sim)
     put_option_string(out, OPTION_NAME, "rs485");
     put_little(out, OPTION_SPEED, 2);
     put_little(out, 8, 2);
-    put_little(out, sim->segment.config.timed ? BAUD : 0, 8);
+    put_little(out, sim->segment.config.timed ? sim->segment.config.baud : 0, 8);
     put_option(out, OPTION_RESOLUTION, &microseconds, 1);
     put_little(out, OPTION_END, 4);
     end_block(out, at);

@@ -5,8 +5,7 @@
 
 #define BITS 10u                       /* of a byte: start bit, eight of data, stop bit */
 #define STOP_BIT (BITS - 1u)
-#define MIDDLE (WIRE_BIT / 2u)         /* of a bit */
-#define DECIDED (STOP_BIT * WIRE_BIT + MIDDLE) /* from the start of a byte to the sample of its stop bit */
+#define TICKS_PER_SECOND 1000000u
 #define HELD_END (DEVICE_NEVER - 1u)    /* of a break that continues; DEVICE_NEVER stands for none */
 
 static uint32_t bit_of(unsigned station)
@@ -14,17 +13,34 @@ static uint32_t bit_of(unsigned station)
     return UINT32_C(1) << station;
 }
 
-/* The number of the bit that a signal sends `time` parts after its start. */
-static unsigned bit_at(const struct wire_signal *signal, uint64_t time)
+uint64_t wire_byte_parts(const struct wire *wire)
 {
-    return signal->held ? 0 : (unsigned)((time - signal->start) / WIRE_BIT);
+    return (uint64_t)BITS * wire->bit;
+}
+
+/* From the begin of a bit to its middle. */
+static uint64_t middle(const struct wire *wire)
+{
+    return wire->bit / 2u;
+}
+
+/* From the start of a byte to the sample of its stop bit. */
+static uint64_t decided(const struct wire *wire)
+{
+    return (uint64_t)STOP_BIT * wire->bit + middle(wire);
+}
+
+/* The number of the bit that a signal sends at `time`. */
+static unsigned bit_at(const struct wire *wire, const struct wire_signal *signal, uint64_t time)
+{
+    return signal->held ? 0 : (unsigned)((time - signal->start) / wire->bit);
 }
 
 static bool is_high(const struct wire *wire, uint64_t time)
 {
     for (unsigned i = 0; i < wire->count; i++) {
         const struct wire_signal *signal = &wire->signal[i];
-        if (signal->start <= time && time < signal->end && (signal->bits >> bit_at(signal, time) & 1u) == 0)
+        if (signal->start <= time && time < signal->end && (signal->bits >> bit_at(wire, signal, time) & 1u) == 0)
             return false;
     }
     return true;
@@ -35,9 +51,9 @@ static bool is_high(const struct wire *wire, uint64_t time)
 /* The first time after `after` and before `before` at which a signal goes to 0 by itself and finds the line at 1. */
 static uint64_t is_signal_falling(const struct wire *wire, const struct wire_signal *signal, uint64_t after, uint64_t before)
 {
-    unsigned bit = after < signal->start ? 0 : bit_at(signal, after) + 1u;
+    unsigned bit = after < signal->start ? 0 : bit_at(wire, signal, after) + 1u;
     for (; bit < (signal->held ? 1u : STOP_BIT); bit++) {
-        uint64_t time = signal->start + bit * WIRE_BIT;
+        uint64_t time = signal->start + (uint64_t)bit * wire->bit;
         bool falls = (signal->bits >> bit & 1u) == 0 && (bit == 0 || (signal->bits >> (bit - 1u) & 1u) != 0);
         if (time >= before || time >= signal->end)
             break;
@@ -87,7 +103,7 @@ static void find_next_byte(struct wire *wire, unsigned receiver)
                 high = true;
             }
             fall = line_falls(wire, from, high);
-            end = end_of_own_signal(wire, receiver, from, fall == DEVICE_NEVER ? DEVICE_NEVER : fall + DECIDED + 1u);
+            end = end_of_own_signal(wire, receiver, from, fall == DEVICE_NEVER ? DEVICE_NEVER : fall + decided(wire) + 1u);
             from = end;
             high = true;
         } while (end != DEVICE_NEVER);
@@ -167,9 +183,9 @@ static void cut_signals(struct wire *wire, unsigned station, uint64_t time)
     }
 }
 
-void wire_begin(struct wire *wire)
+void wire_begin(struct wire *wire, unsigned baud)
 {
-    *wire = (struct wire){.stations = bit_of(WIRE_HOST) | bit_of(WIRE_MONITOR)};
+    *wire = (struct wire){.bit = WIRE_TICK * TICKS_PER_SECOND / baud, .stations = bit_of(WIRE_HOST) | bit_of(WIRE_MONITOR)};
     find_next_bytes(wire);
 }
 
@@ -192,7 +208,7 @@ void wire_send(struct wire *wire, unsigned station, uint8_t byte, uint64_t start
 {
     struct wire_signal signal = {
         .start = start,
-        .end = start + WIRE_BYTE,
+        .end = start + wire_byte_parts(wire),
         .bits = (uint16_t)(1u << STOP_BIT | (unsigned)byte << 1),
         .station = (uint8_t)station,
     };
@@ -246,7 +262,7 @@ static unsigned next_receiver(const struct wire *wire)
 uint64_t wire_due(const struct wire *wire)
 {
     uint64_t fall = wire->receiver[next_receiver(wire)].fall;
-    return fall == DEVICE_NEVER ? DEVICE_NEVER : fall + WIRE_BYTE;
+    return fall == DEVICE_NEVER ? DEVICE_NEVER : fall + wire_byte_parts(wire);
 }
 
 static uint32_t senders(const struct wire *wire, uint64_t start, uint64_t end)
@@ -262,18 +278,18 @@ static uint32_t senders(const struct wire *wire, uint64_t start, uint64_t end)
 static bool sample(const struct wire *wire, unsigned receiver, struct wire_byte *received)
 {
     uint64_t start = wire->receiver[receiver].fall;
-    if (is_high(wire, start + MIDDLE))
+    if (is_high(wire, start + middle(wire)))
         return false;
     unsigned byte = 0;
     for (unsigned bit = 1; bit < STOP_BIT; bit++)
-        byte |= (unsigned)is_high(wire, start + bit * WIRE_BIT + MIDDLE) << (bit - 1u);
+        byte |= (unsigned)is_high(wire, start + (uint64_t)bit * wire->bit + middle(wire)) << (bit - 1u);
     *received = (struct wire_byte){
         .start = start,
-        .end = start + WIRE_BYTE,
+        .end = start + wire_byte_parts(wire),
         .receiver = receiver,
-        .senders = senders(wire, start, start + WIRE_BYTE),
+        .senders = senders(wire, start, start + wire_byte_parts(wire)),
         .byte = (uint8_t)byte,
-        .lost = !is_high(wire, start + DECIDED),
+        .lost = !is_high(wire, start + decided(wire)),
     };
     return true;
 }
@@ -284,7 +300,7 @@ bool wire_receive(struct wire *wire, uint64_t until, struct wire_byte *byte)
         unsigned number = next_receiver(wire);
         struct wire_receiver *receiver = &wire->receiver[number];
         bool received = sample(wire, number, byte);
-        receiver->from = receiver->fall + (received ? DECIDED : MIDDLE) + 1u;
+        receiver->from = receiver->fall + (received ? decided(wire) : middle(wire)) + 1u;
         find_next_byte(wire, number);
         if (!received)
             continue;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* wire.h: two wires of RS485 at 19200 baud 8N1 (U7), bit by bit: what each station receives of what all of them send. Pure: no
+/* wire.h: two wires of RS485, 8N1, bit by bit: what each station receives of what all of them send. Pure: no
  * file, no clock.
  *
  * The level is 0 while anyone sends a 0. A station listens as a UART does: it waits for the line to fall, samples the middle of
@@ -8,7 +8,8 @@
  * of things if others are still at it. So a byte without a disturbance is received as it was sent, and the rest comes out of the
  * bits.
  *
- * Times are parts, WIRE_TICK to a tick: a bit is 625/12 us, so nothing is ever rounded. */
+ * Times are parts, WIRE_TICK to a tick: a bit is a whole number of them at 9600, 19200, 38400, 57600 and 115200 baud, so nothing
+ * is ever rounded. */
 #ifndef RKM04_WIRE_LEVELS_H
 #define RKM04_WIRE_LEVELS_H
 
@@ -17,9 +18,9 @@
 
 #include "device/device.h"
 
-#define WIRE_TICK 12u   /* parts of a tick */
-#define WIRE_BIT 625u   /* parts of a bit at 19200 baud */
-#define WIRE_BYTE 6250u /* parts of ten bits */
+#define WIRE_TICK 72u    /* parts of a tick */
+#define WIRE_BIT 3750u   /* parts of a bit at 19200 baud */
+#define WIRE_BYTE 37500u /* parts of ten bits */
 
 #define WIRE_HOST 0u                          /* station 0; 1..16 are units */
 #define WIRE_STATIONS 17u /* the host, and sixteen units */
@@ -45,6 +46,7 @@ struct wire_receiver {
 };
 
 struct wire {
+    uint32_t bit;        /* parts of a bit */
     uint64_t sent;       /* bytes sent, by all */
     uint64_t collisions; /* of these, bytes during which another station was sending, too */
     uint32_t stations;   /* ears in use: bit n is station n, or the monitor */
@@ -62,8 +64,11 @@ struct wire_byte {
     bool lost;           /* framing error: reported to the monitor alone, with the bits as they were */
 };
 
-/* An idle wire without units. */
-void wire_begin(struct wire *wire);
+/* An idle wire without units, with a speed that divides 115200 baud. */
+void wire_begin(struct wire *wire, unsigned baud);
+
+/* Parts of the ten bits of a byte. */
+uint64_t wire_byte_parts(const struct wire *wire);
 
 /* A station listens from `time` on (its power comes), or no more. Both also end what it sends, at `time`. */
 void wire_join(struct wire *wire, unsigned station, uint64_t time);

@@ -179,7 +179,7 @@ static void push_queue(struct segment *segment, uint64_t time)
         if (*start >= time)
             return;
         *start = time;
-        time += WIRE_BYTE;
+        time += wire_byte_parts(&segment->wire);
     }
     if (segment->host_free < time)
         segment->host_free = time;
@@ -197,10 +197,10 @@ static void host_start(struct segment *segment, uint64_t start)
     const struct segment_more *more = &segment->more[WIRE_HOST];
     if (!has_more(segment, WIRE_HOST)) {
         alter_byte(segment, WIRE_HOST, pop_queue(segment), &segment->more[WIRE_HOST]);
-        push_queue(segment, start + WIRE_BYTE * (more->count > 0 ? more->count : 1u));
+        push_queue(segment, start + wire_byte_parts(&segment->wire) * (more->count > 0 ? more->count : 1u));
     }
     send_more(segment, WIRE_HOST, start);
-    segment->more_start = start + WIRE_BYTE;
+    segment->more_start = start + wire_byte_parts(&segment->wire);
 }
 
 static void unit_start(struct segment *segment, unsigned station, uint64_t start)
@@ -217,7 +217,7 @@ static void unit_start(struct segment *segment, unsigned station, uint64_t start
             alter_byte(segment, station, byte, &segment->more[station]);
     }
     send_more(segment, station, start);
-    unit->next = has_more(segment, station) || has_answer(segment, unit) ? start + WIRE_BYTE : DEVICE_NEVER;
+    unit->next = has_more(segment, station) || has_answer(segment, unit) ? start + wire_byte_parts(&segment->wire) : DEVICE_NEVER;
     report_processed(segment, unit);
 }
 
@@ -420,7 +420,7 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
     segment->disturbed = false;
     for (unsigned station = 0; station < WIRE_STATIONS; station++)
         segment->more[station] = (struct segment_more){0};
-    wire_begin(&segment->wire);
+    wire_begin(&segment->wire, config->baud > 0 ? config->baud : DEVICE_BAUD);
 }
 
 void segment_end(struct segment *segment)
@@ -523,7 +523,7 @@ void segment_queue_bytes(struct segment *segment, const uint8_t *bytes, size_t l
         segment->queue[at].start = segment->host_free;
         segment->queue[at].byte = bytes[i];
         if (segment->config.timed)
-            segment->host_free += WIRE_BYTE;
+            segment->host_free += wire_byte_parts(&segment->wire);
     }
 }
 
@@ -572,5 +572,6 @@ uint64_t segment_due(const struct segment *segment)
         return earlier(untimed_due(segment), silence);
     unsigned station;
     uint64_t start = next_start(segment, &station);
-    return earlier(silence, tick_of(earlier(wire_due(&segment->wire), start == DEVICE_NEVER ? DEVICE_NEVER : start + WIRE_BYTE)));
+    uint64_t sent = start == DEVICE_NEVER ? DEVICE_NEVER : start + wire_byte_parts(&segment->wire);
+    return earlier(silence, tick_of(earlier(wire_due(&segment->wire), sent)));
 }

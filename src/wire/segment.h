@@ -78,6 +78,7 @@ struct segment_hooks {
 
 struct segment_config {
     bool timed;             /* false: bytes take no time (--baud 0) */
+    uint32_t baud;          /* 0: DEVICE_BAUD */
     bool echo;              /* the host receives its own bytes, too (a two-wire adapter with local echo) */
     uint32_t turnaround;    /* ticks, 0..SEGMENT_TURNAROUND_MAX, from the end of a request to the start bit of the answer */
     const struct device_kind *kind; /* of all units; NULL: the RKM04 */

@@ -22,11 +22,12 @@ static void check_news(struct line_settings settings)
 {
     struct line_settings known = line_settings_unit;
     char news[LINE_SETTINGS_CHANGE_MAX], text[LINE_SETTINGS_TEXT_MAX];
-    bool told = line_settings_changed(&known, settings, news);
+    bool told = line_settings_changed(&known, settings, line_settings_unit, news);
     FUZZ_CHECK(told != line_settings_equal(settings, line_settings_unit), "told %d", told);
     FUZZ_CHECK(!told || strstr(news, line_settings_text(settings, text)), "%s without %s", news, text);
-    FUZZ_CHECK(!line_settings_changed(&known, settings, news), "told twice");
-    FUZZ_CHECK(!told || (line_settings_changed(&known, line_settings_unit, news) && strstr(news, "as the unit is")), "%s", news);
+    FUZZ_CHECK(!line_settings_changed(&known, settings, line_settings_unit, news), "told twice");
+    FUZZ_CHECK(!told || (line_settings_changed(&known, line_settings_unit, line_settings_unit, news) &&
+                         strstr(news, "as the unit is")), "%s", news);
 }
 
 struct session {

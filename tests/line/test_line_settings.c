@@ -86,15 +86,15 @@ START_TEST(U7_a_difference_is_told_once_and_again_when_it_changes)
 {
     struct line_settings known = line_settings_unit;
     char change[LINE_SETTINGS_CHANGE_MAX];
-    ck_assert(!line_settings_changed(&known, at_19200, change));
-    ck_assert(line_settings_changed(&known, at_9600, change));
+    ck_assert(!line_settings_changed(&known, at_19200, line_settings_unit, change));
+    ck_assert(line_settings_changed(&known, at_9600, line_settings_unit, change));
     ck_assert_str_eq(change, "client is 9600 8N1, unit is 19200 8N1");
-    ck_assert(!line_settings_changed(&known, at_9600, change));
-    ck_assert(line_settings_changed(&known, line_settings_of(9600, 7, 'E', 3), change));
+    ck_assert(!line_settings_changed(&known, at_9600, line_settings_unit, change));
+    ck_assert(line_settings_changed(&known, line_settings_of(9600, 7, 'E', 3), line_settings_unit, change));
     ck_assert_str_eq(change, "client is 9600 7E1.5, unit is 19200 8N1");
-    ck_assert(line_settings_changed(&known, at_19200, change));
+    ck_assert(line_settings_changed(&known, at_19200, line_settings_unit, change));
     ck_assert_str_eq(change, "client is 19200 8N1, as the unit is");
-    ck_assert(!line_settings_changed(&known, at_19200, change));
+    ck_assert(!line_settings_changed(&known, at_19200, line_settings_unit, change));
 }
 END_TEST
 

@@ -103,6 +103,30 @@ files() {
     soon "$1: the program ends" at "$1" 200 0
 }
 
+# Ten bits at 9600 baud are 1042 us: 22 bytes of an answer take 23 ms; at 115200 they take 2 ms.
+test_bytes_take_the_time_of_their_speed() {
+    local rate
+    cat >"$folder/a.yaml" <<'END'
+device: pmc-2hs
+steps:
+  - {message: '"POS"', answer: '"POS 00000000,00000000"', within: 24ms}
+END
+    exits 0 "$RKM04" test "$folder/a.yaml"
+    sed 's/24ms/22ms/' "$folder/a.yaml" >"$folder/b.yaml"
+    exits 3 "$RKM04" test --no-records "$folder/b.yaml"
+    sed 's/24ms/3ms/; s/^device.*/&\nbaud: 115200/' "$folder/a.yaml" >"$folder/c.yaml"
+    exits 0 "$RKM04" test "$folder/c.yaml"
+    sed 's/115200/300/' "$folder/c.yaml" >"$folder/d.yaml"
+    exits 2 "$RKM04" test "$folder/d.yaml"
+    holds "$complained" "d.yaml:2:7: error: " "stderr"
+    unit
+    holds "$(<"$folder/bus.out")" '"baud":9600' "READY"
+    exits 0 pmc position
+    [[ $(<"$folder/bus.err") != *"client is"* ]] || fail "the client is as the unit: $(<"$folder/bus.err")"
+    exits 2 "$RKM04" serve --device pmc-2hs --baud 19200
+    holds "$complained" "expected 9600, the rate of the unit, or 0" "stderr"
+}
+
 test_modbus() {
     pmc() { "$RKMCTL" -p "$folder/bus" --face modbus pmc "$@"; }
     unit --device-option face=modbus

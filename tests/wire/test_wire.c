@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_wire.c: two wires, bit by bit (U7). Times are parts, twelfths of a tick. One case alone: CK_RUN_CASE=CASE ./test_wire */
+/* test_wire.c: two wires, bit by bit (U7). Times are parts of a tick. One case alone: CK_RUN_CASE=CASE ./test_wire */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,8 +7,9 @@
 #include "wire/levels.h"
 
 #define HEARD_MAX 4096
-#define BIT WIRE_BIT
-#define BYTE WIRE_BYTE
+#define BAUD 115200u /* the fewest parts */
+#define BIT 625u
+#define BYTE 6250u
 
 static struct wire wire;
 static struct wire_byte received[HEARD_MAX];
@@ -24,7 +25,7 @@ static void hear(uint64_t until)
 static void begin(unsigned units)
 {
     count = 0;
-    wire_begin(&wire);
+    wire_begin(&wire, BAUD);
     for (unsigned unit = 1; unit <= units; unit++)
         wire_join(&wire, unit, 0);
 }
@@ -274,6 +275,24 @@ START_TEST(what_is_sent_during_a_break_is_not_heard)
 }
 END_TEST
 
+START_TEST(bytes_take_the_time_of_the_speed)
+{
+    static const unsigned speeds[] = {9600, 19200, 38400, 57600, 115200};
+    for (size_t i = 0; i < sizeof speeds / sizeof *speeds; i++) {
+        struct wire_byte byte;
+        wire_begin(&wire, speeds[i]);
+        wire_send(&wire, WIRE_HOST, 0xA5, 1000);
+        uint64_t end = 1000 + UINT64_C(10000000) * WIRE_TICK / speeds[i];
+        ck_assert_uint_eq(wire_due(&wire), end);
+        ck_assert(!wire_receive(&wire, end - 1, &byte));
+        ck_assert(wire_receive(&wire, end, &byte));
+        ck_assert_uint_eq(byte.byte, 0xA5);
+        ck_assert_uint_eq(byte.end, end);
+        ck_assert(!byte.lost);
+    }
+}
+END_TEST
+
 START_TEST(any_number_of_short_breaks_is_survived)
 {
     begin(1);
@@ -438,6 +457,7 @@ int main(void)
     tcase_add_test(power, a_break_is_one_lost_byte_and_then_silence);
     tcase_add_test(power, what_is_sent_during_a_break_is_not_heard);
     tcase_add_test(power, any_number_of_short_breaks_is_survived);
+    tcase_add_test(power, bytes_take_the_time_of_the_speed);
     suite_add_tcase(suite, power);
     TCase *uart = tcase_create("uart");
     tcase_set_timeout(uart, 60);
