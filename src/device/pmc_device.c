@@ -371,7 +371,8 @@ static const char *const outputs_2hs[] = {"x.out0", "x.out1", "y.out0", "y.out1"
 #define PMC_DEVICE \
     .size = sizeof(struct pmc_device), .addresses = PMC_ADDRESS_MAX, .ticks_per_us = PMC_TICKS_PER_US, .slot = SLOT_US, \
     .pulse = PULSE_US, .speed_max = SPEED_MAX, .baud = baud_of, .turnaround = 1, .program = PMC_REGISTERS, \
-    .is_program_whole = true, .flash_blocks = PMC_FLASH_BLOCKS, .flash_block_size = PMC_FLASH_BLOCK_SIZE, .request_max = PMC_FRAME_MAX, \
+    .is_program_whole = true, .flash_blocks = PMC_FLASH_BLOCKS, .flash_block_size = PMC_FLASH_BLOCK_SIZE, \
+    .request_max = PMC_FRAME_MAX, \
     .answer_max = PMC_FRAME_MAX, .attach = attach, .now = now, .advance = advance, .next_event = next_event, \
     .next_report = next_report, .pulse_ticks = pulse_ticks, .receive = receive, .send = send, .silence_end = silence_end, \
     .has_answer = has_answer, .answer_wait = answer_wait, .counters = counters_of, .has_check_value = has_check_value, \

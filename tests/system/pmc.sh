@@ -205,6 +205,26 @@ client() {
     exits 0 "$python" -W ignore "${0%/*}/pmc_client.py" "$@"
 }
 
+test_the_conformance_kit_passes() {
+    [[ $python != none ]] || skip_case "there is no pyserial; apt-get install python3-serial"
+    local kit=${0%/*}/../../tools/conformance
+    unit
+    exits 0 "$python" "$kit" --device pmc-2hs --port "$folder/bus"
+    holds "$said" "pass  AS2 text moves" "the kit"
+    exits 0 "$python" "$kit" --device pmc-2hs --port "$folder/bus" --no-motion
+    holds "$said" "skip  AS2 text moves" "the kit"
+    exits 1 "$python" "$kit" --device pmc-1hs --port "$folder/bus" --no-motion
+    holds "$said" "FAIL  AS2 text position" "the kit with another device"
+    exits 3 "$python" "$kit" --device pmc-2hs --port "$folder/none"
+}
+
+test_the_conformance_kit_passes_by_modbus() {
+    [[ $python != none ]] || skip_case "there is no pyserial; apt-get install python3-serial"
+    unit --device-option face=modbus
+    exits 0 "$python" "${0%/*}/../../tools/conformance" --device pmc-2hs --face modbus --port "$folder/bus"
+    holds "$said" "pass  AB5 modbus moves" "the kit"
+}
+
 test_pymodbus_on_the_pty() {
     unit --device-option face=modbus
     client modbus "$folder/bus"

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+"""A PMC-2HS in the process of the test: a program, methods, lines of text through a port, at their speed."""
+
+import pytest
+import serial
+
+import rkm04
+
+PROGRAM = "X: 00 REP 1\nX: 01 INC 100 V3 50\nX: 02 RPE\nX: 03 END\n"
+
+
+def test_a_program_runs():
+    with rkm04.Bus(device="pmc-2hs", settings={"rep_counts": "passes"}) as bus:
+        assert bus.call("pmc.program", text=PROGRAM)["text"] == PROGRAM
+        bus.call("pmc.run", axes="x")
+        motor = bus.unit(1).motor(1)
+        motor.wait(state="program", limit="10ms")
+        motor.wait(state="idle", limit="10s")
+        assert motor.position == 100
+        with pytest.raises(rkm04.RefusedError, match="2:3: expected"):
+            bus.call("pmc.program", text="0 END\n1 FOO\n")
+
+
+def test_lines_through_a_port():
+    with rkm04.Bus(device="pmc-2hs") as bus:
+        url = rkm04.publish(bus)
+        try:
+            with serial.serial_for_url(url, baudrate=9600, timeout=0.5) as port:
+                port.write(b"POS\r")
+                assert port.read_until(b"\r") == b"POS 00000000,00000000\r"
+                assert bus.now == pytest.approx(26 * 1041.67, abs=10), "26 bytes at 9600 baud"
+        finally:
+            rkm04.unpublish(url)
