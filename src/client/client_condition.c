@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <rkm04/unit.h>
-
 #include "text/text.h"
 
 #define NAME_MAX_LENGTH 48
@@ -160,37 +158,13 @@ static json_t *read_integer(const struct reader *reader, const struct term *term
     return no_memory(reader, make_comparison(term, json_integer(number)));
 }
 
-static const char *name_of(const char *key, unsigned value)
-{
-    if (strcmp(key, "state") == 0)
-        return value <= RKM04_FAULTY ? rkm04_state_name((enum rkm04_state)value) : NULL;
-    if (strcmp(key, "led") == 0)
-        return value <= RKM04_LED_BLINK ? rkm04_led_name((enum rkm04_led)value) : NULL;
-    return value <= RKM04_FAULT_MOTION ? rkm04_fault_name((enum rkm04_fault)value) : NULL;
-}
-
-/* The name of a state, LED or fault; != is any of the others. */
+/* The name of a state, LED or fault. Which ones there are the emulator knows. */
 static json_t *word_term(const struct reader *reader, const struct term *term, const char *key, int motor)
 {
-    const char *name;
-    bool known = false, equal = strcmp(term->compare, "=") == 0;
-    if (!equal && strcmp(term->compare, "!=") != 0)
+    if (strcmp(term->compare, "=") != 0 && strcmp(term->compare, "!=") != 0)
         return report_expected(reader, "= or != and a word after %s, found '%s%s'", term->name, term->compare, term->value);
-    json_t *any = json_array();
-    for (unsigned i = 0; (name = name_of(key, i)) != NULL; i++) {
-        bool same = strcmp(name, term->value) == 0;
-        known = known || same;
-        if (same == equal)
-            json_array_append_new(any, json_pack("{s:i, s:s}", "motor", motor, key, name));
-    }
-    if (known)
-        return one_or_list(reader, any, "any");
-    json_decref(any);
-    int length = snprintf(reader->wrong, CLIENT_CONDITION_WRONG_SIZE, "expected after %s one of", term->name);
-    for (unsigned i = 0; (name = name_of(key, i)) != NULL; i++)
-        length += snprintf(reader->wrong + length, CLIENT_CONDITION_WRONG_SIZE - (size_t)length, "%s %s", i > 0 ? "," : "", name);
-    snprintf(reader->wrong + length, CLIENT_CONDITION_WRONG_SIZE - (size_t)length, ", found '%s'", term->value);
-    return NULL;
+    json_t *value = make_comparison(term, json_string(term->value));
+    return no_memory(reader, json_pack("{s:i, s:o}", "motor", motor, key, value));
 }
 
 /* A time with its unit, or a number of us. */
@@ -311,7 +285,7 @@ static json_t *unit_term(const struct reader *reader, const struct term *term, c
     static const struct {
         const char *name;
         int low, high;
-    } bits[] = {{"do", 1, 32}, {"di", 1, 32}, {"var", 80, 95}}; /* the emulator knows how many there are */
+    } bits[] = {{"do", 1, 32}, {"di", 1, 32}, {"var", 1, 99}}; /* the emulator knows which there are */
     if ((name[0] == 'd') && (name[1] == 'i' || name[1] == 'o') && name[2] == '.' && name[3] != '\0')
         return named_bit_term(reader, term, name[1] == 'i' ? "di" : "do", name + 3);
     if (name[0] == 'm' && name[1] >= '1' && name[1] <= '4' && name[2] == '.')
@@ -344,18 +318,11 @@ static const char *unit_of(const char *name, char unit[NAME_MAX_LENGTH])
     return name + length + 2;
 }
 
-/* Put the name of the unit into a term, also into those of which it consists (word_term()). */
+/* Put the name of the unit into a term. */
 static json_t *add_unit(json_t *json, const char *unit)
 {
-    size_t i;
-    json_t *other;
-    if (json == NULL || unit[0] == '\0')
-        return json;
-    json_t *any = json_object_get(json, "any");
-    if (any == NULL)
+    if (json != NULL && unit[0] != '\0')
         json_object_set_new(json, "unit", json_string(unit));
-    json_array_foreach(any, i, other)
-        json_object_set_new(other, "unit", json_string(unit));
     return json;
 }
 

@@ -2,7 +2,7 @@
 /* client_condition.h: what to wait for, as one types it into a shell, turned into the JSON of docs/CONTROL.md.
  *
  *     m1.position>=5000   m2.true<=0     m1.steps>10       numbers: also index, commands; = != < <= > >=
- *     m1.state=idle       m1.led=blink   m1.fault!=none    words; = !=
+ *     m1.state=idle       m1.led=blink   m1.fault!=none    words, those of the device; = !=
  *     m1.idle             idle           powered=0         one motor; all motors of the unit; its power
  *     do3=1               di08=0         var80=1           binary values
  *     message             message=4      host.message=2  one that passes, of any number; who sent it: host, unit, u3

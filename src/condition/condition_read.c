@@ -137,31 +137,53 @@ static const char *name_of(const struct device_kind *device, enum term_kind kind
     }
 }
 
+#define LIST_SIZE 320u
+
 /* The names that are possible there: "idle, ready, …". */
-static void list_names(const struct device_kind *device, enum term_kind kind, char list[200])
+static void list_names(const struct device_kind *device, enum term_kind kind, char list[LIST_SIZE])
 {
     size_t length = 0;
     const char *name;
-    for (unsigned i = 0; (name = name_of(device, kind, i)) != NULL; i++)
-        length += (size_t)snprintf(list + length, 200 - length, "%s%s", i > 0 ? ", " : "", name);
+    list[0] = '\0';
+    for (unsigned i = 0; length < LIST_SIZE && (name = name_of(device, kind, i)) != NULL; i++)
+        length += (size_t)snprintf(list + length, LIST_SIZE - length, "%s%s", i > 0 ? ", " : "", name);
 }
 
-static bool read_name(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+static bool read_one_name(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
 {
+    const struct device_kind *device = sim_device(r->sim);
     const char *name, *wanted = json_string_value(json);
-    char list[200];
+    char list[LIST_SIZE];
     if (term.kind == TERM_FAULT && json_is_null(json))
-        wanted = sim_device(r->sim)->fault_name(0);
-    for (unsigned i = 0; wanted != NULL && (name = name_of(sim_device(r->sim), (enum term_kind)term.kind, i)) != NULL; i++) {
+        wanted = device->fault_name(0);
+    for (unsigned i = 0; wanted != NULL && (name = name_of(device, (enum term_kind)term.kind, i)) != NULL; i++) {
         if (strcmp(name, wanted) == 0) {
             term.value = i;
             return add_term(r, group, &term);
         }
     }
-    list_names(sim_device(r->sim), (enum term_kind)term.kind, list);
+    list_names(device, (enum term_kind)term.kind, list);
     if (wanted == NULL)
         return REFUSE("%s: expected one of %s", key, list);
     return REFUSE("%s: expected one of %s, found \"%.40s\"", key, list, wanted);
+}
+
+/* A name, or an object of the relations == and != with names: a term each. */
+static bool read_name(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+{
+    const char *relation;
+    json_t *name;
+    if (!json_is_object(json) || json_object_size(json) == 0)
+        return read_one_name(r, group, term, key, json);
+    json_object_foreach((json_t *)json, relation, name) {
+        bool equal = strcmp(relation, term_relation_name(TERM_EQUAL)) == 0;
+        if (!equal && strcmp(relation, term_relation_name(TERM_UNEQUAL)) != 0)
+            return REFUSE("%s: expected == or != before a name, found \"%.20s\"", key, relation);
+        term.relation = equal ? TERM_EQUAL : TERM_UNEQUAL;
+        if (!read_one_name(r, group, term, key, name))
+            return false;
+    }
+    return true;
 }
 
 /* ---- Flags and bits ------------------------------------------------------------------------------------------------- */

@@ -149,6 +149,23 @@ START_TEST(C7_a_fault_can_be_waited_for)
 }
 END_TEST
 
+START_TEST(another_state_can_be_waited_for)
+{
+    program(1, '1', "S100 V1000 A2000 F5000 R");
+    expect_at("{\"motor\": 1, \"state\": {\"!=\": \"idle\"}}", 0); /* it is ready */
+    wait_for("{\"motor\": 1, \"state\": {\"==\": \"moving\"}, \"fault\": {\"==\": null}}");
+    ck_assert(condition_run(condition, 100 * SECOND));
+    wait_for("{\"motor\": 1, \"state\": {\"!=\": \"moving\"}}");
+    ck_assert(condition_run(condition, 100 * SECOND));
+    ck_assert_int_eq(sim_axis(sim, 1, 1).position, 5000);
+    wait_for("{\"motor\": 1, \"led\": {\"!=\": \"blink\"}}");
+    ck_assert(condition_run(condition, 100 * SECOND));
+    expect_refused("{\"motor\": 1, \"state\": {\">\": \"idle\"}}", "expected == or != before a name, found \">\"");
+    expect_refused("{\"motor\": 1, \"state\": {\"!=\": \"asleep\"}}", "expected one of idle, ready, moving");
+    expect_refused("{\"motor\": 1, \"state\": {}}", "expected one of idle, ready, moving");
+}
+END_TEST
+
 START_TEST(time_comes_of_itself)
 {
     expect_at("{\"t\": \"2.5s\"}", 2500 * MS);
@@ -323,6 +340,7 @@ static Suite *condition_suite(void)
     tcase_add_test(holds, all_motors_are_idle_when_the_last_one_is);
     tcase_add_test(holds, outputs_variables_and_inputs_are_seen_to_the_tick);
     tcase_add_test(holds, C7_a_fault_can_be_waited_for);
+    tcase_add_test(holds, another_state_can_be_waited_for);
     tcase_add_test(holds, time_comes_of_itself);
     tcase_add_test(holds, all_and_any_of_several);
     tcase_add_test(holds, what_never_comes_ends_at_the_limit);

@@ -63,6 +63,23 @@ test_rkmctl_shows_inputs_and_sets_outputs() {
     exits 2 cib cib do 9=1
     exits 2 cib cib pwm 1 10001
 }
+test_conditions_have_the_words_of_the_module() {
+    serve_cib --clock stepped
+    exits 0 cib cib command B 101 -- -5 1001
+    exits 0 cib wait m2.fault=maximum --limit 1ms
+    exits 3 cib advance 'm2.fault!=maximum' --limit 1ms
+    holds "$complained" "motor 2 fault != maximum (is maximum)" "another word"
+    exits 0 cib cib command A 102 300 100
+    exits 0 cib advance m1.state=moving var1=1 --limit 10ms
+    exits 0 cib advance 'm1.state!=moving' var1=0 var4=1 --limit 60s
+    exits 2 cib wait m1.fault=no_label --limit 1ms
+    holds "$complained" 'fault: expected one of none, ' "the words"
+    holds "$complained" 'maximum' "the words"
+    exits 2 cib wait m1.state=asleep --limit 1ms
+    holds "$complained" 'expected one of idle, moving, stopping, turning, found "asleep"' "the words"
+    exits 2 cib wait var13=1 --limit 1ms
+    holds "$complained" "expected a number 01 to 12" "the variables"
+}
 
 test_rkmctl_puts_back_the_configuration_that_it_got() {
     serve_cib --clock stepped

@@ -242,7 +242,10 @@ test_a_home_search_with_a_plant_is_recorded_and_replayed() {
     unit --clock stepped --plant "$folder/plant.yaml" --record "$folder/a.record" --trace "$folder/a.csv"
     export RKM04_CONTROL=$folder/bus.control
     exits 0 "$RKMCTL" call pmc.home '{"axes": "x"}'
-    exits 0 "$RKMCTL" advance 2s
+    exits 0 "$RKMCTL" advance m1.state=search m1.fault!=hl- --limit 1s
+    exits 2 "$RKMCTL" wait m1.fault=no_label
+    holds "$complained" 'expected one of none, sl+, sl-, hl+' "the faults of the device"
+    exits 0 "$RKMCTL" advance t=2s
     exits 0 "$RKMCTL" snapshot half
     exits 0 "$RKMCTL" advance m1.idle --limit 10s
     exits 0 "$RKMCTL" --json state
