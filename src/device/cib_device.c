@@ -85,6 +85,9 @@ static void on_event(void *context, uint64_t tick, unsigned axis, enum cib_event
     case CIB_EVENT_POSITION:
         report(device, tick, axis, DEVICE_EVENT_POSITION, value);
         break;
+    case CIB_EVENT_DUTY:
+        report(device, tick, axis, DEVICE_EVENT_VALUE, value);
+        break;
     default: /* not seen from outside */
         break;
     }
@@ -335,6 +338,13 @@ static bool is_endless(const struct device_unit *unit, unsigned number, char tex
     return is_endless;
 }
 
+/* The duty registers, in 0.01 %. */
+static int32_t value(const struct device_unit *unit, unsigned number)
+{
+    return cib_read(&cib_device_read(unit)->unit, CIB_OUTPUT_ZONE, (uint16_t)number);
+}
+
+static const char *const value_names[CIB_OUTPUTS] = {"pwm1", "pwm2", "pwm3", "pwm4", "pwm5", "pwm6", "pwm7", "pwm8"};
 static const char *const input_names[] = {"di1", "di2", "di3", "di4", "di5", "di6", "di7", "di8",
                                           "button1", "button2", "button3", "button4", "button5", "button6", "button7", "button8"};
 static const char *const output_names[] = {"do1", "do2", "do3", "do4", "do5", "do6", "do7", "do8",
@@ -349,6 +359,9 @@ const struct device_kind cib_device = {
     .outputs = 2 * CIB_OUTPUTS,
     .input_names = input_names,
     .output_names = output_names,
+    .values = CIB_OUTPUTS,
+    .value_names = value_names,
+    .value = value,
     .variables = CIB_DRIVES * STATUS_BITS,
     .first_variable = 1,
     .addresses = MODBUS_ADDRESS_MAX,

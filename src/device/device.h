@@ -37,6 +37,7 @@
 #define DEVICE_SETTINGS_SIZE 128u /* bytes that a kind has for its own settings */
 #define DEVICE_COMMAND_SIZE 64u   /* bytes of a command as text */
 #define DEVICE_ERROR_SIZE 256u    /* bytes of a message */
+#define DEVICE_VALUES_MAX 16u     /* of a unit; value 1..DEVICE_VALUES_MAX */
 #define DEVICE_BIT_NAME_SIZE 16u  /* bytes of the name of an input or output, with its end */
 #define DEVICE_TEXT_OVERFLOWS 3   /* flag of set_text: more than the memory holds */
 
@@ -62,7 +63,8 @@ enum device_event {
     DEVICE_EVENT_LED,      /* value: enum device_led */
     DEVICE_EVENT_VARIABLE, /* axis 0; value: all variables, the first in bit 0 */
     DEVICE_EVENT_FAULT,    /* value: kind->fault_name(); 0: none */
-    DEVICE_EVENT_POSITION  /* value: counter, as two's complement, that no step led to */
+    DEVICE_EVENT_POSITION, /* value: counter, as two's complement, that no step led to */
+    DEVICE_EVENT_VALUE     /* axis: which of the values, from 1; value: what it is now, as two's complement */
 };
 
 /* What a unit reports and asks; called from within begin, receive, send and advance. `axis` from 1, `tick` of the unit. What
@@ -274,6 +276,11 @@ struct device_kind {
     /* Names of inputs and outputs, the first one first: "near", "lmt+"; letters, digits and `_ . + -`, shorter than
      * DEVICE_BIT_NAME_SIZE, no number. They may be used in place of the numbers. NULL: numbers alone. */
     const char *const *input_names, *const *output_names;
+    /* Numbers that a unit has besides, as the duties of PWM outputs, for traces: 0..DEVICE_VALUES_MAX, and their names as above.
+     * All are 0 at power-up. value(): what number 1..values is now; NULL if there are none. */
+    unsigned values;
+    const char *const *value_names;
+    int32_t (*value)(const struct device_unit *unit, unsigned number);
     unsigned addresses;      /* 1..addresses are addresses; at most 247 */
     unsigned ticks_per_us;
     unsigned slot;           /* us of the period in which it looks at inputs and executes commands */

@@ -27,6 +27,7 @@ struct look_motor {
 struct look {
     bool powered;
     uint32_t inputs, outputs, variables;
+    int32_t value[DEVICE_VALUES_MAX];
     struct look_motor motor[DEVICE_AXES_MAX];
 };
 
@@ -171,6 +172,8 @@ static void read_visible_state(struct sim *sim, unsigned number, struct look *lo
         .outputs = kind->outputs_of(unit),
         .variables = kind->variables_of(unit),
     };
+    for (unsigned value = 1; value <= kind->values; value++)
+        look->value[value - 1u] = kind->value(unit, value);
     for (unsigned motor = 1; motor <= kind->axes; motor++) {
         struct device_axis state = sim_axis(sim, number, motor);
         look->motor[motor - 1u] = (struct look_motor){
@@ -197,6 +200,14 @@ static void report_change(struct sim *sim, unsigned number, unsigned motor, enum
         sim_report(sim, WATCH_DELIVERED, &event);
 }
 
+static void report_value(struct sim *sim, unsigned number, unsigned value, int32_t before, int32_t after)
+{
+    struct watch_event event = {
+        .tick = sim_now(sim), .value = after, .kind = WATCH_VALUE, .unit = (uint8_t)number, .number = (uint8_t)value};
+    if (before != after)
+        sim_report(sim, WATCH_DELIVERED, &event);
+}
+
 static void report_changes(struct sim *sim, unsigned number, const struct look *before)
 {
     struct look after;
@@ -205,6 +216,8 @@ static void report_changes(struct sim *sim, unsigned number, const struct look *
     report_change(sim, number, 0, WATCH_INPUTS, (int32_t)before->inputs, (int32_t)after.inputs);
     report_change(sim, number, 0, WATCH_OUTPUTS, (int32_t)before->outputs, (int32_t)after.outputs);
     report_change(sim, number, 0, WATCH_VARIABLES, (int32_t)before->variables, (int32_t)after.variables);
+    for (unsigned value = 1; value <= sim_device(sim)->values; value++)
+        report_value(sim, number, value, before->value[value - 1u], after.value[value - 1u]);
     for (unsigned motor = 1; motor <= sim_device(sim)->axes; motor++) {
         const struct look_motor *a = &before->motor[motor - 1u], *b = &after.motor[motor - 1u];
         report_change(sim, number, motor, WATCH_POSITION, a->position, b->position);

@@ -64,7 +64,8 @@ static void on_event(void *context, const struct watch_event *event)
     if (tally->count > 0 || event->tick >= tally->span_end)
         pass_time(tally, event->tick);
     struct tally_stream *stream = &tally->stream[event->unit][event->motor];
-    uint64_t what = (uint64_t)event->kind << 32 | (uint32_t)event->value, more = watch_ns(event);
+    uint64_t what = (uint64_t)event->kind << 32 | (uint32_t)event->value;
+    uint64_t more = watch_ns(event) + ((uint64_t)event->number << 10);
     if (event->kind == WATCH_BYTE)
         more = event->byte.start << 20 ^ event->byte.senders << 1 ^ event->byte.lost;
     if (event->kind == WATCH_SERVICE)

@@ -61,7 +61,8 @@ static void add_unit_event(const struct sim_unit *unit, uint64_t tick, enum watc
         .value = value,
         .kind = (uint8_t)kind,
         .unit = (uint8_t)unit->number,
-        .motor = (uint8_t)motor,
+        .motor = (uint8_t)(kind == WATCH_VALUE ? 0 : motor),
+        .number = (uint8_t)(kind == WATCH_VALUE ? motor : 0),
     };
     watch_add(&unit->sim->watch, phase, event);
 }
@@ -121,7 +122,7 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum device_e
     static const enum watch_kind kinds[] = {
         [DEVICE_EVENT_MOTION] = WATCH_MOTION,     [DEVICE_EVENT_COMMAND] = WATCH_COMMAND, [DEVICE_EVENT_LED] = WATCH_LED,
         [DEVICE_EVENT_VARIABLE] = WATCH_VARIABLES, [DEVICE_EVENT_FAULT] = WATCH_FAULT,
-        [DEVICE_EVENT_POSITION] = WATCH_POSITION,
+        [DEVICE_EVENT_POSITION] = WATCH_POSITION, [DEVICE_EVENT_VALUE] = WATCH_VALUE,
     };
     add_unit_event(context, tick, phase_of(context), kinds[what], motor, (int32_t)value);
 }

@@ -26,6 +26,7 @@ static const char *const names[WATCH_KINDS] = {
     [WATCH_PLANT] = "plant",
     [WATCH_INJECTED] = "injected",
     [WATCH_SERVICE] = "service",
+    [WATCH_VALUE] = "value",
 };
 
 const char *watch_kind_name(enum watch_kind kind)

@@ -30,6 +30,7 @@ enum watch_kind {
     WATCH_PLANT,     /* value: enum plant_event (plant.h); `text` says what */
     WATCH_INJECTED,  /* a fault on demand has acted; value: its number; `text` says what it did */
     WATCH_SERVICE,   /* unit 0; value: number of the client of a server; `service` says what */
+    WATCH_VALUE,     /* value: what value `number` of the unit is now (device_kind.value) */
     WATCH_KINDS
 };
 
@@ -62,6 +63,7 @@ struct watch_event {
     uint8_t kind;   /* enum watch_kind */
     uint8_t unit;   /* 1..16, its number on the line; 0: the line */
     uint8_t motor;  /* 1..4; 0: none */
+    uint8_t number; /* WATCH_VALUE: from 1; others 0 */
     union {
         struct segment_byte byte;           /* WATCH_BYTE */
         const struct wire_message *message; /* WATCH_MESSAGE; valid during the call */

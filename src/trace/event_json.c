@@ -152,5 +152,7 @@ char *event_json(char *at, const struct sim *sim, const struct watch_event *even
     if (event->motor != 0) {
         at = put_number(put_text(at, ",\"motor\":"), event->motor);
     }
+    if (event->number != 0)
+        at = put_string(put_text(at, ",\"name\":"), sim_device(sim)->value_names[event->number - 1u]);
     return put_value(put_text(at, ",\"value\":"), sim, event);
 }

@@ -4,12 +4,12 @@
 #include "text/text.h"
 #include "trace_writer.h"
 
-#define ROW_MAX 80u /* a tick, a unit's name, ",m1,position," and a number are 58 */
+#define ROW_MAX 80u /* a tick, a unit's name, ",unit," with the name of a value, and a number are 62 */
 
 static const char *const names[WATCH_KINDS] = {
     [WATCH_STEP] = ",step,",  [WATCH_DIRECTION] = ",dir,", [WATCH_MOTION] = ",motion,",   [WATCH_COMMAND] = ",command,",
     [WATCH_LED] = ",led,",    [WATCH_INPUTS] = ",di,",     [WATCH_OUTPUTS] = ",do,",      [WATCH_VARIABLES] = ",var,",
-    [WATCH_POWER] = ",power,", [WATCH_POSITION] = ",position,",
+    [WATCH_POWER] = ",power,", [WATCH_POSITION] = ",position,", [WATCH_VALUE] = ",",
 };
 
 static char *put_value(char *at, const struct sim *sim, const struct watch_event *event)
@@ -46,7 +46,12 @@ static void write_row(struct trace_file *file, const struct watch_event *event, 
         *at++ = 'm';
         at = put_number(at, event->motor);
     }
-    at = put_value(put_text(at, name), file->sim, event);
+    at = put_text(at, name);
+    if (event->number != 0) {
+        at = put_text(at, sim_device(file->sim)->value_names[event->number - 1u]);
+        *at++ = ',';
+    }
+    at = put_value(at, file->sim, event);
     *at++ = '\n';
     trace_wrote(file, at);
 }
@@ -64,6 +69,17 @@ static void write_initial(struct trace_file *file, unsigned number, unsigned mot
         .tick = sim_now(file->sim), .value = value, .kind = (uint8_t)kind, .unit = (uint8_t)number, .motor = (uint8_t)motor};
     if (value != 0 || kind == WATCH_POWER)
         write_row(file, &event, names[kind]);
+}
+
+static void write_initial_value(struct trace_file *file, unsigned number, unsigned value)
+{
+    struct watch_event event = {.tick = sim_now(file->sim),
+                                .value = sim_device(file->sim)->value(sim_core(file->sim, number), value),
+                                .kind = WATCH_VALUE,
+                                .unit = (uint8_t)number,
+                                .number = (uint8_t)value};
+    if (event.value != 0)
+        write_row(file, &event, names[WATCH_VALUE]);
 }
 
 static void write_initial_motor(struct trace_file *file, unsigned number, unsigned motor)
@@ -91,6 +107,8 @@ static void begin(struct trace_file *file)
         write_initial(file, number, 0, WATCH_INPUTS, (int32_t)kind->inputs_of(core));
         write_initial(file, number, 0, WATCH_OUTPUTS, (int32_t)kind->outputs_of(core));
         write_initial(file, number, 0, WATCH_VARIABLES, (int32_t)kind->variables_of(core));
+        for (unsigned value = 1; value <= kind->values; value++)
+            write_initial_value(file, number, value);
         for (unsigned motor = 1; motor <= kind->axes; motor++)
             write_initial_motor(file, number, motor);
     }
@@ -106,7 +124,7 @@ const struct trace_writer trace_csv = {
     .kind = {.name = "a CSV trace", .begins = {"t_us,source,event,value"}},
     .kinds = WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_COMMAND) |
              WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
-             WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION),
+             WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION) | WATCH_BIT(WATCH_VALUE),
     .begin = begin,
     .on_event = on_event,
     .end = end,

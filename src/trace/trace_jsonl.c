@@ -7,7 +7,8 @@
 #include "trace_writer.h"
 
 #define MOTOR_ROOM 200u
-#define UNIT_ROOM (160u + DEVICE_AXES_MAX * MOTOR_ROOM)
+#define VALUE_ROOM (DEVICE_BIT_NAME_SIZE + 16u)
+#define UNIT_ROOM (160u + DEVICE_AXES_MAX * MOTOR_ROOM + DEVICE_VALUES_MAX * VALUE_ROOM)
 
 static void on_event(void *context, const struct watch_event *event)
 {
@@ -52,6 +53,16 @@ static char *put_motor(char *at, struct sim *sim, unsigned number, unsigned moto
     return put_text(at, "\"}");
 }
 
+/* `"values":{"pwm1":0,…},` of a device that has any. */
+static char *put_values(char *at, const struct device_kind *kind, const struct device_unit *core)
+{
+    for (unsigned value = 1; value <= kind->values; value++) {
+        at = put_text(put_text(at, value == 1 ? ",\"values\":{\"" : ",\""), kind->value_names[value - 1u]);
+        at = put_member(at, "\":", kind->value(core, value));
+    }
+    return kind->values > 0 ? put_text(at, "}") : at;
+}
+
 static void put_unit(struct trace_file *file, unsigned number)
 {
     const struct device_kind *kind = sim_device(file->sim);
@@ -63,7 +74,7 @@ static void put_unit(struct trace_file *file, unsigned number)
     at = put_mask(at, ",\"inputs\":", kind->inputs_of(core));
     at = put_mask(at, ",\"outputs\":", kind->outputs_of(core));
     at = put_mask(at, ",\"variables\":", kind->variables_of(core));
-    at = put_text(at, ",\"motors\":[");
+    at = put_text(put_values(at, kind, core), ",\"motors\":[");
     for (unsigned motor = 1; motor <= kind->axes; motor++)
         at = put_motor(at, file->sim, number, motor);
     trace_wrote(file, put_text(at, "]}"));

@@ -18,7 +18,7 @@
 enum motor_signal { STEP, DIRECTION, LED, MOVING, COMMAND, SPEED, POSITION, MOTOR_SIGNALS };
 /* Where the signals of a unit begin, counted from its first one, which is `power`. */
 struct vcd_places {
-    unsigned inputs, outputs, variables, motors, count;
+    unsigned inputs, outputs, variables, values, motors, count;
 };
 
 struct vcd_motor {
@@ -34,6 +34,7 @@ struct vcd_motor {
 struct vcd_unit {
     bool power;
     uint32_t inputs, outputs, variables;
+    int32_t value[DEVICE_VALUES_MAX];
     struct vcd_motor motor[DEVICE_AXES_MAX];
 };
 
@@ -346,6 +347,13 @@ static void on_masks(struct trace_file *file, const struct watch_event *event)
     }
 }
 
+static void on_value(struct trace_file *file, const struct watch_event *event)
+{
+    struct vcd *vcd = file->state;
+    vcd->unit[event->unit - 1u].value[event->number - 1u] = event->value;
+    write_real(file, first_signal_of(file, event->unit) + vcd->place.values + event->number - 1u, event->value, 0);
+}
+
 static void on_event(void *context, const struct watch_event *event)
 {
     struct trace_file *file = context;
@@ -354,6 +362,8 @@ static void on_event(void *context, const struct watch_event *event)
         on_motor_event(file, event);
     else if (event->kind == WATCH_POWER)
         on_power(file, event);
+    else if (event->kind == WATCH_VALUE)
+        on_value(file, event);
     else
         on_masks(file, event);
 }
@@ -439,6 +449,8 @@ static void declare_unit(struct trace_file *file, unsigned unit)
     declare_bits(file, prefix, "di", kind->input_names, kind->inputs, 1, first + vcd->place.inputs);
     declare_bits(file, prefix, "do", kind->output_names, kind->outputs, 1, first + vcd->place.outputs);
     declare_bits(file, prefix, "var", NULL, kind->variables, kind->first_variable, first + vcd->place.variables);
+    for (unsigned value = 0; value < kind->values; value++)
+        declare_signal(file, "real 64", prefix, kind->value_names[value], first + vcd->place.values + value);
     for (unsigned motor = 1; motor <= sim_device(file->sim)->axes; motor++)
         declare_motor(file, prefix, unit, motor);
     if (sim_units(file->sim) > 1)
@@ -462,6 +474,8 @@ static void write_unit(struct trace_file *file, unsigned unit)
     write_mask(file, first + vcd->place.inputs, state->inputs, full_mask(kind->inputs));
     write_mask(file, first + vcd->place.outputs, state->outputs, full_mask(kind->outputs));
     write_mask(file, first + vcd->place.variables, state->variables, full_mask(kind->variables));
+    for (unsigned value = 0; value < kind->values; value++)
+        write_real(file, first + vcd->place.values + value, state->value[value], 0);
     for (unsigned number = 1; number <= sim_device(file->sim)->axes; number++) {
         const struct vcd_motor *motor = &state->motor[number - 1u];
         write_bit(file, signal_of(file, unit, number, STEP), motor->step);
@@ -503,6 +517,8 @@ static void read_unit_state(struct trace_file *file, unsigned unit)
     state->inputs = kind->inputs_of(core);
     state->outputs = state->power ? kind->outputs_of(core) : 0;
     state->variables = state->power ? kind->variables_of(core) : 0;
+    for (unsigned value = 0; value < kind->values; value++)
+        state->value[value] = state->power ? kind->value(core, value + 1u) : 0;
     for (unsigned motor = 1; motor <= DEVICE_AXES_MAX; motor++)
         state->motor[motor - 1u].toggle = DEVICE_NEVER;
     for (unsigned motor = 1; motor <= kind->axes; motor++)
@@ -514,7 +530,8 @@ static void find_places(struct vcd_places *place, const struct device_kind *kind
     place->inputs = 1;
     place->outputs = place->inputs + kind->inputs;
     place->variables = place->outputs + kind->outputs;
-    place->motors = place->variables + kind->variables;
+    place->values = place->variables + kind->variables;
+    place->motors = place->values + kind->values;
     place->count = place->motors + kind->axes * MOTOR_SIGNALS;
 }
 
@@ -555,7 +572,7 @@ const struct trace_writer trace_vcd = {
     .kind = {.name = "a VCD trace", .begins = {"$version", "$date", "$comment", "$timescale"}},
     .kinds = WATCH_BIT(WATCH_STEP) | WATCH_BIT(WATCH_DIRECTION) | WATCH_BIT(WATCH_MOTION) | WATCH_BIT(WATCH_COMMAND) |
              WATCH_BIT(WATCH_LED) | WATCH_BIT(WATCH_INPUTS) | WATCH_BIT(WATCH_OUTPUTS) | WATCH_BIT(WATCH_VARIABLES) |
-             WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION),
+             WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_POSITION) | WATCH_BIT(WATCH_VALUE),
     .state = sizeof(struct vcd),
     .begin = begin,
     .on_event = on_event,

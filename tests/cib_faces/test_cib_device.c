@@ -21,7 +21,10 @@ static void see(void *context, const struct watch_event *event)
 {
     size_t length = strlen(seen);
     (void)context;
-    if (event->kind != WATCH_BYTE && event->kind != WATCH_MESSAGE)
+    if (event->kind == WATCH_VALUE)
+        snprintf(seen + length, sizeof seen - length, "%" PRIu64 " pwm%u %" PRId32 "\n", event->tick, event->number,
+                 event->value);
+    else if (event->kind != WATCH_BYTE && event->kind != WATCH_MESSAGE)
         snprintf(seen + length, sizeof seen - length, "%" PRIu64 " %s %u %" PRId32 "\n", event->tick,
                  watch_kind_name((enum watch_kind)event->kind), event->motor, event->value);
 }
@@ -61,6 +64,28 @@ START_TEST(a_trace_has_pulses_phases_and_status)
                            "11000 step 1 1\n11000 outputs 0 3\n"
                            "21000 step 1 2\n21000 outputs 0 6\n"
                            "31000 step 1 3\n31000 outputs 0 12\n31000 motion 1 0\n31000 variables 0 2088\n");
+    sim_unwatch(&bus.sim, &watcher);
+}
+END_TEST
+
+/* Duties when they are written, by a host or by APPLY, which has all of them 0 again. */
+START_TEST(a_trace_has_the_duties_of_pwm)
+{
+    cib_bus_do(&bus, "cib.config.put", "{\"setup\": {\"do1-2\": {\"use\": \"pwm\"}, \"do3-4\": {\"use\": \"do\"}}}");
+    cib_bus_do(&bus, "cib.apply", "{}");
+    watcher.kinds = WATCH_BIT(WATCH_VALUE);
+    sim_watch(&bus.sim, &watcher);
+    cib_bus_to(&bus, 900);
+    cib_bus_do(&bus, "cib.pwm", "{\"output\": 1, \"duty\": 2500}");
+    cib_bus_do(&bus, "cib.pwm", "{\"output\": 2, \"duty\": 10000}");
+    cib_bus_do(&bus, "cib.pwm", "{\"output\": 2, \"duty\": 10000}");
+    cib_bus_do(&bus, "snapshot", "{\"name\": \"a\"}");
+    cib_bus_to(&bus, 2600);
+    cib_bus_do(&bus, "cib.apply", "{}");
+    cib_bus_to(&bus, 2700);
+    cib_bus_do(&bus, "restore", "{\"name\": \"a\"}");
+    cib_bus_to(&bus, 2800);
+    ck_assert_str_eq(seen, "900 pwm1 2500\n900 pwm2 10000\n2600 pwm1 0\n2600 pwm2 0\n2700 pwm1 2500\n2700 pwm2 10000\n");
     sim_unwatch(&bus.sim, &watcher);
 }
 END_TEST
@@ -252,6 +277,7 @@ static Suite *device_suite(void)
     tcase_add_checked_fixture(one, begin, end);
     tcase_add_test(one, a_trace_has_pulses_phases_and_status);
     tcase_add_test(one, a_trace_has_the_edges_of_pwm);
+    tcase_add_test(one, a_trace_has_the_duties_of_pwm);
     tcase_add_test(one, a_refused_command_is_a_fault_until_the_next_good_one);
     tcase_add_test(one, bt4_a_motor_follows_the_field_of_its_coils_in_every_mode);
     tcase_add_test(one, bt4_swapped_leads_turn_it_back_and_a_missing_one_keeps_it);

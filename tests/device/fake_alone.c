@@ -13,6 +13,7 @@ struct fake_alone {
     const struct device_port *port;
     void *context;
     bool has_stepped;
+    int32_t level; /* a value without a meaning */
 };
 
 static struct fake_alone *alone_of(struct device_unit *unit)
@@ -120,6 +121,7 @@ static void begin(struct device_unit *unit, const struct device_config *config, 
     alone->port = port;
     alone->context = context;
     alone->has_stepped = false;
+    alone->level = 0;
     fake_begin(&alone->core, config->node, &calls, alone);
 }
 
@@ -250,7 +252,19 @@ static json_t *call_obey(struct device_unit *unit, const json_t *params, struct 
     return NULL;
 }
 
+/* alone.level {level}: sets the value. */
+static json_t *call_level(struct device_unit *unit, const json_t *params, struct device_refusal *refusal)
+{
+    struct fake_alone *alone = alone_of(unit);
+    (void)refusal;
+    alone->level = (int32_t)json_integer_value(json_object_get(params, "level"));
+    if (alone->port->event)
+        alone->port->event(alone->context, alone->core.now, 1, DEVICE_EVENT_VALUE, (uint32_t)alone->level);
+    return json_object();
+}
+
 static const struct device_method methods[] = {
+    {"alone.level", call_level, true},
     {"alone.obey", call_obey, true},
     {NULL, NULL, false},
 };
@@ -277,6 +291,13 @@ static const char *unlike(const struct device_config *a, const struct device_con
     return NULL;
 }
 
+static int32_t value(const struct device_unit *unit, unsigned number)
+{
+    (void)number;
+    return ((const struct fake_alone *)unit)->level;
+}
+
+static const char *const value_names[] = {"level"};
 static const char *const input_names[INPUTS] = {"lmt+", "near", "DI3"};
 static const char *const output_names[] = {"lamp", "a1", "b1", "a2", "b2"};
 static const char *const no_settings[] = {NULL};
@@ -290,6 +311,9 @@ const struct device_kind fake_alone_device = {
     .outputs = 5,
     .input_names = input_names,
     .output_names = output_names,
+    .values = 1,
+    .value_names = value_names,
+    .value = value,
     .addresses = 1,
     .ticks_per_us = FAKE_TICKS_PER_US,
     .slot = 1,

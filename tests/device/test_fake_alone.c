@@ -186,6 +186,51 @@ START_TEST(vcd_has_the_names)
 }
 END_TEST
 
+/* What a trace of this format has of a value that is -7 at its begin, 2 after 1 s, and then gone with the power. */
+static char *traced(enum trace_format format)
+{
+    char *text;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    fake_rig_do(&rig, "alone.level", "{\"level\": -7}");
+    struct trace_file *file = trace_file_begin_on(&rig.sim, out, format);
+    ck_assert_ptr_nonnull(file);
+    sim_advance(&rig.sim, sim_now(&rig.sim) + 1000000);
+    fake_rig_do(&rig, "alone.level", "{\"level\": 2}");
+    sim_advance(&rig.sim, sim_now(&rig.sim) + 10);
+    fake_rig_do(&rig, "power", "{\"on\": false}");
+    sim_advance(&rig.sim, sim_now(&rig.sim) + 10);
+    ck_assert_int_eq(trace_file_end(file), 0);
+    fclose(out);
+    return text;
+}
+
+START_TEST(traces_have_the_values)
+{
+    static const struct {
+        enum trace_format format;
+        const char *parts[4];
+    } rows[] = {
+        {TRACE_CSV, {"value\n0.000,unit,level,-7\n", "\n1000000.000,unit,level,2\n", "power,off\n", ""}},
+        {TRACE_JSONL,
+         {",\"values\":{\"level\":-7},\"motors\"",
+          "{\"t_us\":1000000.000,\"kind\":\"value\",\"unit\":\"1\",\"name\":\"level\",\"value\":2}\n",
+          "", ""}},
+        {TRACE_VCD, {"$var real 64 * level $end\n", "\nr-7 *\n", "#1000000000\nr2 *\n", "#1000010000\n0!\n"}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        end();
+        begin();
+        char *text = traced(rows[i].format);
+        for (size_t part = 0; part < 4; part++)
+            ck_assert_msg(strstr(text, rows[i].parts[part]), "%s is not in %s", rows[i].parts[part], text);
+        if (rows[i].format == TRACE_VCD)
+            ck_assert_ptr_nonnull(strstr(strstr(text, "#1000010000"), "\nr0 *\n"));
+        free(text);
+    }
+}
+END_TEST
+
 /* ---- A motor that is moved by its coils ------------------------------------------------------------------------------- */
 
 /* Where the motor is after 17 half steps forward with these leads; what was reported of it. */
@@ -269,6 +314,7 @@ static Suite *fake_alone_suite(void)
     tcase_add_test(all, conditions_have_the_names);
     tcase_add_test(all, switch_of_a_plant_drives_a_named_input);
     tcase_add_test(all, vcd_has_the_names);
+    tcase_add_test(all, traces_have_the_values);
     tcase_add_test(all, motor_follows_the_field_of_its_coils);
     tcase_add_test(all, motor_with_swapped_leads_turns_back);
     tcase_add_test(all, motor_with_a_missing_lead_does_not_turn);

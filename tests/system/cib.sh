@@ -117,6 +117,22 @@ test_the_configuration_at_power_up_comes_from_a_file() {
     holds "$complained" "expected 1.1 or 1.2" "stderr"
 }
 
+test_traces_have_levels_and_duties_of_pwm() {
+    serve_cib --clock stepped --trace "$folder/a.csv" --trace "$folder/a.vcd" --trace "$folder/a.jsonl"
+    printf 'do1-2: {use: pwm, period: 100}\ndo3-4: {use: do}\n' >"$folder/setup.yaml"
+    exits 0 cib cib config put "$folder/setup.yaml"
+    exits 0 cib cib config apply
+    exits 0 cib cib pwm 2 2500
+    exits 0 cib advance 1ms
+    exits 0 cib shutdown
+    status_of "$started"
+    holds "$(<"$folder/a.csv")" $'\n0,unit,pwm2,2500\n' "CSV: the duty"
+    holds "$(<"$folder/a.csv")" $'\n100,unit,do,2\n125,unit,do,0\n' "CSV: the levels"
+    holds "$(<"$folder/a.jsonl")" '"kind":"value","unit":"1","name":"pwm2","value":2500}' "JSON lines"
+    grep -q '^\$var real 64 [^ ]* pwm2 \$end' "$folder/a.vcd" || fail "VCD has no signal pwm2"
+    grep -q '^r2500 ' "$folder/a.vcd" || fail "VCD has no duty"
+}
+
 test_the_panel_has_two_motors_and_all_inputs() {
     serve_cib --clock stepped
     exits 0 cib cib command A 105 500

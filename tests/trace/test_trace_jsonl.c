@@ -170,12 +170,15 @@ START_TEST(no_event_needs_more_room_than_it_says)
     struct wire_message message = {
         .start = INT64_MAX, .senders = UINT32_MAX, .dnode = 255, .snode = 255, .dropped = "\x01\x01", .refused = "\x01\x01",
         .raw_length = sizeof raw, .length = sizeof bytes, .raw = raw, .message = bytes};
+    static const struct watch_service service = {.name = "\x01\x01", .act = WATCH_SERVICE_RECEIVED};
     for (unsigned kind = 0; kind < WATCH_KINDS; kind++) {
         struct watch_event event = {.tick = INT64_MAX, .value = INT32_MIN, .kind = (uint8_t)kind, .unit = 16, .motor = 4};
         if (kind == WATCH_BYTE)
             event.byte = (struct segment_byte){.senders = UINT32_MAX, .byte = 255, .lost = true};
         else if (kind == WATCH_MESSAGE)
             event.message = &message;
+        else if (kind == WATCH_SERVICE)
+            event.service = &service;
         else
             event.text = "\x01\x01\x01";
         size_t room = event_json_room(&event);
