@@ -74,8 +74,8 @@ static void words_of(const struct cib_setup *setup, uint16_t word[WORDS])
     }
     word[0x10a - FIRST] = setup->bipolar;
     word[0x10b - FIRST] = setup->active;
-    put_drive(word + 0x110 - FIRST, &setup->drive[0]);
-    put_drive(word + 0x120 - FIRST, &setup->drive[1]);
+    put_drive(&word[0x110 - FIRST], &setup->drive[0]);
+    put_drive(&word[0x120 - FIRST], &setup->drive[1]);
 }
 
 static struct cib_setup setup_of(const uint16_t word[WORDS])
@@ -85,8 +85,8 @@ static struct cib_setup setup_of(const uint16_t word[WORDS])
         setup.use[i] = word[i];
         setup.period[i] = (uint32_t)word[0x104 - FIRST + 2 * i] << 16 | word[0x105 - FIRST + 2 * i];
     }
-    setup.drive[0] = drive_of(word + 0x110 - FIRST);
-    setup.drive[1] = drive_of(word + 0x120 - FIRST);
+    setup.drive[0] = drive_of(&word[0x110 - FIRST]);
+    setup.drive[1] = drive_of(&word[0x120 - FIRST]);
     return setup;
 }
 
