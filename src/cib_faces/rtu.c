@@ -141,13 +141,6 @@ bool cib_rtu_receive(struct cib_rtu *rtu, struct cib_unit *unit, uint8_t byte)
     return true;
 }
 
-bool cib_rtu_has_answer(const struct cib_rtu *rtu)
-{
-    bool is_later = rtu->length >= MODBUS_FRAME_MIN && !rtu->skipping && rtu->check == 0 && rtu->frame[0] == rtu->address &&
-                    ends_in_silence(rtu);
-    return rtu->answer_length > 0 || is_later;
-}
-
 bool cib_rtu_send(struct cib_rtu *rtu, struct cib_unit *unit, uint8_t *byte)
 {
     cib_rtu_check_silence(rtu, unit);

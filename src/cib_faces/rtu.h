@@ -44,9 +44,6 @@ uint64_t cib_rtu_due(const struct cib_rtu *rtu);
 /* Silence may have lasted long enough at the present tick of the unit. */
 void cib_rtu_check_silence(struct cib_rtu *rtu, struct cib_unit *unit);
 
-/* Is there an answer, now or, if silence goes on, later? */
-bool cib_rtu_has_answer(const struct cib_rtu *rtu);
-
 /* The next byte of the answer. Returns false if there is none. */
 bool cib_rtu_send(struct cib_rtu *rtu, struct cib_unit *unit, uint8_t *byte);
 

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "motion_plan.h"
 #include "text/text.h"
 
 #define BUTTONS_SHIFT 8u /* of the mask of inputs */
@@ -327,6 +328,14 @@ static bool is_stuck(const struct device_unit *unit, unsigned number, char text[
     return state.error != 0;
 }
 
+/* Up to a turn, if the drive has to: what follows is planned there. */
+static size_t plan(const struct device_unit *unit, unsigned number, struct device_plan_point *point, size_t room)
+{
+    const struct cib_unit *core = &cib_device_read(unit)->unit;
+    const struct cib_drive *drive = &core->drive[number - 1u];
+    return motion_plan(&drive->motion, core->now, drive->position, point, room);
+}
+
 static bool is_endless(const struct device_unit *unit, unsigned number, char text[DEVICE_ERROR_SIZE])
 {
     const struct cib_unit *core = &cib_device_read(unit)->unit;
@@ -394,6 +403,7 @@ const struct device_kind cib_device = {
     .variables_of = variables_of,
     .node = node,
     .axis = axis,
+    .plan = plan,
     .is_stuck = is_stuck,
     .state_name = state_name,
     .fault_name = fault_name,

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "motion_plan.h"
 #include "rkm04_repeat.h"
 #include "text/text.h"
 
@@ -256,7 +257,8 @@ static void axis(const struct device_unit *unit, unsigned motor, struct device_a
 
 static size_t plan(const struct device_unit *unit, unsigned motor, struct device_plan_point *point, size_t room)
 {
-    return rkm04_plan(core_of(unit), motor, point, room);
+    const struct rkm04_unit *core = core_of(unit);
+    return motion_plan(&core->motor[motor - 1u].motion, core->now, core->motor[motor - 1u].position, point, room);
 }
 
 static size_t command_text(const struct device_unit *unit, unsigned motor, char text[DEVICE_COMMAND_SIZE])

@@ -46,10 +46,6 @@ struct rkm04_own {
 extern const struct device_option rkm04_options[];
 extern const struct device_readings rkm04_device_readings;
 
-/* ---- rkm04_plan.c: as struct device_kind's `plan` ---------------------------------------------------------------------- */
-
-size_t rkm04_plan(const struct rkm04_unit *unit, unsigned motor, struct device_plan_point *point, size_t room);
-
 /* ---- rkm04_settings.c: as struct device_kind's ------------------------------------------------------------------------- */
 
 extern const char *const rkm04_setting_names[];

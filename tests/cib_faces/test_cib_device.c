@@ -68,6 +68,51 @@ START_TEST(a_trace_has_pulses_phases_and_status)
 }
 END_TEST
 
+static double state_position(void)
+{
+    return sim_axis(&bus.sim, 1, 1).position;
+}
+
+/* A plan of drive A from now on. */
+static size_t plan_of_a(struct device_plan_point *point)
+{
+    return cib_device.plan(sim_core(&bus.sim, 1), 1, point, DEVICE_PLAN_POINTS);
+}
+
+/* 3000 pulses at 500/s: up to 500 from the start speed, on, down to it at the last pulse, which comes at 7 334 335. */
+START_TEST(the_plan_of_a_motion_leads_to_its_last_pulse)
+{
+    struct device_plan_point point[DEVICE_PLAN_POINTS];
+    ck_assert_uint_eq(plan_of_a(point), 0);
+    cib_bus_do(&bus, "cib.command", "{\"drive\": \"A\", \"command\": 102, \"p1\": 3000, \"p2\": 500}");
+    cib_bus_to(&bus, 2000);
+    for (uint64_t tick = 500000; tick <= 7000000; tick += 500000) {
+        cib_bus_to(&bus, tick);
+        size_t count = plan_of_a(point);
+        ck_assert_uint_ge(count, 3);
+        ck_assert(point[0].us == (double)tick);
+        ck_assert_double_eq_tol(point[0].position, state_position(), 1.0);
+        ck_assert_double_eq_tol(point[count - 1].us, 7334335, 2.0);
+        ck_assert_double_eq_tol(point[count - 1].position, 3000, 1e-6);
+        ck_assert(point[count - 1].speed == 0);
+    }
+    ck_assert_double_le(point[0].speed, 500.001);
+    cib_bus_do(&bus, "cib.command", "{\"drive\": \"A\", \"command\": 101, \"p1\": -100, \"p2\": 500}");
+    cib_bus_to(&bus, 7001000);
+    cib_bus_to(&bus, 7001500);
+    size_t count = plan_of_a(point);
+    uint64_t turn = (uint64_t)point[count - 1].us;
+    ck_assert_double_gt(point[0].speed, 0);
+    cib_bus_to(&bus, turn + 500000);
+    ck_assert_uint_ge(count = plan_of_a(point), 2);
+    ck_assert_double_lt(point[0].speed, 0);
+    ck_assert_double_eq_tol(point[count - 1].position, -100, 1e-6);
+    cib_bus_to(&bus, 60000000);
+    ck_assert_uint_eq(plan_of_a(point), 0);
+    ck_assert(state_position() == -100);
+}
+END_TEST
+
 /* Duties when they are written, by a host or by APPLY, which has all of them 0 again. */
 START_TEST(a_trace_has_the_duties_of_pwm)
 {
@@ -87,6 +132,7 @@ START_TEST(a_trace_has_the_duties_of_pwm)
     cib_bus_to(&bus, 2800);
     ck_assert_str_eq(seen, "900 pwm1 2500\n900 pwm2 10000\n2600 pwm1 0\n2600 pwm2 0\n2700 pwm1 2500\n2700 pwm2 10000\n");
     sim_unwatch(&bus.sim, &watcher);
+    watcher.kinds = WATCH_ALL;
 }
 END_TEST
 
@@ -278,6 +324,7 @@ static Suite *device_suite(void)
     tcase_add_test(one, a_trace_has_pulses_phases_and_status);
     tcase_add_test(one, a_trace_has_the_edges_of_pwm);
     tcase_add_test(one, a_trace_has_the_duties_of_pwm);
+    tcase_add_test(one, the_plan_of_a_motion_leads_to_its_last_pulse);
     tcase_add_test(one, a_refused_command_is_a_fault_until_the_next_good_one);
     tcase_add_test(one, bt4_a_motor_follows_the_field_of_its_coils_in_every_mode);
     tcase_add_test(one, bt4_swapped_leads_turn_it_back_and_a_missing_one_keeps_it);

@@ -133,6 +133,14 @@ test_traces_have_levels_and_duties_of_pwm() {
     grep -q '^r2500 ' "$folder/a.vcd" || fail "VCD has no duty"
 }
 
+test_a_plot_has_the_speeds_of_a_drive() {
+    printf '%s\n' 'device: cib' 'steps:' '  - {call: cib.command, params: {drive: A, command: 102, p1: 3000, p2: 500}}' \
+        '  - wait: {motor: 1, position: 3000}' >"$folder/a.yaml"
+    exits 0 "$RKM04" plot --format csv "$folder/a.yaml"
+    holds "$said" ",500.000," "the speed of the command"
+    same 3000.000 "$(tail -n 1 <<<"$said" | cut -d, -f4)" "position at the end"
+}
+
 test_the_panel_has_two_motors_and_all_inputs() {
     serve_cib --clock stepped
     exits 0 cib cib command A 105 500

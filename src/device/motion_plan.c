@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The rest of a motor's present motion as the planner has it: speed over time from corner to corner (specification section 6). */
-#include <math.h>
+#include "motion_plan.h"
 
-#include "rkm04_device.h"
+#include <math.h>
 
 #define SPEED2_UNIT 0x1p-35    /* of rkm04_break.speed2, in steps^2/s^2 */
 #define ENDLESS_US 1e15        /* a leg without end is drawn so far */
@@ -32,12 +31,12 @@ static void add_corner(struct walk *walk)
 }
 
 /* The present place and speed (ramp.h: y and w, d ticks after ramp->at). */
-static void begin_walk(struct walk *walk, const struct rkm04_unit *unit, const struct rkm04_motion *motion)
+static void begin_walk(struct walk *walk, const struct rkm04_motion *motion, uint64_t now)
 {
     const struct rkm04_ramp *ramp = &motion->ramp;
-    double d = (double)(int64_t)(unit->now - ramp->at), slope = ramp->slope;
+    double d = (double)(int64_t)(now - ramp->at), slope = ramp->slope;
     double y = (double)ramp->y.whole, w = (double)ramp->w.whole;
-    walk->us = (double)unit->now;
+    walk->us = (double)now;
     walk->speed = fmax(0, (w + 2 * slope * d) / (2.0 * ramp->rate));
     walk->place = (double)motion->done + 1 - ramp->sent + (y + d * (w + slope * d)) / (double)ramp->step;
     add_corner(walk);
@@ -66,15 +65,14 @@ static void end_walk(struct walk *walk, bool endless)
     add_corner(walk);
 }
 
-size_t rkm04_plan(const struct rkm04_unit *unit, unsigned number, struct device_plan_point *point, size_t room)
+size_t motion_plan(const struct rkm04_motion *motion, uint64_t now, int32_t position, struct device_plan_point *point,
+                   size_t room)
 {
-    const struct rkm04_motor *motor = &unit->motor[number - 1];
-    const struct rkm04_motion *motion = &motor->motion;
     const struct rkm04_profile *profile = &motion->profile;
     struct walk walk = {.point = point, .room = room};
     if (!motion->moving)
         return 0;
-    begin_walk(&walk, unit, motion);
+    begin_walk(&walk, motion, now);
     for (unsigned i = profile->leg + 1u; i < profile->count; i++) {
         walk_leg(&walk, &profile->point[i], profile->point[i - 1].slope);
         double next = speed_of(&profile->point[i]);
@@ -86,7 +84,7 @@ size_t rkm04_plan(const struct rkm04_unit *unit, unsigned number, struct device_
     end_walk(&walk, profile->endless);
     for (size_t i = 0; i < walk.count; i++) {
         double ahead = point[i].position - (double)motion->done;
-        point[i].position = motor->position + (motion->forward ? ahead : -ahead);
+        point[i].position = position + (motion->forward ? ahead : -ahead);
         point[i].speed = motion->forward ? point[i].speed : 0 - point[i].speed;
     }
     return walk.count;
