@@ -22,10 +22,10 @@ static bool is_own(const struct cib_rtu *rtu)
     return rtu->frame[0] == 0 || rtu->frame[0] == rtu->address;
 }
 
-/* Has the function of the frame no length of its own? */
+/* Has the function of the frame, of which there are two bytes or more, no length of its own? */
 static bool ends_in_silence(const struct cib_rtu *rtu)
 {
-    return rtu->length > 1 && modbus_request_length(rtu->frame, 2) == MODBUS_NO_LENGTH;
+    return modbus_request_length(rtu->frame, 2) == MODBUS_NO_LENGTH;
 }
 
 /* ---- Requests ----------------------------------------------------------------------------------------------------------- */
@@ -95,7 +95,7 @@ static void end_by_silence(struct cib_rtu *rtu, struct cib_unit *unit)
 
 uint64_t cib_rtu_due(const struct cib_rtu *rtu)
 {
-    return (rtu->length > 0 || rtu->skipping) && !rtu->waiting ? rtu->last + rtu->silence : CIB_NEVER;
+    return rtu->length > 0 && !rtu->waiting ? rtu->last + rtu->silence : CIB_NEVER;
 }
 
 void cib_rtu_check_silence(struct cib_rtu *rtu, struct cib_unit *unit)

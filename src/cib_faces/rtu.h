@@ -27,7 +27,7 @@ struct cib_rtu {
     uint64_t last;          /* tick of the last byte */
     uint16_t check;         /* of the bytes of the frame; 0 behind a correct one */
     uint16_t length;        /* bytes of the frame */
-    bool skipping;          /* nothing counts up to the next silence */
+    bool skipping;          /* nothing counts up to the next silence; the frame keeps its length until then */
     bool untimed;           /* bytes of the frame came faster than they can on the wires */
     bool waiting;           /* the frame is a whole request that is executed after the present answer */
     uint16_t answer_length, answer_sent; /* 0: no answer */

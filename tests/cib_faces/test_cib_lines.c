@@ -274,9 +274,42 @@ START_TEST(bn3_patterns)
 {
     expect("GET:*nothing*", "GET:\r\n");
     expect("GET:*RUN", "GET:__PLC_RUN,1\r\nGET:\r\n");
+    expect("GET:*RUN**", "GET:__PLC_RUN,1\r\nGET:\r\n");
+    expect("GET:__PLC{*", "GET:\r\n");
     expect("GET:*1.MC*.E*R", "GET:CIB1.MCA.ERR,0\r\nGET:CIB1.MCB.ERR,0\r\nGET:\r\n");
     expect("LIST:*.ROW", "LIST:CIB1.MCA.ROW,UINT*\r\nLIST:CIB1.MCB.ROW,UINT*\r\nLIST:\r\n");
     expect("LIST:x", "ERROR:33 Unknown variable name in request: 'LIST:x'\r\n");
+}
+END_TEST
+
+/* Also past the lines, which ask whether a variable can be set first. */
+START_TEST(bn4_variables_take_nothing_that_is_not_theirs)
+{
+    static const int64_t numbers[] = {INT64_MIN, -1, 2, INT64_MAX};
+    for (unsigned variable = 0; variable < cib_variables(&modules); variable++) {
+        const bool is_open = cib_variable_is_open(&modules, variable), is_bit = cib_variable_is_bit(variable);
+        ck_assert(strcmp(cib_variable_type(variable), "BOOL") == 0 ? is_bit : !is_bit);
+        const int32_t before = cib_variable_value(&modules, variable);
+        for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+            if (is_open && !is_bit && (numbers[i] == 2 || numbers[i] == -1))
+                continue;
+            ck_assert_int_eq(cib_variable_set(&modules, variable, numbers[i]), is_open ? CIB_SET_VALUE : CIB_SET_READ_ONLY);
+            ck_assert_int_eq(cib_variable_value(&modules, variable), before);
+        }
+    }
+}
+END_TEST
+
+START_TEST(bn5_a_delta_is_a_number_up_to_32_bits)
+{
+    static const char *const wrong[] = {"-1", "4294967296", "x"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char line[64], answer[128];
+        snprintf(line, sizeof line, "EN:CIB1.MCA.POS %s", wrong[i]);
+        snprintf(answer, sizeof answer, "ERROR:35 Wrong parameter value in request: '%s'\r\n", line);
+        expect(line, answer);
+    }
+    expect("EN:CIB1.MCA.POS 4294967295", "WARNING:252 Changed active variables in public file: '[2/58]'\r\n");
 }
 END_TEST
 
@@ -343,6 +376,7 @@ END_TEST
 START_TEST(bn6_information_and_what_is_not_there)
 {
     expect("GETINFO:", "GETINFO:VERSION,RKM04 " RKM04_VERSION "\r\nGETINFO:VERSION_PLC,C-OS-0808M 1.2\r\nGETINFO:\r\n");
+    expect("GETINFO:version", "GETINFO:VERSION,RKM04 " RKM04_VERSION "\r\n");
     expect("GETINFO:version_plc", "GETINFO:VERSION_PLC,C-OS-0808M 1.2\r\n");
     static const struct {
         const char *line;
@@ -404,6 +438,8 @@ static Suite *lines_suite(void)
     tcase_add_test(lines, bn2_names_of_several_modules_have_their_addresses);
     tcase_add_test(lines, bn3_patterns);
     tcase_add_test(lines, bn4_values_are_checked);
+    tcase_add_test(lines, bn4_variables_take_nothing_that_is_not_theirs);
+    tcase_add_test(lines, bn5_a_delta_is_a_number_up_to_32_bits);
     tcase_add_test(lines, bn5_delta_and_what_was_told_last);
     tcase_add_test(lines, bn5_a_change_that_is_over_is_not_told);
     tcase_add_test(lines, bn6_information_and_what_is_not_there);
