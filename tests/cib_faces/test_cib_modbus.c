@@ -148,6 +148,7 @@ START_TEST(bl2_all_modules_obey_writes_to_0_and_do_not_answer_reads)
     cib_bus_expect_checked(&bus, "00 03 00 00 00 01", "");
     cib_bus_expect_checked(&bus, "01 01 00 00 00 08", "01 01 01 A5");
     cib_bus_expect_checked(&bus, "02 01 00 00 00 08", "02 01 01 A5");
+    cib_bus_expect_checked(&bus, "02 02 00 00 00 10", "02 02 02 00 A0"); /* inputs, then outputs as they are driven */
     cib_bus_send(&bus, "00 41 C1 80");
     cib_bus_to(&bus, 10000);
     ck_assert_str_eq(bus.heard, "");
