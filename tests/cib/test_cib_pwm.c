@@ -4,7 +4,8 @@
 
 #include "cib_rig.h"
 
-/* Every so many periods are tried, all of them with -DPERIOD_STRIDE=1 (a minute without sanitizers). */
+/* Every so many periods are tried, all of them with -DPERIOD_STRIDE=1 (more than seven minutes, and CK_FORK=no: the assertions
+ * of Check write to a pipe). */
 #ifndef PERIOD_STRIDE
 #define PERIOD_STRIDE 1013
 #endif
