@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT */
+/* cells.h: the cells of the interface as memory, little endian on every machine; a bit is a byte of its own.
+ *
+ *     cnc_clear_cells(&cells);                                   // presets
+ *     cnc_put_bit(&cells, CNC_BIT_MPxPI + axis, false);          // a bit of an axis, 0 = X
+ *     cnc_put_number(&cells, CNC_CELL_B_POL, axis, position);    // an element of an array
+ *     if (cnc_bit(&cells, CNC_BIT_STOPPI)) ...
+ *
+ * Copying a struct cnc_cells is a snapshot. Clauses in brackets refer to docs/CNC872.md. */
+#ifndef CNC872_CELLS_H
+#define CNC872_CELLS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cell_table.h"
+
+#define CNC_AXES 16u
+#define CNC_NAME_MAX 31u          /* letters of a name (NP1) */
+#define CNC_OWN_MEMORY 8192u      /* bytes that the variables of a PLC program may take */
+#define CNC_OWN_BITS 2048u        /* bits of its own that a PLC program may have, those of its mechanisms with them */
+
+enum cnc_type {
+    CNC_BIT,
+    CNC_BYTE,      /* without a sign */
+    CNC_WORD,      /* without a sign */
+    CNC_DWRD,      /* with a sign */
+    CNC_QWRD,      /* with a sign */
+    CNC_REAL,      /* IEEE double */
+    CNC_STRUCTURE, /* read by its fields, or with a type written before it; count is its bytes */
+    CNC_TYPES
+};
+
+/* Bytes of a number of each type; of a structure as of a byte. */
+extern const uint8_t cnc_type_size[CNC_TYPES];
+/* As a program writes them: "BYTE", "REAL". */
+extern const char *const cnc_type_name[CNC_TYPES];
+/* "X", "Y", "Z", "4", ... "16". */
+extern const char cnc_axis_names[CNC_AXES][3];
+
+/* ---- Constants ------------------------------------------------------------------------------------------------------- */
+
+/* CNC_CELL_B_POL, ...: cells with a number. */
+#define CNC_OWN_(name, type, count, access, fields, preset, section) CNC_CELL_##name,
+#define CNC_SAME_(name, other, offset, type, count, access, section) CNC_CELL_##name,
+enum cnc_cell { CNC_NUMBERS(CNC_OWN_, CNC_SAME_) CNC_CELLS };
+#undef CNC_OWN_
+#undef CNC_SAME_
+
+/* CNC_BIT_STOPPI, ...: places of bits. Those of the axes lie one behind the other, 16 of each name, also where a PLC program
+ * reaches but the first six: CNC_BIT_MPxPI + axis. CNC_BIT_ZMMnPI + n - 1 is the bit of group n. */
+#define CNC_ONE_(name, access, preset, section) CNC_BIT_##name,
+#define CNC_SIXTEEN_(name, count, access, preset, section) CNC_BIT_##name, CNC_LAST_BIT_##name = CNC_BIT_##name + 15,
+#define CNC_NUMBERED_(name, first, count, access, section) \
+    CNC_BIT_##name, CNC_LAST_BIT_##name = CNC_BIT_##name + (count) - 1,
+enum cnc_bit { CNC_BITS(CNC_ONE_, CNC_SIXTEEN_, CNC_NUMBERED_) CNC_SYSTEM_BITS };
+#undef CNC_ONE_
+#undef CNC_SIXTEEN_
+#undef CNC_NUMBERED_
+
+/* CNC_QUEUE_FirstBlock, ...: fields of a block in the queue (NQ1). CNC_QUEUE_Mn is the change bit M0 ... M14, by its index;
+ * CNC_QUEUE_M the array M[0 ... 14]. */
+#define CNC_FLAG_(name, section) CNC_QUEUE_##name,
+#define CNC_FLAGS_(name, count, section) CNC_QUEUE_##name,
+#define CNC_VALUE_(name, type, count, section) CNC_QUEUE_##name,
+enum cnc_queue_field { CNC_QUEUE(CNC_FLAG_, CNC_FLAGS_, CNC_VALUE_) CNC_QUEUE_FIELDS };
+#undef CNC_FLAG_
+#undef CNC_FLAGS_
+#undef CNC_VALUE_
+
+/* ---- Memory ---------------------------------------------------------------------------------------------------------- */
+
+#define CNC_SIZE_BYTE 1
+#define CNC_SIZE_WORD 2
+#define CNC_SIZE_DWRD 4
+#define CNC_SIZE_QWRD 8
+#define CNC_SIZE_REAL 8
+#define CNC_SIZE_STRUCTURE 1
+#define CNC_OWN_(name, type, count, access, fields, preset, section) uint8_t name[CNC_SIZE_##type * (count)];
+#define CNC_SAME_(name, other, offset, type, count, access, section)
+struct cnc_layout { /* bytes alone: nothing lies between them */
+    CNC_NUMBERS(CNC_OWN_, CNC_SAME_)
+};
+#undef CNC_OWN_
+#undef CNC_SAME_
+#define CNC_SYSTEM_MEMORY sizeof(struct cnc_layout)
+
+struct cnc_cells {
+    uint8_t memory[CNC_SYSTEM_MEMORY + CNC_OWN_MEMORY]; /* the cells, then the variables of the PLC program */
+    uint8_t bits[CNC_SYSTEM_BITS + CNC_OWN_BITS];       /* 0 or 1 each; those of the PLC program last */
+};
+
+/* All cells to their presets (NT3), the PLC program's own to 0. */
+void cnc_clear_cells(struct cnc_cells *cells);
+
+/* A bit; place: CNC_BIT_..., below CNC_SYSTEM_BITS + CNC_OWN_BITS. */
+static inline bool cnc_bit(const struct cnc_cells *cells, unsigned place)
+{
+    return cells->bits[place] != 0;
+}
+
+static inline void cnc_put_bit(struct cnc_cells *cells, unsigned place, bool value)
+{
+    cells->bits[place] = value;
+}
+
+/* Element `index` (below the cell's count) of a cell of whole numbers. */
+int64_t cnc_number(const struct cnc_cells *cells, enum cnc_cell cell, unsigned index);
+/* The same is set, cut to the width of the cell. */
+void cnc_put_number(struct cnc_cells *cells, enum cnc_cell cell, unsigned index, int64_t value);
+/* Element `index` of a cell of type REAL. */
+double cnc_real(const struct cnc_cells *cells, enum cnc_cell cell, unsigned index);
+void cnc_put_real(struct cnc_cells *cells, enum cnc_cell cell, unsigned index, double value);
+
+/* The same at a place in memory, with any type of numbers: cnc_cell_place(cell) + a byte offset (SYST_TIME_INFO's fields), or the
+ * place of an operand. */
+unsigned cnc_cell_place(enum cnc_cell cell);
+int64_t cnc_read_number(const struct cnc_cells *cells, unsigned place, enum cnc_type type);
+void cnc_write_number(struct cnc_cells *cells, unsigned place, enum cnc_type type, int64_t value);
+double cnc_read_real(const struct cnc_cells *cells, unsigned place);
+void cnc_write_real(struct cnc_cells *cells, unsigned place, double value);
+
+/* ---- The table ------------------------------------------------------------------------------------------------------- */
+
+enum cnc_numbering {
+    CNC_PLAIN,
+    CNC_BY_AXIS,  /* the name of an axis stands in the place of x */
+    CNC_BY_NUMBER /* a number from `first` on stands in the place of n */
+};
+
+/* Structures with fields. */
+enum cnc_fields { CNC_FIELDS_NONE, CNC_FIELDS_TIME, CNC_FIELDS_DATE, CNC_FIELDS_FILETIME, CNC_FIELDS_DISPLAY };
+
+struct cnc_row {
+    const char *name;     /* "B_POL"; "MPxPI", "ZMMnPI" by numbering */
+    uint8_t type;         /* enum cnc_type */
+    uint8_t numbering;    /* enum cnc_numbering */
+    uint8_t first;        /* CNC_BY_NUMBER: number of the first */
+    uint8_t fields;       /* enum cnc_fields */
+    bool writable;        /* by the PLC program and over the control socket */
+    uint16_t count;       /* elements of an array, bytes of a structure, or bits with a numbering */
+    uint16_t place;       /* of the first in memory or bits, or enum cnc_queue_field */
+    uint16_t preset;
+    const char *section;  /* of the source, "8.1.4"; "own": not in the source */
+};
+
+struct cnc_field {
+    const char *name;
+    uint8_t fields; /* enum cnc_fields that it belongs to */
+    uint8_t offset, type;
+};
+
+/* All cells: rows 0 ... CNC_CELLS - 1 are those of enum cnc_cell, bits follow. */
+extern const struct cnc_row cnc_rows[];
+extern const unsigned cnc_row_count;
+/* The fields of a block in the queue, in the order of enum cnc_queue_field. */
+extern const struct cnc_row cnc_queue_rows[CNC_QUEUE_FIELDS];
+extern const struct cnc_field cnc_fields[];
+extern const unsigned cnc_field_count;
+
+/* Does the text (letters in either case) name this row? *index: which of its bits, 0 without a numbering. */
+bool cnc_name_matches(const struct cnc_row *row, const char *text, size_t length, unsigned *index);
+/* The axis of this name, -1 if there is none. */
+int cnc_find_axis(const char *text, size_t length);
+/* Are the texts the same but for the case of ASCII letters? `name` ends with 0. */
+bool cnc_same_name(const char *name, const char *text, size_t length);
+
+#endif
