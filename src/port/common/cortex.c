@@ -31,12 +31,14 @@ static void fault(void)
         ;
 }
 
+__attribute__((weak, alias("fault"))) void systick_interrupt(void);
+
 __attribute__((section(".vectors"), used)) static const struct {
     uint32_t *stack;
     handler *exception[15];
 } vectors = {
     &stack_top,
-    {reset, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault},
+    {reset, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, systick_interrupt},
 };
 
 void board_interrupts(bool on)

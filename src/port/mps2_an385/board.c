@@ -107,7 +107,7 @@ void board_play(uint32_t wake)
     interrupts_off();
     pulses_refresh(&board_pulses);
     wake_at(wake);
-    NVIC_PEND = 1u << IRQ_TIMER0;
+    NVIC_PEND[0] = 1u << IRQ_TIMER0;
     interrupts_on();
 }
 
@@ -132,7 +132,7 @@ void board_start(void)
     MPS2_TIMER0->control = TIMER_ON;
     NVIC_PRIORITY[IRQ_TIMER0] = BOARD_PRIORITY_PULSES;
     NVIC_PRIORITY[IRQ_GPIO1] = BOARD_PRIORITY_INPUTS;
-    NVIC_ENABLE = 1u << IRQ_TIMER0 | 1u << IRQ_GPIO1;
+    NVIC_ENABLE[0] = 1u << IRQ_TIMER0 | 1u << IRQ_GPIO1;
     uart_start();
     flash_start();
 }

@@ -15,7 +15,7 @@ void uart_start(void)
     NVIC_PRIORITY[IRQ_UART0_RECEIVE] = BOARD_PRIORITY_LINE;
     NVIC_PRIORITY[IRQ_UART0_SENT] = BOARD_PRIORITY_LINE;
     NVIC_PRIORITY[IRQ_TIMER1] = BOARD_PRIORITY_LINE;
-    NVIC_ENABLE = 1u << IRQ_UART0_RECEIVE | 1u << IRQ_UART0_SENT | 1u << IRQ_TIMER1;
+    NVIC_ENABLE[0] = 1u << IRQ_UART0_RECEIVE | 1u << IRQ_UART0_SENT | 1u << IRQ_TIMER1;
 }
 
 /* If the queue is full the interrupt is off until there is room again (and QEMU waits with the next byte). */
@@ -36,9 +36,9 @@ void board_line(void)
 {
     if (!(MPS2_UART0->control & UART_RECEIVE_INTERRUPT) && line_has_room()) {
         MPS2_UART0->control = UART_ON;
-        NVIC_PEND = 1u << IRQ_UART0_RECEIVE;
+        NVIC_PEND[0] = 1u << IRQ_UART0_RECEIVE;
     }
-    NVIC_PEND = 1u << IRQ_UART0_SENT;
+    NVIC_PEND[0] = 1u << IRQ_UART0_SENT;
 }
 
 /* The buffer of the UART is empty: the next byte. If there is none the last one is being shifted out: driver off after it. */

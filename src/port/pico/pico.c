@@ -157,7 +157,7 @@ void board_clock_start(void)
     next_beat = began - START;
     beat_interrupt(); /* before the words given run out */
     TIMER_INTE = 1;
-    NVIC_ENABLE = 1u << IRQ_TIMER0;
+    NVIC_ENABLE[0] = 1u << IRQ_TIMER0;
     while ((int32_t)(TIMER_NOW - began) < 0)
         ;
     interrupts_on();
