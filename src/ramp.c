@@ -236,7 +236,8 @@ static struct leap leap_of(const struct rkm04_ramp *ramp, uint64_t ticks)
 uint32_t ramp_skip(struct rkm04_ramp *ramp, uint64_t limit, uint32_t most)
 {
     const uint64_t worth = 64, interval = (uint64_t)ramp->interval;
-    ramp_leave_block(ramp);
+    if (ramp->block > 0) /* otherwise it changes nothing, and costs as much as a pulse */
+        ramp_leave_block(ramp);
     uint64_t ticks = (ramp->end.tick < limit ? ramp->end.tick : limit) - ramp->at;
     if (ramp->left < worth || most < worth || ticks < worth * interval)
         return 0;

@@ -17,7 +17,7 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 
 void sim_report(struct sim *sim, enum watch_phase phase, const struct watch_event *event)
 {
-    watch_add(&sim->watch, phase, *event);
+    watch_add(&sim->watch, phase, event);
 }
 
 void sim_report_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
@@ -33,7 +33,7 @@ void sim_report_text(struct sim *sim, enum watch_phase phase, const struct watch
     if (length < 0)
         return;
     copy.text = text;
-    watch_add(&sim->watch, phase, copy);
+    watch_add(&sim->watch, phase, &copy);
 }
 
 /* The us of the bus in which `tick` of a unit lies. */
@@ -64,7 +64,7 @@ static void add_unit_event(const struct sim_unit *unit, uint64_t tick, enum watc
         .motor = (uint8_t)(kind == WATCH_VALUE ? 0 : motor),
         .number = (uint8_t)(kind == WATCH_VALUE ? motor : 0),
     };
-    watch_add(&unit->sim->watch, phase, event);
+    watch_add(&unit->sim->watch, phase, &event);
 }
 
 /* ---- The units' port ------------------------------------------------------------------------------------------------ */
@@ -96,7 +96,7 @@ static void on_steps(void *context, unsigned motor, const uint64_t *tick, size_t
         event.tick = since + (is_fine ? tick[i] / kind->ticks_per_us : tick[i]);
         event.order = is_fine ? ns_of(unit, tick[i]) : 0;
         event.value = (int32_t)((uint32_t)position + way);
-        watch_add(&unit->sim->watch, WATCH_PULSES, event);
+        watch_add(&unit->sim->watch, WATCH_PULSES, &event);
         if (moves)
             plant_step(unit->plant, event.tick, motor, forward);
     }
@@ -176,7 +176,7 @@ static void set_inputs(struct sim *sim, struct sim_unit *unit, uint64_t tick)
     if (levels == kind->inputs_of(core))
         return;
     struct watch_event event = {.tick = tick, .value = (int32_t)levels, .kind = WATCH_INPUTS, .unit = (uint8_t)unit->number};
-    watch_add(&sim->watch, WATCH_DELIVERED, event);
+    watch_add(&sim->watch, WATCH_DELIVERED, &event);
     kind->set_inputs(core, levels); /* what comes of it follows */
 }
 
@@ -225,7 +225,7 @@ static void on_byte(void *context, const struct segment_byte *byte)
 {
     struct sim *sim = context;
     struct watch_event event = {.tick = byte->tick, .value = byte->byte, .kind = WATCH_BYTE, .byte = *byte};
-    watch_add(&sim->watch, WATCH_DELIVERED, event);
+    watch_add(&sim->watch, WATCH_DELIVERED, &event);
     wire_monitor_add_byte(&sim->monitor, byte);
 }
 
@@ -240,7 +240,7 @@ static void on_message(void *context, uint64_t tick, struct wire_message *messag
     struct sim *sim = context;
     struct watch_event event = {.tick = tick, .kind = WATCH_MESSAGE, .message = message};
     if (message)
-        watch_add(&sim->watch, WATCH_DELIVERED, event);
+        watch_add(&sim->watch, WATCH_DELIVERED, &event);
     else
         sim->watch.short_of_memory = true;
 }
@@ -434,7 +434,7 @@ bool sim_powered(const struct sim *sim, unsigned number)
 static void add_power_event(struct sim *sim, unsigned number, bool on)
 {
     struct watch_event event = {.tick = sim_now(sim), .value = on, .kind = WATCH_POWER, .unit = (uint8_t)number};
-    watch_add(&sim->watch, WATCH_DELIVERED, event);
+    watch_add(&sim->watch, WATCH_DELIVERED, &event);
 }
 
 void sim_power(struct sim *sim, unsigned number, bool on)

@@ -72,19 +72,20 @@ static bool make_room(struct watch *watch)
     return true;
 }
 
-void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event event)
+void watch_add(struct watch *watch, enum watch_phase phase, const struct watch_event *event)
 {
-    if ((watch->kinds & WATCH_BIT(event.kind)) == 0) {
-        free_event(&event);
+    if ((watch->kinds & WATCH_BIT(event->kind)) == 0) {
+        free_event(event);
         return;
     }
     if (!make_room(watch)) {
         watch->short_of_memory = true;
-        free_event(&event);
+        free_event(event);
         return;
     }
-    event.order = event.order << WATCH_ORDER_NS | (uint64_t)phase << ORDER_PHASE | watch->sequence++;
-    watch->events[watch->count++] = event;
+    struct watch_event *copy = &watch->events[watch->count++];
+    *copy = *event;
+    copy->order = event->order << WATCH_ORDER_NS | (uint64_t)phase << ORDER_PHASE | watch->sequence++;
 }
 
 static int compare_events(const void *left, const void *right)

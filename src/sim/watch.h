@@ -108,9 +108,9 @@ enum watch_kind watch_kind_named(const char *name);
 /* "open", "closed", "received", "sent". Never NULL. */
 const char *watch_service_act_name(enum watch_service_act act);
 
-/* Gather one; `event->order` is set here. A message, text or service must be a copy of its own, from malloc(): it is freed after
- * the watchers have seen it, or at once if there is no watcher for it. */
-void watch_add(struct watch *watch, enum watch_phase phase, struct watch_event event);
+/* Gather a copy of one, whose `order` is set here. A message, text or service must be a copy of its own, from malloc(): it is
+ * freed after the watchers have seen it, or at once if there is no watcher for it. */
+void watch_add(struct watch *watch, enum watch_phase phase, const struct watch_event *event);
 
 /* Hand everything before `tick` to the watchers, in order. */
 void watch_deliver(struct watch *watch, uint64_t tick);

@@ -19,6 +19,11 @@ static inline char *put_text(char *at, const char *text)
 
 static inline char *put_number(char *at, uint64_t number)
 {
+    static const char pairs[] = "0001020304050607080910111213141516171819"
+                                "2021222324252627282930313233343536373839"
+                                "4041424344454647484950515253545556575859"
+                                "6061626364656667686970717273747576777879"
+                                "8081828384858687888990919293949596979899";
     char digits[DIGITS_MAX];
     size_t n = DIGITS_MAX;
     while (number > UINT32_MAX) {
@@ -26,10 +31,13 @@ static inline char *put_number(char *at, uint64_t number)
         number /= 10u;
     }
     uint32_t rest = (uint32_t)number; /* divides faster */
-    do {
-        digits[--n] = (char)('0' + rest % 10u);
-        rest /= 10u;
-    } while (rest > 0);
+    for (; rest >= 10u; rest /= 100u) {
+        const char *pair = pairs + 2u * (rest % 100u);
+        digits[--n] = pair[1];
+        digits[--n] = pair[0];
+    }
+    if (rest > 0 || n == DIGITS_MAX)
+        digits[--n] = (char)('0' + rest);
     memcpy(at, digits + n, DIGITS_MAX - n);
     return at + (DIGITS_MAX - n);
 }

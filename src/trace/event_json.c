@@ -131,10 +131,10 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
 
 char *event_time(char *at, const struct sim *sim, const struct watch_event *event)
 {
-    unsigned ns = watch_ns(event);
     at = put_number(at, event->tick);
     if (sim_device(sim)->ticks_per_us == 1)
         return at;
+    const unsigned ns = watch_ns(event);
     *at++ = '.';
     *at++ = (char)('0' + ns / 100u);
     *at++ = (char)('0' + ns / 10u % 10u);

@@ -91,30 +91,62 @@ static uint64_t end_of_own_signal(const struct wire *wire, unsigned station, uin
     return DEVICE_NEVER;
 }
 
-/* Find the beginning of the next byte that a receiver receives: one during which it does not send itself. */
+/* As line_falls(), which most receivers ask for the same. */
+static uint64_t find_fall(struct wire *wire, uint64_t from, bool high)
+{
+    if (wire->found.from != from || wire->found.high != high) {
+        wire->found.fall = line_falls(wire, from, high);
+        wire->found.from = from;
+        wire->found.high = high;
+    }
+    return wire->found.fall;
+}
+
+/* The signals are others, or later. */
+static void forget_findings(struct wire *wire)
+{
+    wire->found.from = wire->sampled.start = DEVICE_NEVER;
+}
+
+/* Find the beginning of the next byte that a receiver in use receives: one during which it does not send itself. */
 static void find_next_byte(struct wire *wire, unsigned receiver)
 {
-    uint64_t from = wire->receiver[receiver].from, fall = DEVICE_NEVER, end;
+    uint64_t from = wire->receiver[receiver].from, fall, end;
     bool high = false; /* its receiver is off while it sends and gives a 1 */
-    if ((wire->stations & bit_of(receiver)) != 0) {
-        do {
-            while ((end = end_of_own_signal(wire, receiver, from, from + 1u)) != DEVICE_NEVER) {
-                from = end;
-                high = true;
-            }
-            fall = line_falls(wire, from, high);
-            end = end_of_own_signal(wire, receiver, from, fall == DEVICE_NEVER ? DEVICE_NEVER : fall + decided(wire) + 1u);
+    do {
+        while ((end = end_of_own_signal(wire, receiver, from, from + 1u)) != DEVICE_NEVER) {
             from = end;
             high = true;
-        } while (end != DEVICE_NEVER);
-    }
+        }
+        fall = find_fall(wire, from, high);
+        end = end_of_own_signal(wire, receiver, from, fall == DEVICE_NEVER ? DEVICE_NEVER : fall + decided(wire) + 1u);
+        from = end;
+        high = true;
+    } while (end != DEVICE_NEVER);
     wire->receiver[receiver].fall = fall;
 }
 
+/* Find the receiver that receives a byte next; of several with the same time the first one. */
+static void find_first_receiver(struct wire *wire)
+{
+    unsigned first = 0;
+    for (unsigned receiver = 1; receiver < WIRE_RECEIVERS; receiver++)
+        if (wire->receiver[receiver].fall < wire->receiver[first].fall)
+            first = receiver;
+    wire->first = first;
+}
+
+/* After a change of the signals. */
 static void find_next_bytes(struct wire *wire)
 {
-    for (unsigned receiver = 0; receiver < WIRE_RECEIVERS; receiver++)
-        find_next_byte(wire, receiver);
+    forget_findings(wire);
+    for (unsigned receiver = 0; receiver < WIRE_RECEIVERS; receiver++) {
+        if ((wire->stations & bit_of(receiver)) != 0)
+            find_next_byte(wire, receiver);
+        else
+            wire->receiver[receiver].fall = DEVICE_NEVER;
+    }
+    find_first_receiver(wire);
 }
 
 /* ---- Signals -------------------------------------------------------------------------------------------------------- */
@@ -129,9 +161,8 @@ static void drop_signal(struct wire *wire, unsigned at)
  * receivers need not look there again. */
 static void drop_old_signals(struct wire *wire, uint64_t time)
 {
-    for (unsigned receiver = 0; receiver < WIRE_RECEIVERS; receiver++)
-        if (wire->receiver[receiver].fall < time)
-            time = wire->receiver[receiver].fall;
+    if (wire->receiver[wire->first].fall < time)
+        time = wire->receiver[wire->first].fall;
     for (unsigned i = 0; i < wire->count;) {
         uint64_t end = wire->signal[i].end;
         if (end + 1u >= time) {
@@ -235,6 +266,7 @@ void wire_hold(struct wire *wire, unsigned station, bool on, uint64_t time)
 
 void wire_shift(struct wire *wire, uint64_t parts)
 {
+    forget_findings(wire);
     for (unsigned i = 0; i < wire->count; i++) {
         wire->signal[i].start += parts;
         if (wire->signal[i].end != HELD_END)
@@ -249,19 +281,9 @@ void wire_shift(struct wire *wire, uint64_t parts)
 
 /* ---- Hearing -------------------------------------------------------------------------------------------------------- */
 
-/* The receiver that receives a byte next. */
-static unsigned next_receiver(const struct wire *wire)
-{
-    unsigned next = 0;
-    for (unsigned receiver = 1; receiver < WIRE_RECEIVERS; receiver++)
-        if (wire->receiver[receiver].fall < wire->receiver[next].fall)
-            next = receiver;
-    return next;
-}
-
 uint64_t wire_due(const struct wire *wire)
 {
-    uint64_t fall = wire->receiver[next_receiver(wire)].fall;
+    uint64_t fall = wire->receiver[wire->first].fall;
     return fall == DEVICE_NEVER ? DEVICE_NEVER : fall + wire_byte_parts(wire);
 }
 
@@ -274,19 +296,19 @@ static uint32_t senders(const struct wire *wire, uint64_t start, uint64_t end)
     return mask;
 }
 
-/* What a receiver makes of the line from its fall on. Returns false if that was no start bit. */
-static bool sample(const struct wire *wire, unsigned receiver, struct wire_byte *received)
+/* What a receiver makes of the line from its fall at `start` on. Returns false if that was no start bit. */
+static bool sample(struct wire *wire, uint64_t start)
 {
-    uint64_t start = wire->receiver[receiver].fall;
+    if (wire->sampled.start == start)
+        return true;
     if (is_high(wire, start + middle(wire)))
         return false;
     unsigned byte = 0;
     for (unsigned bit = 1; bit < STOP_BIT; bit++)
         byte |= (unsigned)is_high(wire, start + (uint64_t)bit * wire->bit + middle(wire)) << (bit - 1u);
-    *received = (struct wire_byte){
+    wire->sampled = (struct wire_byte){
         .start = start,
         .end = start + wire_byte_parts(wire),
-        .receiver = receiver,
         .senders = senders(wire, start, start + wire_byte_parts(wire)),
         .byte = (uint8_t)byte,
         .lost = !is_high(wire, start + decided(wire)),
@@ -296,14 +318,17 @@ static bool sample(const struct wire *wire, unsigned receiver, struct wire_byte 
 
 bool wire_receive(struct wire *wire, uint64_t until, struct wire_byte *byte)
 {
-    while (wire_due(wire) <= until && wire_due(wire) != DEVICE_NEVER) {
-        unsigned number = next_receiver(wire);
+    for (uint64_t due; (due = wire_due(wire)) <= until && due != DEVICE_NEVER;) {
+        unsigned number = wire->first;
         struct wire_receiver *receiver = &wire->receiver[number];
-        bool received = sample(wire, number, byte);
+        bool received = sample(wire, receiver->fall);
         receiver->from = receiver->fall + (received ? decided(wire) : middle(wire)) + 1u;
         find_next_byte(wire, number);
+        find_first_receiver(wire);
         if (!received)
             continue;
+        *byte = wire->sampled;
+        byte->receiver = number;
         if (byte->lost)
             receiver->framing_errors++;
         else

@@ -45,16 +45,6 @@ struct wire_receiver {
     uint64_t received;       /* bytes */
 };
 
-struct wire {
-    uint32_t bit;        /* parts of a bit */
-    uint64_t sent;       /* bytes sent, by all */
-    uint64_t collisions; /* of these, bytes during which another station was sending, too */
-    uint32_t stations;   /* ears in use: bit n is station n, or the monitor */
-    unsigned count;
-    struct wire_signal signal[WIRE_SIGNALS]; /* in order of their starts */
-    struct wire_receiver receiver[WIRE_RECEIVERS];
-};
-
 /* What a receiver has received. */
 struct wire_byte {
     uint64_t start, end; /* parts: of the ten bits */
@@ -62,6 +52,24 @@ struct wire_byte {
     uint32_t senders;    /* who was sending meanwhile: bit n is station n; several: a collision */
     uint8_t byte;
     bool lost;           /* framing error: reported to the monitor alone, with the bits as they were */
+};
+
+struct wire {
+    uint32_t bit;        /* parts of a bit */
+    uint64_t sent;       /* bytes sent, by all */
+    uint64_t collisions; /* of these, bytes during which another station was sending, too */
+    uint32_t stations;   /* receivers in use: bit n is station n, or the monitor */
+    unsigned first;      /* of all receivers, the one that receives a byte next: its `fall` is the earliest */
+    unsigned count;
+    struct wire_signal signal[WIRE_SIGNALS]; /* in order of their starts */
+    struct wire_receiver receiver[WIRE_RECEIVERS];
+
+    /* What was found last while the signals are the same: most receivers receive the same byte at the same time. */
+    struct {
+        uint64_t from, fall; /* the line falls at `fall` if one waits since `from`; DEVICE_NEVER: nothing was found yet */
+        bool high;           /* and gives a 1 before */
+    } found;
+    struct wire_byte sampled; /* start DEVICE_NEVER: nothing yet */
 };
 
 /* An idle wire without units, with a speed that divides 115200 baud. */

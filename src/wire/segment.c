@@ -260,6 +260,8 @@ static void end_byte(struct segment *segment, const struct wire_byte *received)
 /* Do what the silence leads to that is over before anything else happens, at `tick` at the latest. Returns false if none is. */
 static bool end_silence(struct segment *segment, uint64_t tick)
 {
+    if (!segment->config.kind->silence_end)
+        return false;
     uint64_t silence = segment_silence_end(segment);
     if (silence == DEVICE_NEVER || silence > tick)
         return false;
