@@ -4,5 +4,7 @@
 #define CNC872_CNC872_H
 
 #include "cells.h"
+#include "config.h"
+#include "nc.h"
 
 #endif
