@@ -116,6 +116,14 @@ bool cnc_name_matches(const struct cnc_row *row, const char *text, size_t length
     return true;
 }
 
+const struct cnc_row *cnc_find_row(const struct cnc_row *rows, unsigned count, const char *text, size_t length, unsigned *index)
+{
+    for (unsigned i = 0; i < count; i++)
+        if (cnc_name_matches(&rows[i], text, length, index))
+            return &rows[i];
+    return NULL;
+}
+
 /* ---- Memory ---------------------------------------------------------------------------------------------------------- */
 
 int64_t cnc_read_number(const struct cnc_cells *cells, unsigned place, enum cnc_type type)

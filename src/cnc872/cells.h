@@ -161,6 +161,8 @@ extern const unsigned cnc_field_count;
 
 /* Does the text (letters in either case) name this row? *index: which of its bits, 0 without a numbering. */
 bool cnc_name_matches(const struct cnc_row *row, const char *text, size_t length, unsigned *index);
+/* The first of these rows that the text names, NULL if none does. */
+const struct cnc_row *cnc_find_row(const struct cnc_row *rows, unsigned count, const char *text, size_t length, unsigned *index);
 /* The axis of this name, -1 if there is none. */
 int cnc_find_axis(const char *text, size_t length);
 /* Are the texts the same but for the case of ASCII letters? `name` ends with 0. */
