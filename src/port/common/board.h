@@ -41,6 +41,9 @@ void board_reset(void);
 /* Terminals DI 01..08, bit 0 is DI 01; 1 = current flows. */
 uint8_t board_inputs(void);
 
+/* Seven inputs besides, for pmc_loop.c: bit 0 is the first. */
+uint8_t board_more_inputs(void);
+
 /* Switch S1: 0..15, S1-1 is bit 0 (U4). */
 uint8_t board_switch(void);
 
@@ -49,6 +52,9 @@ void board_led(unsigned motor, bool lit);
 
 /* The line has been given something to send, or room for what comes in: have the UART's interrupt look. */
 void board_line(void);
+
+/* Another speed of the line than LINE_BAUD from now on, for pmc_loop.c. */
+void board_baud(uint32_t baud);
 
 /* Flash, callbacks of struct rkm04_port. */
 int board_flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length);

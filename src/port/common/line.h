@@ -7,7 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifndef LINE_BAUD
 #define LINE_BAUD 19200u
+#endif
 #define LINE_ROOM 64u /* of each queue; a power of 2. 64 bytes are 33 ms of the line. */
 
 /* ---- Main loop ------------------------------------------------------------------------------------------------------ */

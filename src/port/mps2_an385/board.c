@@ -37,20 +37,31 @@ void board_driver(bool on)
 }
 
 /* Have a change of an input interrupt: pins at 1 when they go to 0, and the other way round. */
+static uint8_t read_pins(volatile struct mps2_gpio *gpio, unsigned first, unsigned count)
+{
+    const uint32_t pins = PINS(first, count), levels = gpio->data;
+    gpio->high_level_clear = pins & levels;
+    gpio->high_level_set = pins & ~levels;
+    gpio->interrupt_set = pins;
+    return pins_read(levels, first, count, false);
+}
+
 uint8_t board_inputs(void)
 {
     wake_clear();
-    const uint32_t pins = PINS(BOARD_INPUT_PIN, RKM04_INPUTS), levels = MPS2_GPIO1->data;
-    MPS2_GPIO1->high_level_clear = pins & levels;
-    MPS2_GPIO1->high_level_set = pins & ~levels;
-    MPS2_GPIO1->interrupt_set = pins;
-    return pins_read(levels, BOARD_INPUT_PIN, RKM04_INPUTS, false);
+    return read_pins(MPS2_GPIO1, BOARD_INPUT_PIN, RKM04_INPUTS);
+}
+
+uint8_t board_more_inputs(void)
+{
+    return read_pins(MPS2_GPIO0, BOARD_MORE_PIN, BOARD_MORE_INPUTS);
 }
 
 /* The pin stays as it is, so no more interrupts until the main loop has looked; it filters bounces by being slower. */
 void board_input_interrupt(void)
 {
     MPS2_GPIO1->interrupt_clear = PINS(BOARD_INPUT_PIN, RKM04_INPUTS);
+    MPS2_GPIO0->interrupt_clear = PINS(BOARD_MORE_PIN, BOARD_MORE_INPUTS);
     wake_changed();
 }
 
@@ -131,8 +142,8 @@ void board_start(void)
     MPS2_TIMER0->value = UINT32_MAX; /* until board_play */
     MPS2_TIMER0->control = TIMER_ON;
     NVIC_PRIORITY[IRQ_TIMER0] = BOARD_PRIORITY_PULSES;
-    NVIC_PRIORITY[IRQ_GPIO1] = BOARD_PRIORITY_INPUTS;
-    NVIC_ENABLE[0] = 1u << IRQ_TIMER0 | 1u << IRQ_GPIO1;
+    NVIC_PRIORITY[IRQ_GPIO0] = NVIC_PRIORITY[IRQ_GPIO1] = BOARD_PRIORITY_INPUTS;
+    NVIC_ENABLE[0] = 1u << IRQ_TIMER0 | 1u << IRQ_GPIO0 | 1u << IRQ_GPIO1;
     uart_start();
     flash_start();
 }
@@ -156,5 +167,6 @@ int board_flash_program(void *context, unsigned block, unsigned offset, const vo
 
 INTERRUPTS interrupts[] = {
     [IRQ_UART0_RECEIVE] = uart_receive_interrupt, [IRQ_UART0_SENT] = uart_sent_interrupt,
-    [IRQ_GPIO1] = board_input_interrupt, [IRQ_TIMER0] = board_timer_interrupt, [IRQ_TIMER1] = uart_timer_interrupt,
+    [IRQ_GPIO0] = board_input_interrupt, [IRQ_GPIO1] = board_input_interrupt,
+    [IRQ_TIMER0] = board_timer_interrupt, [IRQ_TIMER1] = uart_timer_interrupt,
 };

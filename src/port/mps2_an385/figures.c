@@ -5,53 +5,10 @@
 #include <string.h>
 
 #include "board.h"
+#include "figures_count.h"
 #include "loop.h"
-#include "mps2.h"
-
-/* ---- Report ----------------------------------------------------------------------------------------------------------- */
-
-static int semihosting(int operation, const void *argument)
-{
-    register int r0 __asm__("r0") = operation;
-    register const void *r1 __asm__("r1") = argument;
-    __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
-    return r0;
-}
-
-static void report(const char *name, uint32_t value)
-{
-    char line[80], *at = line + sizeof line;
-    *--at = '\0';
-    *--at = '\n';
-    do
-        *--at = (char)('0' + value % 10);
-    while ((value /= 10) > 0);
-    *--at = ' ';
-    size_t length = strlen(name);
-    at -= length;
-    memcpy(at, name, length);
-    (void)semihosting(4, at);
-}
 
 /* ---- Count ------------------------------------------------------------------------------------------------------------ */
-
-/* The board's dual timer, free running at 25 MHz, downwards. */
-#define DUAL_TIMER_VALUE (*(volatile uint32_t *)0x40002004)
-#define DUAL_TIMER_CONTROL (*(volatile uint32_t *)0x40002008)
-
-static uint32_t begun, overhead;
-
-static void begin(void)
-{
-    begun = DUAL_TIMER_VALUE;
-}
-
-/* Instructions since begin(). */
-static uint32_t counted(void)
-{
-    uint32_t counts = begun - DUAL_TIMER_VALUE;
-    return (uint32_t)((uint64_t)counts * 10 / 256) - overhead;
-}
 
 static void drop_pulses(void)
 {
@@ -250,9 +207,7 @@ static void try_all(void)
 
 int main(void)
 {
-    DUAL_TIMER_CONTROL = 0x82; /* on, free running, 32 bits */
-    begin();
-    overhead = counted();
+    count_start();
     if (BOARD_TICK_CYCLES == 25) {
         count_pulses();
         count_interrupts();
@@ -261,6 +216,5 @@ int main(void)
     } else {
         try_all();
     }
-    (void)semihosting(0x18, (const void *)0x20026); /* the program has ended without an error */
-    return 0;
+    return count_end();
 }

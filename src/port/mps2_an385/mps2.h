@@ -49,11 +49,15 @@ struct mps2_gpio {
 #define MPS2_SWITCHES (*(volatile uint32_t *)0x4002f00c)
 
 /* Interrupts of the processor. */
-enum mps2_interrupt { IRQ_UART0_RECEIVE = 0, IRQ_UART0_SENT = 1, IRQ_GPIO1 = 7, IRQ_TIMER0 = 8, IRQ_TIMER1 = 9 };
+enum mps2_interrupt { IRQ_UART0_RECEIVE = 0, IRQ_UART0_SENT = 1, IRQ_GPIO0 = 6, IRQ_GPIO1 = 7, IRQ_TIMER0 = 8,
+                      IRQ_TIMER1 = 9 };
 
-/* Pins. GPIO0: 0-3 step, 4-7 direction of motors 1-4, 8 RS485 driver-enable. GPIO1: 0-7 DO 01-08, 8-15 DI 01-08. */
+/* Pins. GPIO0: 0-3 step, 4-7 direction of motors 1-4, 8 RS485 driver-enable, 9-15 inputs of axis Y of a PMC-2HS.
+ * GPIO1: 0-7 DO 01-08, 8-15 DI 01-08. */
 #define BOARD_DRIVER_PIN 8u
 #define BOARD_INPUT_PIN 8u
+#define BOARD_MORE_PIN 9u
+#define BOARD_MORE_INPUTS 7u
 
 /* Cycles of the board's clock in one tick of the unit, 1 us. (tools/port-figures slows the unit's time down by more.) */
 #ifndef BOARD_TICK_CYCLES

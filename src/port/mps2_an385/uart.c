@@ -3,14 +3,20 @@
 #include "line.h"
 #include "mps2.h"
 
-#define BYTE_CYCLES (10u * MPS2_CLOCK / LINE_BAUD + 1) /* start bit, 8 bits, stop bit */
+static uint32_t baud = LINE_BAUD;
+
+void board_baud(uint32_t wanted)
+{
+    baud = wanted;
+    MPS2_UART0->divider = (MPS2_CLOCK + baud / 2) / baud;
+}
 
 void uart_start(void)
 {
     board_driver(false);
     MPS2_TIMER1->control = 0;
     MPS2_TIMER1->reload = 0;
-    MPS2_UART0->divider = (MPS2_CLOCK + LINE_BAUD / 2) / LINE_BAUD;
+    board_baud(LINE_BAUD);
     MPS2_UART0->control = UART_ON;
     NVIC_PRIORITY[IRQ_UART0_RECEIVE] = BOARD_PRIORITY_LINE;
     NVIC_PRIORITY[IRQ_UART0_SENT] = BOARD_PRIORITY_LINE;
@@ -53,7 +59,7 @@ void uart_sent_interrupt(void)
         MPS2_TIMER1->control = 0;
         MPS2_UART0->data = byte;
     } else if (!(MPS2_TIMER1->control & 1u)) {
-        MPS2_TIMER1->value = BYTE_CYCLES;
+        MPS2_TIMER1->value = 10u * MPS2_CLOCK / baud + 1; /* start bit, 8 bits, stop bit */
         MPS2_TIMER1->control = TIMER_ON;
     }
 }
