@@ -6,5 +6,7 @@
 #include "cells.h"
 #include "config.h"
 #include "nc.h"
+#include "operand.h"
+#include "plc.h"
 
 #endif

@@ -6,11 +6,11 @@
 
 int cnc_find_license(const char *name, size_t length)
 {
-    static const char key[] = "HwKeyConnected", feature[] = "FeaturePlc";
+    static const char feature[] = "FeaturePlc";
     const size_t size = sizeof feature - 1;
-    if (length == sizeof key - 1 && memcmp(name, key, length) == 0)
+    if (cnc_same_name("HwKeyConnected", name, length))
         return CNC_LICENSE_HW_KEY;
-    if (length == size + 1 && memcmp(name, feature, size) == 0 && name[size] >= '0' && name[size] <= '9')
+    if (length == size + 1 && cnc_same_name(feature, name, size) && name[size] >= '0' && name[size] <= '9')
         return CNC_LICENSE_FEATURE_PLC0 + (name[size] - '0');
     return -1;
 }

@@ -130,12 +130,3 @@ bool cnc_find_constant(const char *text, size_t length, int64_t *value)
     }
     return false;
 }
-
-int cnc_find_licence(const char *text, size_t length)
-{
-    if (cnc_same_name("HwKeyConnected", text, length))
-        return 0;
-    if (length == 11 && is_digit(text[10]) && cnc_same_name("FeaturePlc", text, 10))
-        return text[10] - '0' + 1;
-    return -1;
-}

@@ -52,7 +52,5 @@ bool cnc_parse_number(const char *text, size_t length, int64_t *value);
 
 /* What the language calls PLCEVENT_START_REQ, BLOCK_IDLE ... BLOCK_DONE. */
 bool cnc_find_constant(const char *text, size_t length, int64_t *value);
-/* Licence of this name (8.4.7): 0 HwKeyConnected, 1 ... 10 FeaturePlc0 ... FeaturePlc9; -1: there is none. */
-int cnc_find_licence(const char *text, size_t length);
 
 #endif

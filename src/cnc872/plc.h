@@ -11,11 +11,11 @@
 
 #include "names.h"
 #include "operand.h"
+#include "text_error.h"
 
 #define CNC_PLC_CODE_MAX 65535u    /* instructions; TEX0 takes three (NP8) */
 #define CNC_PLC_CALL_MAX 100000u   /* instructions of one call (NP8) */
 #define CNC_PLC_MECHANISMS_MAX 250u
-#define CNC_PLC_ERRORS_MAX 20u     /* that are reported (NP8) */
 #define CNC_PLC_TEXT_MAX 16777216u /* bytes of a text */
 
 enum cnc_plc_section {
@@ -55,7 +55,7 @@ struct cnc_plc {
     double real;                    /* DR_REAL */
     uint16_t place[CNC_PLC_PLACES]; /* where the next call of each section and mechanism begins */
     uint16_t bx;
-    uint16_t no_licence; /* bits: licences that are not valid, as cnc_find_licence() counts */
+    uint16_t no_license; /* bits: licences that are not valid, as in struct cnc_config */
     bool rlo;
     bool is_halted; /* after a fault nothing of it runs */
 };
@@ -76,13 +76,11 @@ struct cnc_plc_surroundings {
     void (*report)(void *context, enum cnc_plc_event event, int64_t value, uint32_t line);
 };
 
-/* What is wrong in a text, in the order of its lines, at most CNC_PLC_ERRORS_MAX: "unknown instruction `TIM'". */
-typedef void cnc_plc_report(void *context, unsigned line, unsigned column, const char *text);
+/* Translates a text of at most CNC_PLC_TEXT_MAX bytes (more are an error). report() has what is wrong, in the order of the
+ * lines: "unknown instruction `TIM'". False: there are errors, and *program is no program. */
+bool cnc_translate_plc(const char *text, size_t length, struct cnc_plc_program *program, cnc_text_report *report, void *context);
 
-/* Translates a text of at most CNC_PLC_TEXT_MAX bytes (more are an error). False: it has errors, *program is no program. */
-bool cnc_translate_plc(const char *text, size_t length, struct cnc_plc_program *program, cnc_plc_report *report, void *context);
-
-/* Power-up: the presets of the program's own cells, registers 0, every part at its beginning. no_licence stays. */
+/* Power-up: the presets of the program's own cells, registers 0, every part at its beginning. no_license stays. */
 void cnc_begin_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, struct cnc_cells *cells);
 
 /* A call of a section (NP6). True: the section has ended, or there is none; false: it waits, or the program is halted.

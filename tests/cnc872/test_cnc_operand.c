@@ -236,11 +236,6 @@ START_TEST(names_are_found_until_the_table_is_full)
         ck_assert_int_eq(cnc_find_symbol(&names, 1 + i % 3, name, strlen(name))->value, i);
         ck_assert_ptr_null(cnc_find_symbol(&names, 1 + (i + 1) % 3, name, strlen(name)));
     }
-    ck_assert_int_eq(cnc_find_licence("hwkeyconnected", 14), 0);
-    ck_assert_int_eq(cnc_find_licence("FeaturePlc9", 11), 10);
-    ck_assert_int_eq(cnc_find_licence("FeaturePlcX", 11), -1);
-    ck_assert_int_eq(cnc_find_licence("FeaturePlc10", 12), -1);
-    ck_assert_int_eq(cnc_find_licence("Foo", 3), -1);
 }
 END_TEST
 
