@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* coverage.h: what a client has exercised out of all that there is: messages, motors, commands, flags, faults. Pure but for
- * coverage_write().
- *
- * The list of things is derived from the core's own tables, so a new command is in it by itself. Messages are handed over
- * without their framing, in the order in which they pass on the line. One coverage serves any number of units. */
+ * coverage_write(). What there is a kind of device says (struct device_coverage). One coverage serves any number of units. */
 #ifndef RKM04_DEVICE_COVERAGE_H
 #define RKM04_DEVICE_COVERAGE_H
 
@@ -13,18 +10,16 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include <rkm04/unit.h>
-
 #define COVERAGE_ITEMS_MAX 192
 #define COVERAGE_NAME_MAX 48
 
 enum coverage_group {
-    COVERAGE_MESSAGES, /* 1..7 and an unknown one, of each the motors; broadcast */
-    COVERAGE_MOTORS,   /* 1..4, in whatever message */
+    COVERAGE_MESSAGES, /* each, of each the motors; broadcast */
+    COVERAGE_MOTORS,   /* in whatever message */
     COVERAGE_COMMANDS, /* each in each of its forms, in a text that the unit took */
-    COVERAGE_FLAGS,    /* of answers to Set Command (P1) */
-    COVERAGE_ERRORS,   /* errors reported in answers: Store Flash, ERROR COMMAND! */
-    COVERAGE_FAULTS,   /* enum rkm04_fault */
+    COVERAGE_FLAGS,    /* of answers to programs */
+    COVERAGE_ERRORS,   /* other errors reported in answers */
+    COVERAGE_FAULTS,   /* of programs */
     COVERAGE_GROUPS
 };
 
@@ -46,18 +41,12 @@ struct coverage {
     struct coverage_item item[COVERAGE_ITEMS_MAX];
 };
 
-/* Make the list for units with these readings: a fault that they cannot come into is not on it. Nothing has been exercised. */
-void coverage_begin(struct coverage *coverage, const struct rkm04_readings *readings);
+/* For kinds: put an item on the list; the name is printed into it. Returns it, for the caller to fill in further. */
+__attribute__((format(printf, 4, 5))) struct coverage_item *coverage_add(struct coverage *coverage, enum coverage_group group,
+                                                                        uint32_t key, const char *name, ...);
 
-/* The client has sent a whole, well-framed message to `dnode`: 0 or the address of a unit that is there. Commands count if
- * the unit takes them: nothing in the text is wrong (P2), and no `\` follows (C1). */
-void coverage_request(struct coverage *coverage, uint8_t dnode, const uint8_t *message, size_t length);
-
-/* A unit answers with this message. */
-void coverage_answer(struct coverage *coverage, const uint8_t *message, size_t length);
-
-/* The program of a motor has stopped with a fault (RKM04_EVENT_FAULT). RKM04_FAULT_NONE is passed over. */
-void coverage_fault(struct coverage *coverage, unsigned fault);
+/* For kinds: the items of this group and key have been exercised once more. */
+void coverage_count(struct coverage *coverage, enum coverage_group group, uint32_t key);
 
 /* Items of a group that have been exercised, and all of it; group COVERAGE_GROUPS: of everything. */
 struct coverage_sum {

@@ -155,11 +155,26 @@ struct device_option {
     void (*list)(FILE *out);
 };
 
+/* The message that the steps `set` and `program` of scenarios send, and its answer. */
+struct device_program_message {
+    unsigned head;  /* bytes before the text */
+    unsigned flags; /* an answer has a flag 0..flags; 0: the text is taken */
+    void (*begin)(uint8_t *message, unsigned axis); /* write the bytes before the text for an axis; 0: all */
+    /* The flag of an answer to `message`; -1: it is none. */
+    int (*flag)(const uint8_t *message, const uint8_t *answer, size_t length);
+    /* What the flag of an answer says, "bad value 'X'". Returns whether something in the text is wrong. */
+    bool (*explain)(const uint8_t *answer, char text[DEVICE_ERROR_SIZE]);
+};
+
 /* What clients have used of all that there is (coverage.h). */
 struct device_coverage {
-    void (*begin)(struct coverage *coverage, const struct device_config *config); /* make the list; nothing has been used */
+    /* Make the list for units with these settings: what they cannot do is not on it. Nothing has been used. */
+    void (*begin)(struct coverage *coverage, const struct device_config *config);
+    /* A client has sent a whole, well-framed message to `dnode`: 0 or the address of a unit that is there. */
     void (*request)(struct coverage *coverage, uint8_t dnode, const uint8_t *message, size_t length);
+    /* A unit answers with this message. */
     void (*answer)(struct coverage *coverage, const uint8_t *message, size_t length);
+    /* The program of an axis has stopped with a fault (DEVICE_EVENT_FAULT); 0, none, does not count. */
     void (*fault)(struct coverage *coverage, unsigned fault);
 };
 
@@ -291,7 +306,7 @@ struct device_kind {
     unsigned turnaround;     /* us from a request to its answer, unless --turnaround says otherwise; 0: one character */
     bool deaf_to_answers;    /* where bytes take no time, no unit receives the answers of others: they look like requests */
     unsigned program;        /* commands that an axis can have in memory; 0: it has no program */
-    bool has_program_message; /* the steps `set` and `program` of scenarios send message 2 as the RKM04 has it */
+    const struct device_program_message *program_message; /* NULL: scenarios have no steps `set` and `program` */
     bool is_program_whole;   /* a text is for all axes (axis 0), not for one */
     unsigned flash_blocks, flash_block_size; /* 0: no flash */
     unsigned request_max, answer_max; /* bytes of the longest message, without framing; at most DEVICE_MESSAGE_MAX */

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "coverage.h"
-
-#include <stdarg.h>
+/* What clients can use of an RKM04, and what of it they have used: the list is derived from the core's own tables, so a new
+ * command is in it by itself. */
 #include <string.h>
+
+#include "coverage.h"
+#include "rkm04_device.h"
 
 #define SET_COMMAND 2
 #define STORE_FLASH 3
@@ -38,35 +40,21 @@ static const struct rkm04_range functions[] = {{40, 40}, {41, 41}, {51, 58}};
 
 /* ---- The list ----------------------------------------------------------------------------------------------------- */
 
-/* Returns the new item for the caller to fill in further; `name` is printed into it. */
-__attribute__((format(printf, 4, 5))) static struct coverage_item *add(struct coverage *coverage, enum coverage_group group,
-                                                                       uint32_t key, const char *name, ...)
-{
-    if (coverage->items == COVERAGE_ITEMS_MAX)
-        return &coverage->item[COVERAGE_ITEMS_MAX - 1]; /* the table of commands has outgrown the list: a test fails */
-    struct coverage_item *item = &coverage->item[coverage->items++];
-    va_list arguments;
-    *item = (struct coverage_item){.group = (uint8_t)group, .key = key};
-    va_start(arguments, name);
-    vsnprintf(item->name, sizeof item->name, name, arguments);
-    va_end(arguments);
-    return item;
-}
-
 static void add_messages(struct coverage *coverage)
 {
     for (unsigned number = 1; number < MESSAGES; number++) {
         const struct message *message = &messages[number];
         if (!message->has_motor)
-            add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_UNIT), "%s", message->name);
+            coverage_add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_UNIT), "%s", message->name);
         if (message->has_motor) {
-            add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_ALL_MOTORS), "%s, motor 0", message->name);
-            add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_ONE_MOTOR), "%s, motor 1..%d", message->name, RKM04_MOTORS);
+            coverage_add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_ALL_MOTORS), "%s, motor 0", message->name);
+            coverage_add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_ONE_MOTOR), "%s, motor 1..%d", message->name,
+                         RKM04_MOTORS);
         }
         if (message->broadcast)
-            add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, BROADCAST), "%s, broadcast", message->name);
+            coverage_add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, BROADCAST), "%s, broadcast", message->name);
     }
-    add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(UNKNOWN, TO_UNIT), "%s", messages[UNKNOWN].name);
+    coverage_add(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(UNKNOWN, TO_UNIT), "%s", messages[UNKNOWN].name);
 }
 
 /* K, C75 and V mean one thing as the only command of a message and another in a longer text (C3, C4). */
@@ -86,8 +74,8 @@ static void add_command(struct coverage *coverage, struct rkm04_command low, str
         static const char *const where[] = {"", " alone", " in a text"};
         if ((place != COVERAGE_ANYWHERE) != depends_on_place(low))
             continue;
-        struct coverage_item *item = add(coverage, COVERAGE_COMMANDS, low.op, "%.*s%s%.*s%s", from_length, from, one ? "" : "..",
-                                         one ? 0 : to_length, to, where[place]);
+        struct coverage_item *item = coverage_add(coverage, COVERAGE_COMMANDS, low.op, "%.*s%s%.*s%s", from_length, from,
+                                                  one ? "" : "..", one ? 0 : to_length, to, where[place]);
         item->place = (uint8_t)place;
         item->low = first;
         item->high = last;
@@ -161,37 +149,31 @@ static void add_commands(struct coverage *coverage)
         if (count >= 0 && is_canonical((uint8_t)op))
             add_forms(coverage, (uint8_t)op, form, ranges, count);
     }
-    add(coverage, COVERAGE_COMMANDS, COMMENT, "{ comment }");
+    coverage_add(coverage, COVERAGE_COMMANDS, COMMENT, "{ comment }");
 }
 
-void coverage_begin(struct coverage *coverage, const struct rkm04_readings *readings)
+static void begin(struct coverage *coverage, const struct device_config *config)
 {
     static const char *const meaning[FLAGS] = {"ok", "bad value", "unknown command", "memory overflowed"};
+    const struct rkm04_config settings = rkm04_settings(config);
     coverage->items = 0;
     add_messages(coverage);
     for (unsigned motor = 1; motor <= RKM04_MOTORS; motor++)
-        add(coverage, COVERAGE_MOTORS, motor, "motor %u", motor);
+        coverage_add(coverage, COVERAGE_MOTORS, motor, "motor %u", motor);
     add_commands(coverage);
     for (unsigned flag = 0; flag < FLAGS; flag++)
-        add(coverage, COVERAGE_FLAGS, flag, "flag %u, %s", flag, meaning[flag]);
-    add(coverage, COVERAGE_ERRORS, MESSAGE_KEY(STORE_FLASH, 0), "%s, written", messages[STORE_FLASH].name);
-    add(coverage, COVERAGE_ERRORS, MESSAGE_KEY(STORE_FLASH, 1), "%s, not written", messages[STORE_FLASH].name);
+        coverage_add(coverage, COVERAGE_FLAGS, flag, "flag %u, %s", flag, meaning[flag]);
+    coverage_add(coverage, COVERAGE_ERRORS, MESSAGE_KEY(STORE_FLASH, 0), "%s, written", messages[STORE_FLASH].name);
+    coverage_add(coverage, COVERAGE_ERRORS, MESSAGE_KEY(STORE_FLASH, 1), "%s, not written", messages[STORE_FLASH].name);
     for (unsigned number = 1; number < MESSAGES; number++)
         if (messages[number].error)
-            add(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, 1), "%s, ERROR COMMAND!", messages[number].name);
+            coverage_add(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, 1), "%s, ERROR COMMAND!", messages[number].name);
     for (unsigned fault = RKM04_FAULT_NONE + 1; fault <= RKM04_FAULT_MOTION; fault++)
-        if (fault != RKM04_FAULT_NO_LABEL || readings->label == RKM04_LABEL_FAULT)
-            add(coverage, COVERAGE_FAULTS, fault, "%s", rkm04_fault_name((enum rkm04_fault)fault));
+        if (fault != RKM04_FAULT_NO_LABEL || settings.readings.label == RKM04_LABEL_FAULT)
+            coverage_add(coverage, COVERAGE_FAULTS, fault, "%s", rkm04_fault_name((enum rkm04_fault)fault));
 }
 
 /* ---- Counting ------------------------------------------------------------------------------------------------------- */
-
-static void count_item(struct coverage *coverage, enum coverage_group group, uint32_t key)
-{
-    for (size_t i = 0; i < coverage->items; i++)
-        if (coverage->item[i].group == group && coverage->item[i].key == key)
-            coverage->item[i].count++;
-}
 
 static void count_command(struct coverage *coverage, struct rkm04_command command, bool alone)
 {
@@ -234,14 +216,14 @@ static void count_text(struct coverage *coverage, const uint8_t *text, size_t le
     if (found != RKM04_READ_END)
         return;
     if (length > 0 && memchr(text, COMMENT, length) != NULL)
-        count_item(coverage, COVERAGE_COMMANDS, COMMENT);
+        coverage_count(coverage, COVERAGE_COMMANDS, COMMENT);
     if (reset.op != 0)
         count_command(coverage, reset, false);
     while (rkm04_read(&from, &command) == RKM04_READ_COMMAND)
         count_command(coverage, command, commands == 1);
 }
 
-void coverage_request(struct coverage *coverage, uint8_t dnode, const uint8_t *message, size_t length)
+static void count_request(struct coverage *coverage, uint8_t dnode, const uint8_t *message, size_t length)
 {
     if (length == 0)
         return;
@@ -250,47 +232,38 @@ void coverage_request(struct coverage *coverage, uint8_t dnode, const uint8_t *m
     if (dnode == 0 && !known->broadcast)
         return;
     if (!known->has_motor) {
-        count_item(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_UNIT));
+        coverage_count(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, TO_UNIT));
         return;
     }
     if (length < HEAD || message[1] < '0' || message[1] > '0' + RKM04_MOTORS)
         return;
     uint32_t motor = (uint32_t)message[1] - '0';
-    count_item(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, motor == 0 ? TO_ALL_MOTORS : TO_ONE_MOTOR));
+    coverage_count(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, motor == 0 ? TO_ALL_MOTORS : TO_ONE_MOTOR));
     if (dnode == 0)
-        count_item(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, BROADCAST));
-    count_item(coverage, COVERAGE_MOTORS, motor);
+        coverage_count(coverage, COVERAGE_MESSAGES, MESSAGE_KEY(number, BROADCAST));
+    coverage_count(coverage, COVERAGE_MOTORS, motor);
     if (number == SET_COMMAND)
         count_text(coverage, message + HEAD, length - HEAD);
 }
 
-void coverage_answer(struct coverage *coverage, const uint8_t *message, size_t length)
+static void count_answer(struct coverage *coverage, const uint8_t *message, size_t length)
 {
     if (length <= HEAD || message[0] >= MESSAGES)
         return;
     unsigned number = message[0];
     if (number == SET_COMMAND)
-        count_item(coverage, COVERAGE_FLAGS, message[HEAD]);
+        coverage_count(coverage, COVERAGE_FLAGS, message[HEAD]);
     if (number == STORE_FLASH)
-        count_item(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, message[HEAD] != 0));
+        coverage_count(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, message[HEAD] != 0));
     if (messages[number].error && length == HEAD + strlen(ERROR_TEXT) &&
         memcmp(message + HEAD, ERROR_TEXT, strlen(ERROR_TEXT)) == 0)
-        count_item(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, 1));
+        coverage_count(coverage, COVERAGE_ERRORS, MESSAGE_KEY(number, 1));
 }
 
-void coverage_fault(struct coverage *coverage, unsigned fault)
+static void count_fault(struct coverage *coverage, unsigned fault)
 {
-    count_item(coverage, COVERAGE_FAULTS, fault);
+    coverage_count(coverage, COVERAGE_FAULTS, fault);
 }
 
-struct coverage_sum coverage_sum(const struct coverage *coverage, enum coverage_group group)
-{
-    struct coverage_sum sum = {0, 0};
-    for (size_t i = 0; i < coverage->items; i++) {
-        if (group != COVERAGE_GROUPS && coverage->item[i].group != group)
-            continue;
-        sum.total++;
-        sum.covered += coverage->item[i].count > 0;
-    }
-    return sum;
-}
+const struct device_coverage rkm04_coverage = {
+    .begin = begin, .request = count_request, .answer = count_answer, .fault = count_fault};

@@ -365,15 +365,6 @@ static json_t *program_of(const struct device_unit *unit, unsigned motor)
     return rkm04_json_program(core_of(unit), motor);
 }
 
-static void begin_coverage(struct coverage *coverage, const struct device_config *config)
-{
-    const struct rkm04_config settings = rkm04_settings(config);
-    coverage_begin(coverage, &settings.readings);
-}
-
-static const struct device_coverage coverage_of_rkm04 = {
-    .begin = begin_coverage, .request = coverage_request, .answer = coverage_answer, .fault = coverage_fault};
-
 const struct device_kind rkm04_device = {
     .name = "rkm04",
     .description = DESCRIPTION,
@@ -390,7 +381,7 @@ const struct device_kind rkm04_device = {
     .program = RKM04_PROGRAM_MAX,
     .flash_blocks = RKM04_FLASH_BLOCKS,
     .flash_block_size = RKM04_FLASH_BLOCK_SIZE,
-    .has_program_message = true,
+    .program_message = &rkm04_program_message,
     .request_max = RKM04_MESSAGE_MAX,
     .answer_max = ANSWER_MAX,
     .begin = begin,
@@ -435,5 +426,5 @@ const struct device_kind rkm04_device = {
     .repeat_size = sizeof(struct rkm04_repeat),
     .find_repeat = find_repeat,
     .is_endless = is_endless,
-    .coverage = &coverage_of_rkm04,
+    .coverage = &rkm04_coverage,
 };

@@ -54,6 +54,14 @@ bool rkm04_read_setting(struct device_config *config, const char *name, const js
 const char *rkm04_settings_difference(const struct device_config *a, const struct device_config *b);
 const struct device_framing *rkm04_settings_framing(const struct device_config *config);
 
+/* ---- rkm04_coverage.c ---------------------------------------------------------------------------------------------------- */
+
+extern const struct device_coverage rkm04_coverage;
+
+/* ---- rkm04_program_message.c --------------------------------------------------------------------------------------------- */
+
+extern const struct device_program_message rkm04_program_message;
+
 /* ---- rkm04_words.c ------------------------------------------------------------------------------------------------------ */
 
 extern const struct device_words rkm04_device_words;

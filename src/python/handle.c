@@ -25,7 +25,7 @@ static bool read_units(const json_t *options, struct sim_config *config, struct 
 
 static bool read_device(const json_t *options, struct sim_config *config, struct refusal *refusal)
 {
-    const char *name = json_object_get(options, "device") ? param_string(options, "device", refusal) : rkm04_device.name;
+    const char *name = json_object_get(options, "device") ? param_string(options, "device", refusal) : device_kind_at(0)->name;
     config->device = name ? device_kind_named(name) : NULL;
     if (name && !config->device)
         refuse(refusal, REFUSED_PARAMS, "device: unknown device `%.40s': expected one that `rkm04 devices' lists", name);

@@ -76,10 +76,10 @@ static PyObject *module_frame(PyObject *module, PyObject *args)
     if (!PyArg_ParseTuple(args, "siy#:frame", &name, &node, &message, &length))
         return NULL;
     const struct rkm04_framing *framing = rkm04_framing_named(name);
-    if (framing && node >= 0 && node <= 255 && length <= RKM04_MESSAGE_MAX)
+    if (framing && node >= 0 && node <= 255 && length <= DEVICE_MESSAGE_MAX)
         return frame_message(framing, node, (const uint8_t *)message, (size_t)length);
     PyErr_Format(PyExc_ValueError, "expected framing hdlc or plain, a node from 0 to 255, and at most %d bytes",
-                 (int)RKM04_MESSAGE_MAX);
+                 (int)DEVICE_MESSAGE_MAX);
     return NULL;
 }
 

@@ -397,30 +397,22 @@ static PyObject *sim_is_idle(struct sim_object *self, PyObject *unused)
 
 /* ---- Messages --------------------------------------------------------------------------------------------------------- */
 
-/* Read (node, message). Returns false: an exception is set. */
-static bool read_message(PyObject *args, const char *format, int *node, const char **message, Py_ssize_t *length)
-{
-    if (!PyArg_ParseTuple(args, format, node, message, length))
-        return false;
-    if (*node >= 0 && *node <= 255 && *length <= RKM04_MESSAGE_MAX)
-        return true;
-    PyErr_Format(PyExc_ValueError, "expected a node from 0 (all units) to 255 and a message of at most %d bytes",
-                 (int)RKM04_MESSAGE_MAX);
-    return false;
-}
-
 /* The bytes on the wires of a message to a node. */
 static PyObject *sim_frame(struct sim_object *self, PyObject *args)
 {
     int node;
     const char *message;
     Py_ssize_t length;
-    struct handle *handle = read_message(args, "iy#:frame", &node, &message, &length) ? enter(self) : NULL;
+    struct handle *handle = PyArg_ParseTuple(args, "iy#:frame", &node, &message, &length) ? enter(self) : NULL;
     if (!handle)
         return NULL;
     const struct rkm04_framing *framing = handle->sim.monitor.framing->link;
+    const unsigned most = sim_device(&handle->sim)->request_max;
     leave(self);
-    return frame_message(framing, node, (const uint8_t *)message, (size_t)length);
+    if (node >= 0 && node <= 255 && length <= (Py_ssize_t)most)
+        return frame_message(framing, node, (const uint8_t *)message, (size_t)length);
+    PyErr_Format(PyExc_ValueError, "expected a node from 0 (all units) to 255 and a message of at most %u bytes", most);
+    return NULL;
 }
 
 /* Let time pass until a whole message has come, at most up to `tick`. */

@@ -67,7 +67,8 @@ static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
             return json_decref(nodes), false;
     return put_member(head, "rkm04_record", json_integer(RECORD_VERSION)) &&
            put_member(head, "program", json_string("rkm04 " RKM04_VERSION)) &&
-           (kind == &rkm04_device || put_member(head, "device", json_string(kind->name))) && put_member(head, "nodes", nodes) &&
+           (kind == device_kind_at(0) || put_member(head, "device", json_string(kind->name))) &&
+           put_member(head, "nodes", nodes) &&
            put_device(head, kind, &config->unit) &&
            put_member(head, "timed", json_boolean(config->timed)) &&
            put_member(head, "turnaround", json_integer(config->turnaround)) &&

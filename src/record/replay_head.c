@@ -89,10 +89,10 @@ static bool read_nodes(struct replay *replay, struct node_list *nodes)
                               replay->head.device->addresses);
 }
 
-/* Recordings that name no device are an RKM04's. */
+/* Recordings that name no device are of the first one, the RKM04. */
 static bool read_device(struct replay *replay, struct sim_config *config)
 {
-    const char *name = json_object_get(replay->lines.json, "device") ? replay_string(replay, "device") : rkm04_device.name;
+    const char *name = json_object_get(replay->lines.json, "device") ? replay_string(replay, "device") : device_kind_at(0)->name;
     config->device = replay->head.device = name ? device_kind_named(name) : NULL;
     return replay->head.device || !name ||
            replay_wrong(replay, "device", "expected \"device\", one of those that rkm04 devices lists");

@@ -79,7 +79,6 @@ int test_case_read(struct test_case *test, const char *path, const struct device
 {
     const struct scenario_files files = {.read = read_file,
                                          .map = program_text_map,
-                                         .diagnose = diagnose_text,
                                          .device = device->kind,
                                          .config = &device->config};
     bool standard = strcmp(path, "-") == 0;

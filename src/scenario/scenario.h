@@ -20,9 +20,6 @@ struct scenario_files {
     char *(*read)(void *context, const char *path, size_t *length, const char **why);
     /* Map a program text in place to the bytes that a unit takes. Returns its new length. NULL: it is one already. */
     size_t (*map)(char *text, size_t length);
-    /* Report what a unit would refuse in a mapped program text, a line each: NAME:LINE:COLUMN: error: … Returns how many there
-     * are. NULL: it is not said. */
-    int (*diagnose)(const char *name, const char *text, size_t length, FILE *out);
     void *context;
     /* What a scenario is about that names no device, and the settings of that device it begins with. NULL: an RKM04 as it is. */
     const struct device_kind *device;

@@ -168,30 +168,24 @@ static char *silence_text(const struct running *running, uint64_t since)
 }
 
 /* `wrong`: what is wrong with the program; NULL: nothing is known of it. */
-static char *flag_text(const uint8_t *answer, const char *wrong)
+static char *flag_text(const struct device_program_message *kind, unsigned flag, const uint8_t *answer, const char *wrong)
 {
-    static const char *const meanings[] = {"ok", "bad value", "unknown command", "memory has overflowed"};
-    unsigned flag = answer[2];
-    const char *meaning = flag < sizeof meanings / sizeof meanings[0] ? meanings[flag] : "?";
-    if (flag != 1 && flag != 2)
-        return running_text("flag %u (%s)", flag, meaning);
-    const char *colon = wrong != NULL ? ": " : "";
-    if (wrong == NULL)
-        wrong = "";
-    if (answer[3] >= 0x20 && answer[3] < 0x7F)
-        return running_text("flag %u (%s '%c')%s%s", flag, meaning, answer[3], colon, wrong);
-    return running_text("flag %u (%s, character %02X)%s%s", flag, meaning, answer[3], colon, wrong);
+    char meaning[DEVICE_ERROR_SIZE];
+    if (kind->explain(answer, meaning) && wrong)
+        return running_text("flag %u (%s): %s", flag, meaning, wrong);
+    return running_text("flag %u (%s)", flag, meaning);
 }
 
 static bool check_program_answer(struct running *running, const struct scenario_step *step)
 {
-    const struct host *host = &running->host;
-    struct scenario_bytes answer = {.length = host->length, .byte = running->host.buffer};
-    if (host->length != 4 || answer.byte[0] != 2 || answer.byte[1] != step->bytes.byte[1])
-        return running_failed(running, step, sim_now(running->sim), wanted_text(step), text_with(&answer, "the answer %s"));
-    if (answer.byte[2] != step->flag)
-        return running_failed(running, step, sim_now(running->sim), wanted_text(step), flag_text(answer.byte, step->wrong));
-    return true;
+    const struct device_program_message *kind = sim_device(running->sim)->program_message;
+    struct scenario_bytes answer = {.length = running->host.length, .byte = running->host.buffer};
+    const int flag = kind->flag(step->bytes.byte, answer.byte, answer.length);
+    if (flag == step->flag)
+        return true;
+    return running_failed(running, step, sim_now(running->sim), wanted_text(step),
+                          flag < 0 ? text_with(&answer, "the answer %s")
+                                   : flag_text(kind, (unsigned)flag, answer.byte, step->wrong));
 }
 
 static bool check_answer(struct running *running, const struct scenario_step *step)

@@ -99,7 +99,7 @@ static bool read_device(struct scenario_reader *reader, const struct config_node
     bool is_right = true;
     char names[DEVICE_ERROR_SIZE];
     const char *name = text_of(root, "device", &is_right);
-    const struct device_kind *assumed = reader->files->device ? reader->files->device : &rkm04_device;
+    const struct device_kind *assumed = reader->files->device ? reader->files->device : device_kind_at(0);
     scenario->config.device = name ? device_kind_named(name) : assumed;
     if (reader->files->config && scenario->config.device == assumed)
         scenario->config.unit = *reader->files->config;

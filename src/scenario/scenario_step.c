@@ -167,15 +167,17 @@ static bool read_bytes(struct scenario_reader *reader, const struct config_node 
 }
 
 /* Keep the first of the errors in the program, for the report if the unit refuses it. `name`: of the file. */
-static void find_program_error(const struct scenario_reader *reader, const char *name, struct scenario_step *step)
+static void find_program_error(const struct scenario_reader *reader, const char *name, size_t head, struct scenario_step *step)
 {
+    const struct device_kind *kind = sim_device(reader->sim);
+    const char *program = (const char *)step->bytes.byte + head;
     char *text = NULL;
     size_t length;
-    FILE *out = reader->files->diagnose != NULL ? open_memstream(&text, &length) : NULL;
+    FILE *out = kind->check_text ? open_memstream(&text, &length) : NULL;
     if (out == NULL)
         return;
-    int errors = reader->files->diagnose(name, (const char *)step->bytes.byte + 2, step->bytes.length - 2, out);
-    if (fclose(out) == 0 && errors > 0) {
+    bool is_wrong = kind->check_text(&reader->sim->config.unit, name, program, step->bytes.length - head, out);
+    if (fclose(out) == 0 && is_wrong) {
         text[strcspn(text, "\n")] = '\0';
         step->wrong = text;
     } else {
@@ -183,32 +185,32 @@ static void find_program_error(const struct scenario_reader *reader, const char 
     }
 }
 
-/* The message 2 that carries a program text, from the file `name`, and what must be answered. */
+/* The message that carries a program text, from the file `name`, and what must be answered. */
 static bool set_program(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step,
                         const char *name, const char *text, size_t length)
 {
     const struct config_node *motor_node = config_get(node, "motor"), *flag_node = config_get(node, "flag");
+    const struct device_kind *kind = sim_device(reader->sim);
+    const struct device_program_message *carrier = kind->program_message;
     int64_t motor = 1, flag = 0;
-    if (!sim_device(reader->sim)->has_program_message)
-        return config_error(node, "the device %s has no programs that a message sets: expected message or call",
-                            sim_device(reader->sim)->name);
+    if (!carrier)
+        return config_error(node, "the device %s has no programs that a message sets: expected message or call", kind->name);
     if (!read_unit(reader, node, true, &step->unit) || !read_within(reader, node, step) ||
-        (motor_node != NULL && !config_integer(motor_node, "motor", 0, sim_device(reader->sim)->axes, &motor)) ||
-        (flag_node != NULL && !config_integer(flag_node, "flag", 0, 3, &flag)))
+        (motor_node != NULL && !config_integer(motor_node, "motor", 0, kind->axes, &motor)) ||
+        (flag_node != NULL && !config_integer(flag_node, "flag", 0, carrier->flags, &flag)))
         return false;
-    const unsigned most = sim_device(reader->sim)->request_max - 2;
+    const unsigned head = carrier->head, most = kind->request_max - head;
     if (length > most)
         return config_error(node, "expected a program of up to %u bytes, as much as a message holds", most);
-    step->bytes.byte = malloc(length + 2);
+    step->bytes.byte = malloc(length + head);
     if (step->bytes.byte == NULL)
         return no_memory(node);
-    step->bytes.byte[0] = 2;
-    step->bytes.byte[1] = (uint8_t)('0' + motor);
-    memcpy(step->bytes.byte + 2, text, length);
-    step->bytes.length = length + 2;
+    carrier->begin(step->bytes.byte, (unsigned)motor);
+    memcpy(step->bytes.byte + head, text, length);
     if (reader->files->map != NULL)
-        step->bytes.length = 2 + reader->files->map((char *)step->bytes.byte + 2, length);
-    find_program_error(reader, name, step);
+        length = reader->files->map((char *)step->bytes.byte + head, length);
+    step->bytes.length = head + length;
+    find_program_error(reader, name, head, step);
     step->flag = (uint8_t)flag;
     step->answer = step->unit == 0 ? ANSWER_UNASKED : ANSWER_THIS;
     return step->unit != 0 || flag_node == NULL ||

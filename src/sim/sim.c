@@ -558,7 +558,7 @@ bool sim_begin(struct sim *sim, const struct sim_config *config)
     struct segment_config segment = {
         .kind = config->device,
         .timed = config->timed,
-        .baud = device_baud(config->device ? config->device : &rkm04_device, &config->unit),
+        .baud = device_baud(config->device ? config->device : device_kind_at(0), &config->unit),
         .turnaround = config->turnaround,
         .out = on_out,
         .monitor = on_byte,

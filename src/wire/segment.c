@@ -409,7 +409,7 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
 {
     segment->config = *config;
     if (!config->kind)
-        segment->config.kind = &rkm04_device;
+        segment->config.kind = device_kind_at(0);
     segment->now = 0;
     segment->advancing = false;
     segment->units = 0;

@@ -7,7 +7,7 @@
 
 #include "core/flash_fake.h"
 #include "core/store_rig.h"
-#include "device/coverage.h"
+#include "device/rkm04_device.h"
 
 #define TEXT_MAX 20000
 
@@ -20,16 +20,22 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum rkm04_ev
 {
     (void)context, (void)tick, (void)motor;
     if (what == RKM04_EVENT_FAULT)
-        coverage_fault(&coverage, (enum rkm04_fault)value);
+        rkm04_coverage.fault(&coverage, (enum rkm04_fault)value);
 }
 
 /* A missing label is a fault: the full list. */
 static const struct rkm04_config config = {.node = 1, .readings.label = RKM04_LABEL_FAULT};
 
+static void begin_list(const struct rkm04_config *settings)
+{
+    const struct device_config device = rkm04_device_config(settings);
+    rkm04_coverage.begin(&coverage, &device);
+}
+
 static void setup(void)
 {
     static struct rkm04_port port;
-    coverage_begin(&coverage, &config.readings);
+    begin_list(&config);
     flash_fake_init(&flash);
     port = store_port;
     port.event = on_event;
@@ -45,9 +51,9 @@ static void pass_seconds(unsigned seconds)
 static void ask(const char *message, size_t length)
 {
     uint8_t answer[RKM04_MESSAGE_MAX];
-    coverage_request(&coverage, 1, (const uint8_t *)message, length);
+    rkm04_coverage.request(&coverage, 1, (const uint8_t *)message, length);
     size_t got = rkm04_exchange(&unit, (const uint8_t *)message, length, answer, sizeof answer);
-    coverage_answer(&coverage, answer, got);
+    rkm04_coverage.answer(&coverage, answer, got);
     rkm04_advance(&unit, 20 * RKM04_SLOT_TICKS);
 }
 
@@ -129,16 +135,16 @@ END_TEST
 
 START_TEST(P10_a_broadcast_that_does_nothing_covers_nothing)
 {
-    coverage_request(&coverage, 0, (const uint8_t *)"\1", 1);
-    coverage_request(&coverage, 0, (const uint8_t *)"\4" "1", 2);
-    coverage_request(&coverage, 0, (const uint8_t *)"\10", 1);
+    rkm04_coverage.request(&coverage, 0, (const uint8_t *)"\1", 1);
+    rkm04_coverage.request(&coverage, 0, (const uint8_t *)"\4" "1", 2);
+    rkm04_coverage.request(&coverage, 0, (const uint8_t *)"\10", 1);
     ck_assert_uint_eq(covered(COVERAGE_GROUPS), 0);
 }
 END_TEST
 
 START_TEST(L3_a_broadcast_that_is_obeyed_covers_its_commands_too)
 {
-    coverage_request(&coverage, 0, (const uint8_t *)"\2" "0D", 3);
+    rkm04_coverage.request(&coverage, 0, (const uint8_t *)"\2" "0D", 3);
     ck_assert_uint_eq(times(COVERAGE_MESSAGES, "2 Set Command, broadcast"), 1);
     ck_assert_uint_eq(times(COVERAGE_MESSAGES, "2 Set Command, motor 0"), 1);
     ck_assert_uint_eq(times(COVERAGE_COMMANDS, "D"), 1);
@@ -171,8 +177,8 @@ START_TEST(every_command_of_the_table_has_its_item)
             if (!rkm04_command_valid(command))
                 continue;
             tried++;
-            coverage_begin(&coverage, &config.readings);
-            coverage_request(&coverage, 1, (const uint8_t *)message, 2 + rkm04_format(command, message + 2));
+            begin_list(&config);
+            rkm04_coverage.request(&coverage, 1, (const uint8_t *)message, 2 + rkm04_format(command, message + 2));
             ck_assert_msg(covered(COVERAGE_COMMANDS) == 1, "%s covers %u items", message, covered(COVERAGE_COMMANDS));
         }
     ck_assert_uint_gt(tried, 70);
@@ -258,7 +264,7 @@ END_TEST
 
 START_TEST(a_fault_that_the_readings_exclude_is_not_on_the_list)
 {
-    coverage_begin(&coverage, &(struct rkm04_readings){0});
+    begin_list(&(struct rkm04_config){.node = 1});
     ck_assert_uint_eq(coverage_sum(&coverage, COVERAGE_FAULTS).total, RKM04_FAULT_MOTION - 1);
 }
 END_TEST
@@ -267,7 +273,7 @@ START_TEST(a_fault_counts_by_its_reason)
 {
     set('1', "J5");
     set('2', "E");
-    coverage_fault(&coverage, RKM04_FAULT_NONE);
+    rkm04_coverage.fault(&coverage, RKM04_FAULT_NONE);
     ck_assert_uint_eq(times(COVERAGE_FAULTS, rkm04_fault_name(RKM04_FAULT_NO_LABEL)), 1);
     ck_assert_uint_eq(times(COVERAGE_FAULTS, rkm04_fault_name(RKM04_FAULT_NO_LOOP)), 1);
     ck_assert_uint_eq(covered(COVERAGE_FAULTS), 2);
@@ -328,8 +334,8 @@ static void exercise_all(void)
     ask("\4" "x", 2);
     set('1', "A0");
     set('1', "?");
-    coverage_request(&coverage, 0, (const uint8_t *)"\2" "0", 2);
-    coverage_request(&coverage, 0, (const uint8_t *)"\3" "0", 2);
+    rkm04_coverage.request(&coverage, 0, (const uint8_t *)"\2" "0", 2);
+    rkm04_coverage.request(&coverage, 0, (const uint8_t *)"\3" "0", 2);
     provoke_faults();
     flash_fake_arm(&flash, 1, FLASH_FAIL_NOTHING, 1);
     ask("\3" "1", 2);
@@ -349,7 +355,7 @@ END_TEST
 
 START_TEST(per_cent_is_rounded_down_so_that_100_means_all)
 {
-    coverage_begin(&coverage, &config.readings);
+    begin_list(&config);
     for (size_t i = 1; i < coverage.items; i++)
         coverage.item[i].count = 1;
     unsigned tenths = (unsigned)(1000 * (coverage.items - 1) / coverage.items);

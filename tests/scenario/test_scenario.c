@@ -148,8 +148,10 @@ END_TEST
 
 START_TEST(P1_a_program_must_be_taken_unless_another_flag_is_expected)
 {
-    expect_fail(QUIET "  - set: 'F1 R q'\n", 3, "the answer to the program with flag 0", "flag 2 (unknown command 'q')");
-    expect_fail(QUIET "  - set: 'F0 R'\n", 3, "the answer to the program with flag 0", "flag 1 (bad value 'F')");
+    expect_fail(QUIET "  - set: 'F1 R q'\n", 3, "the answer to the program with flag 0",
+                "flag 2 (unknown command 'q'): TEXT:1:6: error: expected a command, found 'q'");
+    expect_fail(QUIET "  - set: 'F0 R'\n", 3, "the answer to the program with flag 0",
+                "flag 1 (bad value 'F'): TEXT:1:1: error: expected a number 1..16000000 after F, found 0");
     expect_pass(QUIET "  - {set: 'V0', flag: 1}\n");
     expect_fail(QUIET "  - {set: 'V1', flag: 1}\n", 3, "the answer to the program with flag 1", "flag 0 (ok)");
 }
