@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cib_device.h"
+#include "modbus_framing.h"
 
 static bool is_whole(const uint8_t *frame, size_t length)
 {
@@ -47,28 +48,10 @@ static bool receive(struct rkm04_receiver *receiver, uint8_t byte, uint64_t now,
     return true;
 }
 
-static size_t begin(struct rkm04_sender *sender, uint8_t dnode, uint8_t snode, size_t length, bool answer, uint8_t *out)
-{
-    (void)length;
-    out[0] = answer ? snode : dnode;
-    sender->check = modbus_crc_update(MODBUS_CRC_START, out[0]);
-    return 1;
-}
-
-static size_t put(struct rkm04_sender *sender, uint8_t byte, uint8_t *out)
-{
-    sender->check = modbus_crc_update(sender->check, byte);
-    out[0] = byte;
-    return 1;
-}
-
-static size_t end(struct rkm04_sender *sender, uint8_t *out)
-{
-    out[0] = (uint8_t)(sender->check & 0xffu);
-    out[1] = (uint8_t)(sender->check >> 8);
-    return 2;
-}
-
-static const struct rkm04_framing link = {.name = "modbus-rtu", .receive = receive, .begin = begin, .put = put, .end = end};
+static const struct rkm04_framing link = {.name = "modbus-rtu",
+                                          .receive = receive,
+                                          .begin = modbus_begin_frame,
+                                          .put = modbus_put_byte,
+                                          .end = modbus_end_frame};
 
 const struct device_framing cib_framing = {.link = &link, .flag = -1, .escape = -1, .silence = CIB_SILENCE};

@@ -34,30 +34,22 @@ bool modbus_end(struct rkm04_receiver *receiver, uint8_t *buffer, bool answer)
     return true;
 }
 
-static void add_byte(struct rkm04_sender *sender, uint8_t byte)
+size_t modbus_begin_frame(struct rkm04_sender *sender, uint8_t dnode, uint8_t snode, size_t length, bool answer, uint8_t *out)
 {
-    sender->check = modbus_crc_update(sender->check, byte);
-}
-
-static size_t begin_frame(struct rkm04_sender *sender, uint8_t dnode, uint8_t snode, size_t length, bool answer, uint8_t *out)
-{
-    (void)snode;
     (void)length;
-    (void)answer;
-    sender->check = MODBUS_CRC_START;
-    add_byte(sender, dnode);
-    out[0] = dnode;
+    out[0] = answer ? snode : dnode;
+    sender->check = modbus_crc_update(MODBUS_CRC_START, out[0]);
     return HEAD;
 }
 
-static size_t put_byte(struct rkm04_sender *sender, uint8_t byte, uint8_t *out)
+size_t modbus_put_byte(struct rkm04_sender *sender, uint8_t byte, uint8_t *out)
 {
-    add_byte(sender, byte);
+    sender->check = modbus_crc_update(sender->check, byte);
     out[0] = byte;
     return 1;
 }
 
-static size_t end_frame(struct rkm04_sender *sender, uint8_t *out)
+size_t modbus_end_frame(struct rkm04_sender *sender, uint8_t *out)
 {
     out[0] = (uint8_t)sender->check;
     out[1] = (uint8_t)(sender->check >> 8);
@@ -65,4 +57,4 @@ static size_t end_frame(struct rkm04_sender *sender, uint8_t *out)
 }
 
 const struct rkm04_framing modbus_link = {
-    .name = "modbus", .receive = gather_byte, .begin = begin_frame, .put = put_byte, .end = end_frame};
+    .name = "modbus", .receive = gather_byte, .begin = modbus_begin_frame, .put = modbus_put_byte, .end = modbus_end_frame};

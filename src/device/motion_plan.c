@@ -14,14 +14,9 @@ struct walk {
     double us, speed, place; /* of the motion: speed and place are not negative */
 };
 
-static double place_of(const struct rkm04_break *at)
+double plan_place(struct rkm04_place place)
 {
-    return (double)at->at.high * 0x1p-32 + (double)at->at.low * 0x1p-96;
-}
-
-static double speed_of(const struct rkm04_break *at)
-{
-    return sqrt((double)at->speed2 * SPEED2_UNIT);
+    return (double)place.high * 0x1p-32 + (double)place.low * 0x1p-96;
 }
 
 static void add_corner(struct walk *walk)
@@ -31,21 +26,21 @@ static void add_corner(struct walk *walk)
 }
 
 /* The present place and speed (ramp.h: y and w, d ticks after ramp->at). */
-static void begin_walk(struct walk *walk, const struct rkm04_motion *motion, uint64_t now)
+static void begin_walk(struct walk *walk, const struct plan_motion *motion)
 {
-    const struct rkm04_ramp *ramp = &motion->ramp;
-    double d = (double)(int64_t)(now - ramp->at), slope = ramp->slope;
+    const struct rkm04_ramp *ramp = motion->ramp;
+    double d = (double)(int64_t)(motion->now - ramp->at), slope = ramp->slope;
     double y = (double)ramp->y.whole, w = (double)ramp->w.whole;
-    walk->us = (double)now;
+    walk->us = (double)motion->now / motion->ticks_per_us;
     walk->speed = fmax(0, (w + 2 * slope * d) / (2.0 * ramp->rate));
     walk->place = (double)motion->done + 1 - ramp->sent + (y + d * (w + slope * d)) / (double)ramp->step;
     add_corner(walk);
 }
 
-/* Continue with acceleration `slope` to the corner `to`. */
-static void walk_leg(struct walk *walk, const struct rkm04_break *to, int32_t slope)
+/* Continue with acceleration `slope` to `place`. */
+static void walk_leg(struct walk *walk, double place, int32_t slope)
 {
-    double way = fmax(0, place_of(to) - walk->place);
+    double way = fmax(0, place - walk->place);
     double speed = sqrt(fmax(0, walk->speed * walk->speed + 2.0 * slope * way));
     if (walk->speed + speed > 0)
         walk->us += 2e6 * way / (walk->speed + speed);
@@ -65,27 +60,43 @@ static void end_walk(struct walk *walk, bool endless)
     add_corner(walk);
 }
 
+size_t plan_motion(const struct plan_motion *motion, struct device_plan_point *point, size_t room)
+{
+    struct walk walk = {.point = point, .room = room};
+    begin_walk(&walk, motion);
+    for (unsigned i = 1; i < motion->count; i++) {
+        walk_leg(&walk, motion->corner[i].place, motion->corner[i - 1u].slope);
+        if (i + 1u < motion->count && fabs(motion->corner[i].speed - walk.speed) > ALIKE) {
+            walk.speed = motion->corner[i].speed;
+            add_corner(&walk);
+        }
+    }
+    end_walk(&walk, motion->endless);
+    for (size_t i = 0; i < walk.count; i++) {
+        double ahead = point[i].position - (double)motion->done;
+        point[i].position = motion->position + (motion->forward ? ahead : -ahead);
+        point[i].speed = motion->forward ? point[i].speed : 0 - point[i].speed;
+    }
+    return walk.count;
+}
+
 size_t motion_plan(const struct rkm04_motion *motion, uint64_t now, int32_t position, struct device_plan_point *point,
                    size_t room)
 {
     const struct rkm04_profile *profile = &motion->profile;
-    struct walk walk = {.point = point, .room = room};
+    struct plan_corner corner[RKM04_BREAKS_MAX];
+    struct plan_motion plan = {.ramp = &motion->ramp,
+                               .now = now,
+                               .ticks_per_us = 1,
+                               .done = motion->done,
+                               .position = position,
+                               .forward = motion->forward,
+                               .endless = profile->endless,
+                               .corner = corner};
     if (!motion->moving)
         return 0;
-    begin_walk(&walk, motion, now);
-    for (unsigned i = profile->leg + 1u; i < profile->count; i++) {
-        walk_leg(&walk, &profile->point[i], profile->point[i - 1].slope);
-        double next = speed_of(&profile->point[i]);
-        if (i + 1u < profile->count && fabs(next - walk.speed) > ALIKE) {
-            walk.speed = next;
-            add_corner(&walk);
-        }
-    }
-    end_walk(&walk, profile->endless);
-    for (size_t i = 0; i < walk.count; i++) {
-        double ahead = point[i].position - (double)motion->done;
-        point[i].position = position + (motion->forward ? ahead : -ahead);
-        point[i].speed = motion->forward ? point[i].speed : 0 - point[i].speed;
-    }
-    return walk.count;
+    for (const struct rkm04_break *from = &profile->point[profile->leg]; from < &profile->point[profile->count]; from++)
+        corner[plan.count++] =
+            (struct plan_corner){plan_place(from->at), sqrt((double)from->speed2 * SPEED2_UNIT), from->slope};
+    return plan_motion(&plan, point, room);
 }

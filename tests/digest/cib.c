@@ -5,23 +5,6 @@
 
 #define LINE_MAX 100
 
-static void mix(uint64_t *digest, uint64_t word)
-{
-    *digest = (*digest ^ word) * UINT64_C(0x9E3779B97F4A7C15);
-    *digest ^= *digest >> 32;
-}
-
-static void say_line(void (*say)(const char *line), const char *name, uint64_t digest, uint64_t pulses)
-{
-    char line[LINE_MAX] = "";
-    append(line, sizeof line, name);
-    append(line, sizeof line, " ");
-    append_hex(line, sizeof line, digest);
-    append(line, sizeof line, " ");
-    append_number(line, sizeof line, pulses);
-    say(line);
-}
-
 void digest_run(void (*say)(const char *line))
 {
     static struct cib_digest story;
@@ -36,7 +19,7 @@ void digest_run(void (*say)(const char *line))
         mix(&all, digest);
         pulses += story.pulses;
         append_number(name, sizeof name, number);
-        say_line(say, name, digest, story.pulses);
+        digest_line(say, name, digest, story.pulses);
     }
-    say_line(say, "all", all, pulses);
+    digest_line(say, "all", all, pulses);
 }

@@ -2,6 +2,8 @@
 /* The dice are thrown at most once in a list of arguments or values: compilers work those out in any order. */
 #include "cib_story.h"
 
+#include "text.h"
+
 #define ACTS_MAX 40
 #define DRIVE_A 0x10
 #define DRIVE_B 0x20
@@ -32,12 +34,6 @@ static uint32_t between(uint32_t least, uint32_t most)
 }
 
 /* ---- What the unit does -------------------------------------------------------------------------------------------------- */
-
-static void mix(uint64_t *lane, uint64_t word)
-{
-    *lane = (*lane ^ word) * UINT64_C(0x9E3779B97F4A7C15);
-    *lane ^= *lane >> 32;
-}
 
 static void on_steps(void *context, unsigned axis, const uint64_t *tick, size_t count, int32_t position, bool forward)
 {

@@ -2,7 +2,6 @@
 #include "digest.h"
 
 #define FETCH_AT_ONCE 16
-#define LINE_MAX 100
 
 /* A digest has lanes, put together at the end: the unit tells about two motors in any order within a slot. */
 enum { LANE_COMMON, LANE_ANSWERS = RKM04_MOTORS + 1, LANE_FLASH, LANES };
@@ -14,13 +13,6 @@ static uint8_t flash[RKM04_FLASH_BLOCKS][RKM04_FLASH_BLOCK_SIZE];
 static uint64_t lane[LANES];
 static uint64_t pulses, all_pulses, all;
 static void (*say)(const char *line);
-
-/* Whole numbers only, so that the order of bytes in memory does not matter. */
-static void mix(uint64_t *digest, uint64_t word)
-{
-    *digest = (*digest ^ word) * UINT64_C(0x9E3779B97F4A7C15);
-    *digest ^= *digest >> 32;
-}
 
 /* ---- What the unit does ------------------------------------------------------------------------------------------- */
 
@@ -209,17 +201,6 @@ static void look(void)
         mix(&lane[LANE_COMMON], seen[i]);
 }
 
-static void say_line(const char *name, uint64_t digest, uint64_t count)
-{
-    char line[LINE_MAX] = "";
-    append(line, sizeof line, name);
-    append(line, sizeof line, " ");
-    append_hex(line, sizeof line, digest);
-    append(line, sizeof line, " ");
-    append_number(line, sizeof line, count);
-    say(line);
-}
-
 void session_end(const char *name)
 {
     uint64_t digest = 0;
@@ -229,7 +210,7 @@ void session_end(const char *name)
         mix(&digest, lane[i]);
     mix(&all, digest);
     all_pulses += pulses;
-    say_line(name, digest, pulses);
+    digest_line(say, name, digest, pulses);
 }
 
 void digest_run(void (*to)(const char *line))
@@ -238,5 +219,5 @@ void digest_run(void (*to)(const char *line))
     all = all_pulses = 0;
     run_manual();
     run_stories();
-    say_line("all", all, all_pulses);
+    digest_line(say, "all", all, all_pulses);
 }

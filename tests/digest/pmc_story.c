@@ -2,6 +2,8 @@
 /* The dice are thrown at most once in a list of arguments or values: compilers work those out in any order. */
 #include "pmc_story.h"
 
+#include "text.h"
+
 #define ACTS_MAX 40u
 #define PROGRAM_LENGTH 20u
 #define SLOT ((uint64_t)PMC_SLOT_TICKS)
@@ -36,12 +38,6 @@ static uint32_t draw(uint32_t below)
 }
 
 /* ---- What the unit does -------------------------------------------------------------------------------------------------- */
-
-static void mix(uint64_t *lane, uint64_t word)
-{
-    *lane = (*lane ^ word) * UINT64_C(0x9E3779B97F4A7C15);
-    *lane ^= *lane >> 32;
-}
 
 static void add(uint64_t *lane, uint64_t tick, unsigned what, uint32_t value)
 {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* text.c: text of digests, without a C library. */
+/* text.c: digests and their text, without a C library. */
 #include "text.h"
+
+#define LINE_MAX 100
 
 size_t text_length(const char *text)
 {
@@ -37,4 +39,15 @@ void append_hex(char *text, size_t room, uint64_t number)
     for (int i = 15; i >= 0; i--, number >>= 4)
         digits[i] = "0123456789abcdef"[number & 15];
     append(text, room, digits);
+}
+
+void digest_line(void (*say)(const char *line), const char *name, uint64_t digest, uint64_t count)
+{
+    char line[LINE_MAX] = "";
+    append(line, sizeof line, name);
+    append(line, sizeof line, " ");
+    append_hex(line, sizeof line, digest);
+    append(line, sizeof line, " ");
+    append_number(line, sizeof line, count);
+    say(line);
 }
