@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: MIT */
+/* cnc.c: power-up, the order of a T (NT2), and what the panel asks for. */
+#include <string.h>
+
+#include "frame.h"
+
+/* ---- Programs ----------------------------------------------------------------------------------------------------------- */
+
+static void take_program(struct cnc *cnc, const struct cnc_nc_program *program)
+{
+    cnc->program = program;
+    cnc->program_axes = 0;
+    for (uint32_t i = 0; program != NULL && i < program->block_count; i++)
+        cnc->program_axes |= program->blocks[i].axes;
+    cnc->machine.next = 0;
+    cnc->machine.block = cnc->machine.selected = CNC_NO_BLOCK;
+    cnc->machine.start = CNC_START_NONE;
+    cnc_set(cnc, CNC_BIT_SF_STOP, program != NULL);
+}
+
+enum cnc_result cnc_load(struct cnc *cnc, const struct cnc_nc_program *program)
+{
+    if (cnc->machine.phase != CNC_IDLE)
+        return CNC_UNDER_WAY;
+    take_program(cnc, program);
+    return CNC_OK;
+}
+
+enum cnc_result cnc_select(struct cnc *cnc, uint32_t block, bool technology)
+{
+    struct cnc_machine *machine = &cnc->machine;
+    if (machine->phase != CNC_IDLE)
+        return CNC_UNDER_WAY;
+    if (cnc->program == NULL || block >= cnc->program->block_count)
+        return CNC_NO_SUCH_BLOCK;
+    machine->next = machine->selected = block;
+    machine->technology_off = !technology;
+    machine->selected_axes = 0;
+    for (uint32_t k = block; k-- > 0 && machine->selected_axes != cnc->program_axes;)
+        for (unsigned i = 0; i < CNC_AXES; i++)
+            if (!cnc_has_axis(machine->selected_axes, i) &&
+                cnc_nc_target(cnc->program, &cnc->program->blocks[k], i, &machine->selected_start[i]))
+                machine->selected_axes = (uint16_t)(machine->selected_axes | 1u << i);
+    return CNC_OK;
+}
+
+bool cnc_is_elsewhere(const struct cnc *cnc)
+{
+    for (unsigned i = 0; i < CNC_AXES; i++)
+        if (cnc_has_axis(cnc->machine.selected_axes, i) && cnc->machine.selected_start[i] != cnc->axis[i].position)
+            return true;
+    return false;
+}
+
+/* ---- Time --------------------------------------------------------------------------------------------------------------- */
+
+void cnc_begin(struct cnc *cnc, const struct cnc_setup *setup)
+{
+    memset(cnc, 0, sizeof *cnc);
+    cnc->config = setup->config;
+    cnc->port = setup->port;
+    cnc->context = setup->context;
+    cnc->panel.feed = cnc->panel.spindle = 100;
+    cnc->machine.is_reached = true;
+    memset(cnc->machine.m, CNC_NC_NO_M, sizeof cnc->machine.m);
+    cnc_clear_cells(&cnc->cells);
+    take_program(cnc, setup->program);
+    cnc_put_configuration(cnc);
+    cnc_put_status(cnc);
+}
+
+/* NB4: the PLC text and, while EXT_PLC is 1, the program outside. */
+void cnc_run_pass(struct cnc *cnc)
+{
+    struct cnc_machine *machine = &cnc->machine;
+    if ((machine->phase != CNC_INIT && machine->phase != CNC_DONE) || machine->is_passed)
+        return;
+    machine->text_passed = true;
+    if (cnc_is_set(cnc, CNC_BIT_EXT_PLC) && cnc_is_set(cnc, CNC_BIT_PLC_PASS_DONE)) {
+        cnc_set(cnc, CNC_BIT_PLC_PASS_DONE, false);
+        machine->outside_passed = true;
+    }
+    machine->is_passed = machine->text_passed && (machine->outside_passed || !cnc_is_set(cnc, CNC_BIT_EXT_PLC));
+}
+
+void cnc_tick(struct cnc *cnc)
+{
+    cnc->turn++;
+    cnc->tick = cnc->turn * CNC_TICKS_PER_T;
+    /* PLC */
+    cnc_begin_start(cnc);
+    cnc_run_pass(cnc);
+    /* requests and block machine */
+    cnc_take_stop(cnc);
+    cnc_run_machine(cnc);
+    /* motion */
+    cnc_move_path(cnc);
+    cnc_run_servo(cnc);
+    cnc_end_motion(cnc);
+    cnc_note_stop(cnc);
+    /* status */
+    cnc_put_status(cnc);
+}
+
+void cnc_advance(struct cnc *cnc, uint64_t ticks)
+{
+    const uint64_t end = cnc->tick + ticks;
+    while (cnc->turn < end / CNC_TICKS_PER_T)
+        cnc_tick(cnc);
+    cnc->tick = end;
+}
+
+/* ---- Requests ----------------------------------------------------------------------------------------------------------- */
+
+void cnc_set_critical(struct cnc *cnc, uint8_t number)
+{
+    if (number != 0 && number != cnc_number(&cnc->cells, CNC_CELL_BZH13, 0))
+        cnc_report_event(cnc, CNC_EVENT_CRITICAL, number);
+    cnc_put_number(&cnc->cells, CNC_CELL_BZH13, 0, number);
+}
+
+const char *cnc_result_text(enum cnc_result result)
+{
+    static const char *const text[CNC_RESULTS] = {
+        [CNC_OK] = "done",
+        [CNC_NO_PROGRAM] = "no NC program is loaded",
+        [CNC_UNDER_WAY] = "a block is under way",
+        [CNC_MANUAL] = "manual moves are active",
+        [CNC_CRITICAL] = "there is a critical error (BZH13)",
+        [CNC_NO_REFERENCE] = "an axis of the program needs a reference",
+        [CNC_STOPPI] = "STOPPI is 1",
+        [CNC_DISABLED] = "START_DISABLE is 1",
+        [CNC_NO_SUCH_BLOCK] = "the NC program has no such block",
+        [CNC_STOPPED] = "a stop came before the start was done",
+    };
+    return text[result];
+}

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT */
+/* feed.c: speeds of the path as the cells allow them (NM7, NF1). */
+#include "frame.h"
+#include "wide.h"
+
+struct cnc_override cnc_feed_override(const struct cnc *cnc)
+{
+    if (cnc->machine.override_cancelled)
+        return (struct cnc_override){1000, 1000};
+    const int64_t word = cnc_read_number(&cnc->cells, cnc_cell_place(CNC_CELL_BZH09), CNC_WORD);
+    const uint32_t pot = cnc->panel.feed < CNC_FEED_PERCENT_MAX ? cnc->panel.feed : CNC_FEED_PERCENT_MAX;
+    return (struct cnc_override){cnc_is_set(cnc, CNC_BIT_FEED_OVR) ? (uint32_t)word : pot * 10u,
+                                 (uint32_t)cnc_number(&cnc->cells, CNC_CELL_FEED_OVR_MULTIPLIER, 0)};
+}
+
+/* a * b / divisor, rounded down; CNC_SPEED_LIMIT at most. */
+static int64_t scale(uint64_t a, uint64_t b, uint64_t divisor)
+{
+    const struct wide product = wide_product(a, b);
+    uint64_t rest;
+    if (product.high >= divisor)
+        return CNC_SPEED_LIMIT;
+    const uint64_t result = wide_divide(product, divisor, &rest);
+    return result < (uint64_t)CNC_SPEED_LIMIT ? (int64_t)result : CNC_SPEED_LIMIT;
+}
+
+int64_t cnc_feed_speed(int64_t feed, struct cnc_override override, int64_t speed)
+{
+    /* 16 384 / 15 u/T a mm/min; 10^15 = 2^15 * 5^15 of millionths and three factors of per mille. */
+    const uint64_t divisor = UINT64_C(30) * 30517578125;
+    if (feed <= 0 || speed <= 0)
+        return 0;
+    return scale((uint64_t)feed * override.multiplier, (uint64_t)speed * override.percent, divisor);
+}
+
+/* A limit that a cell may set: none while its request is 0. */
+static int64_t cell_limit(const struct cnc *cnc, unsigned request, enum cnc_cell cell)
+{
+    if (!cnc_is_set(cnc, request))
+        return CNC_SPEED_LIMIT;
+    const int64_t limit = cnc_number(&cnc->cells, cell, 0);
+    return limit > 0 ? limit : 0;
+}
+
+static int64_t segment_target(const struct cnc *cnc, unsigned k, struct cnc_override override)
+{
+    const struct cnc_segment *segment = &cnc->move.section.segment[k];
+    const struct cnc_nc_block *block = &cnc->program->blocks[cnc->move.section.first + k];
+    int64_t target, limit;
+    if (block->motion == CNC_MOTION_RAPID) {
+        target = scale((uint64_t)segment->rapid, (uint64_t)override.percent * override.multiplier, 1000000);
+        limit = cell_limit(cnc, CNC_BIT_LIMIT_FEED_G00_REQ, CNC_CELL_LIMIT_FEED_G00);
+    } else {
+        const bool threads = block->motion == CNC_MOTION_THREAD;
+        const bool per_revolution = threads || (block->modes & CNC_NC_PER_REVOLUTION) != 0;
+        target = cnc_feed_speed(cnc_nc_value(cnc->program, block->feed),
+                                threads ? (struct cnc_override){1000, 1000} : override,
+                                per_revolution ? cnc_number(&cnc->cells, CNC_CELL_ACT_SPEED_PM, 0) : 1000);
+        limit = cell_limit(cnc, CNC_BIT_LIMIT_FEED_REQ, CNC_CELL_LIMIT_FEED);
+    }
+    target = target < segment->rapid ? target : segment->rapid;
+    return target < limit ? target : limit;
+}
+
+void cnc_find_targets(const struct cnc *cnc, int64_t target[CNC_SEGMENTS_MAX])
+{
+    const struct cnc_section *section = &cnc->move.section;
+    const struct cnc_override override = cnc_feed_override(cnc);
+    bool is_slow = false;
+    for (unsigned i = 0; i < CNC_AXES; i++)
+        if (cnc_has_axis(section->axes, i))
+            is_slow |= cnc_is_set(cnc, CNC_BIT_ZPx0 + i) || cnc_is_set(cnc, CNC_BIT_ZPx1 + i);
+    for (unsigned k = 0; k < section->count; k++) {
+        target[k] = segment_target(cnc, k, override);
+        if (is_slow && section->segment[k].slow < target[k])
+            target[k] = section->segment[k].slow;
+    }
+}

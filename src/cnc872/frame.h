@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT */
+/* frame.h: what the parts of a T (NT2) call of each other. */
+#ifndef CNC872_FRAME_H
+#define CNC872_FRAME_H
+
+#include "cnc872.h"
+
+/* A start (NE4). */
+enum cnc_start_state { CNC_START_NONE, CNC_START_ASKED, CNC_START_WAITS /* for START_SUSPEND */ };
+
+/* Central annulment (NB8). */
+enum cnc_annulment_state { CNC_ANNULMENT_NONE, CNC_ANNULMENT_ASKED, CNC_ANNULMENT_PASSES };
+
+static inline bool cnc_is_set(const struct cnc *cnc, unsigned place)
+{
+    return cnc_bit(&cnc->cells, place);
+}
+
+static inline void cnc_set(struct cnc *cnc, unsigned place, bool value)
+{
+    cnc_put_bit(&cnc->cells, place, value);
+}
+
+static inline void cnc_report_event(struct cnc *cnc, enum cnc_event event, int64_t value)
+{
+    if (cnc->port != NULL && cnc->port->event != NULL)
+        cnc->port->event(cnc->context, event, value);
+}
+
+/* ---- The block machine: block.c, start.c --------------------------------------------------------------------------- */
+
+/* Step 2: the passes of MODULE_BLOCK_INIT and MODULE_BLOCK_DONE; the event of a start. */
+void cnc_begin_start(struct cnc *cnc);
+void cnc_run_pass(struct cnc *cnc);
+
+/* Step 3: STOPPI, STOP_REQ, STOP_EMERGENCY_REQ and the panel's STOP. Returns whether there was one. */
+bool cnc_take_stop(struct cnc *cnc);
+
+/* Step 3: start, phases, central annulment. */
+void cnc_run_machine(struct cnc *cnc);
+
+/* Step 4: the motion of the present block has ended, or a stop is at rest. */
+void cnc_end_motion(struct cnc *cnc);
+
+/* Step 4, last: STATUS_RESTART in the T in which PO_STOP becomes 1. */
+void cnc_note_stop(struct cnc *cnc);
+
+/* Publish the next block of the NC program (NB1). */
+void cnc_publish_block(struct cnc *cnc);
+
+/* The present block, or the pass of a reference or a central annulment, has ended. */
+void cnc_end_block(struct cnc *cnc);
+
+/* Phase INIT or DONE with its pass before it. */
+void cnc_begin_phase(struct cnc *cnc, enum cnc_phase phase);
+
+/* What comes after the motion, or in its place: DELAY or DONE. */
+void cnc_begin_delay(struct cnc *cnc);
+
+/* The start goes on once START_SUSPEND is 0: the next block is published, or the stopped one goes on (NB7). Returns whether it
+ * did. */
+bool cnc_finish_start(struct cnc *cnc);
+
+/* Do the axes stand elsewhere than where the selected block begins (NQ2)? */
+bool cnc_is_elsewhere(const struct cnc *cnc);
+
+/* Line of the present block in the NC text; 0: none. */
+int64_t cnc_block_line(const struct cnc *cnc);
+
+/* The present block of the NC program; NULL: none. */
+const struct cnc_nc_block *cnc_present_block(const struct cnc *cnc);
+
+/* Stop as STOP_EMERGENCY_REQ does. */
+void cnc_stop_emergency(struct cnc *cnc);
+
+/* ---- Motion: motion.c, hold.c, feed.c -------------------------------------------------------------------------------- */
+
+/* The way of the present block from where the axes are, and of its section. */
+void cnc_prepare_motion(struct cnc *cnc);
+
+/* Begin, or go on with, the motion of the present block. Returns false if there is none (any more). */
+bool cnc_begin_motion(struct cnc *cnc);
+
+/* Forget the path. */
+void cnc_drop_motion(struct cnc *cnc);
+
+/* One T of the path, and of the servo loop (NS3). */
+void cnc_move_path(struct cnc *cnc);
+void cnc_run_servo(struct cnc *cnc);
+
+/* Will the path go on moving, or has its average still something to give? */
+bool cnc_path_moves(const struct cnc *cnc);
+
+/* Do any axes move: path, manual moves, references, spindle axes? */
+bool cnc_axes_move(const struct cnc *cnc);
+
+/* Are the following errors of these axes within MaxDifference? */
+bool cnc_in_tolerance(const struct cnc *cnc, uint16_t axes);
+
+enum cnc_limit { CNC_LIMIT_NONE, CNC_LIMIT_SWITCH, CNC_LIMIT_SOFTWARE };
+
+/* Is an axis held by a limit in this direction, 1 or -1 (NA4, NH4)? */
+enum cnc_limit cnc_find_limit(const struct cnc *cnc, unsigned axis, int direction);
+
+/* The strongest hold of the path (NM9). */
+enum cnc_hold cnc_find_hold(const struct cnc *cnc);
+
+/* The override of the feed as two factors of per mille (NF1). */
+struct cnc_override {
+    uint32_t percent, multiplier;
+};
+struct cnc_override cnc_feed_override(const struct cnc *cnc);
+
+/* F times the override, u/T, rounded down once (NU4). feed: millionths of mm/min, or of mm/rev; speed: 1/1000 rev/min, 1000 with
+ * mm/min. */
+int64_t cnc_feed_speed(int64_t feed, struct cnc_override override, int64_t speed);
+
+/* Speeds that the cells allow in all segments of the path (NM7), u/T. */
+void cnc_find_targets(const struct cnc *cnc, int64_t target[CNC_SEGMENTS_MAX]);
+
+/* TIME_DIST and G23ACT of a section (NM8), before its step of this T. */
+void cnc_watch_section(struct cnc *cnc, enum cnc_hold hold, const int64_t target[CNC_SEGMENTS_MAX],
+                       const struct cnc_borders *borders);
+
+/* The lowest target of the segments from that in which the path is to that in which the input stage is. */
+int64_t cnc_lowest_target(const struct cnc_section *section, const struct cnc_path *path, const int64_t target[CNC_SEGMENTS_MAX]);
+
+/* ---- Cells: status.c, queue.c ----------------------------------------------------------------------------------------- */
+
+/* Cells of the configuration, at power-up (section 8.4.6 of the source). */
+void cnc_put_configuration(struct cnc *cnc);
+
+/* Step 5. */
+void cnc_put_status(struct cnc *cnc);
+
+#endif
