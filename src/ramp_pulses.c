@@ -173,16 +173,17 @@ uint64_t ramp_fast_from(uint32_t slope, uint32_t rate)
     return w + w * 3 / 7 * (slope - top) / top;
 }
 
-/* How many pulses make a block, and from which w on, in sixteenths of ramp->fast: the error grows with pulses^4 / w^7. Fewer than
- * are left in the leg, so that the next pulse after a block always is of the same leg. */
+/* How many pulses make a block, and from which w on, in sixteenths of ramp->fast: the error grows with pulses^4 / w^7, and the
+ * largest blocks leave room for what 1 / w lacks. Fewer than are left in the leg, so that the next pulse after a block always is
+ * of the same leg. */
 static uint8_t block_of(const struct rkm04_ramp *ramp)
 {
     static const struct {
         uint8_t pulses, fast;
-    } sizes[] = {{64, 35}, {48, 30}, {32, 24}, {24, 20}, {16, 16}, {12, 13}, {8, 11}};
-    const uint64_t w = 16 * (uint64_t)ramp->w.whole;
+    } sizes[] = {{128, 56}, {96, 47}, {64, 35}, {48, 30}, {32, 24}, {24, 20}, {16, 16}, {12, 13}, {8, 11}};
+    const uint32_t w = (uint32_t)((uint64_t)ramp->w.whole >> 14), fast = (uint32_t)(ramp->fast >> 18) + 1; /* 32 bits do */
     for (unsigned i = 0; i < sizeof sizes / sizeof *sizes; i++)
-        if (w > ramp->fast * sizes[i].fast && ramp->left > sizes[i].pulses)
+        if (w > fast * sizes[i].fast && ramp->left > sizes[i].pulses)
             return sizes[i].pulses;
     return 0;
 }
@@ -196,8 +197,8 @@ static inline int64_t scaled_down(int64_t a, unsigned places)
 /* a * b / 2^40, b signed. */
 static inline int64_t scaled_product(uint64_t a, int64_t b)
 {
-    uint64_t high = wide_high(a, size_of(b) << 24);
-    return b < 0 ? -(int64_t)high : (int64_t)high;
+    const int64_t size = (int64_t)wide_scaled(a, size_of(b));
+    return b < 0 ? -size : size;
 }
 
 /* a / w with 32 places; inverse = 2^63 / w. */
@@ -205,13 +206,6 @@ static inline uint64_t quotient(uint64_t a, uint64_t inverse)
 {
     struct wide product = wide_product(a, inverse);
     return product.high << 33 | product.low >> 31;
-}
-
-/* steep * a / w with 40 places, for an `a` with 32 of them. */
-static inline int64_t curve_term(uint32_t steep, uint64_t a, uint64_t inverse)
-{
-    struct wide product = wide_product(a, inverse), low = wide_product(product.low, steep);
-    return (int64_t)((product.high * steep + low.high) << 9 | low.low >> 55);
 }
 
 /* The pulses after the present one, at which y and w stand, computed from `middle` ticks on: the cubic's value at the first,
@@ -224,14 +218,16 @@ static void set_cubic(struct rkm04_ramp *ramp, int64_t middle)
     const uint64_t speed = (uint64_t)there.w.whole, inverse = ((UINT64_C(1) << 63) + speed / 2) / speed;
     const uint64_t c = quotient((uint64_t)ramp->step, inverse); /* ticks from pulse to pulse there */
     const uint64_t back = quotient((uint64_t)there.y.whole, inverse) - c; /* -z of the first: some intervals before the middle */
-    const int64_t bend_z = curve_term(steep, back, inverse), bend_c = curve_term(steep, c, inverse);
+    const uint64_t curve = steep * inverse << 9; /* slope / w with 72 places: below 2^-8 at the speeds of blocks */
+    const int64_t bend_z = (int64_t)wide_high(back, curve), bend_c = (int64_t)wide_high(c, curve); /* 40 places */
     const int64_t x = down ? bend_z : -bend_z, u = down ? -bend_c : bend_c;
-    const int64_t x30 = scaled_down(x, 10), u30 = scaled_down(u, 10), x2 = x30 * x30, xu = x30 * u30, u2 = u30 * u30;
-    const int64_t bent = scaled_product(back, scaled_down(x2, 19) - x);
+    /* |x| < 2^-4 where blocks are right, and |u| is less: the squares have 68 places */
+    const int64_t x34 = scaled_down(x, 6), u34 = scaled_down(u, 6), x2 = x34 * x34, xu = x34 * u34, u2 = u34 * u34;
+    const int64_t bent = scaled_product(back, scaled_down(x2, 27) - x);
     ramp->due = ((uint64_t)middle << 32) - back - (uint64_t)bent + RAMP_NEAR;
-    ramp->due1 = c + (uint64_t)scaled_product(c, scaled_down(3 * (x2 + xu) + u2, 19) - 2 * x - u);
-    ramp->due2 = (uint64_t)scaled_product(c, scaled_down(12 * (xu + u2), 20) - 2 * u);
-    ramp->due3 = (uint64_t)scaled_product(c, scaled_down(12 * u2, 20));
+    ramp->due1 = c + (uint64_t)scaled_product(c, scaled_down(3 * (x2 + xu) + u2, 27) - 2 * x - u);
+    ramp->due2 = (uint64_t)scaled_product(c, scaled_down(12 * (xu + u2), 28) - 2 * u);
+    ramp->due3 = wide_scaled(c, (uint64_t)(12 * u2) >> 18) >> 10; /* adds up to pulses^3 / 6: ten places more */
 }
 
 bool ramp_begin_block(struct rkm04_ramp *ramp)

@@ -15,16 +15,27 @@ static inline uint64_t product(uint32_t a, uint32_t b)
 #endif
 }
 
+struct wide wide_product(uint64_t a, uint64_t b)
+{
+    const uint32_t a0 = (uint32_t)a, a1 = (uint32_t)(a >> 32), b0 = (uint32_t)b, b1 = (uint32_t)(b >> 32);
+    if ((a0 | a1) == 0) /* speeds without places after the point: most of them */
+        return (struct wide){0, 0};
+    const uint64_t low = product(a0, b0), middle = product(a1, b0) + (low >> 32);
+    const uint64_t other = product(a0, b1) + (uint32_t)middle;
+    return (struct wide){product(a1, b1) + (middle >> 32) + (other >> 32), other << 32 | (uint32_t)low};
+}
+
 uint64_t wide_high(uint64_t a, uint64_t b)
 {
-    uint32_t a0 = (uint32_t)a, a1 = (uint32_t)(a >> 32), b0 = (uint32_t)b, b1 = (uint32_t)(b >> 32);
-#ifdef __ARM_ARCH_6M__
-    if ((a0 | a1) == 0) /* speeds without places after the point: most of them */
-        return 0;
-#endif
-    uint64_t middle = product(a1, b0) + (product(a0, b0) >> 32);
-    uint64_t other = product(a0, b1) + (uint32_t)middle;
-    return product(a1, b1) + (middle >> 32) + (other >> 32);
+    return wide_product(a, b).high;
+}
+
+uint64_t wide_scaled(uint64_t a, uint64_t b)
+{
+    if (b >> 32 == 0)
+        return (product((uint32_t)(a >> 32), (uint32_t)b) + (product((uint32_t)a, (uint32_t)b) >> 32)) >> 8;
+    const struct wide whole = wide_product(a, b);
+    return whole.high << 24 | whole.low >> 40;
 }
 
 #endif

@@ -11,26 +11,35 @@ struct wide {
     uint64_t high, low;
 };
 
-/* Upper half of a * b. The one place where a compiler's own 128-bit type is used: the result is the same without. */
+/* a * b, its upper half alone, and a * b / 2^40 rounded down, which must be below 2^64. The one place where a compiler's own
+ * 128-bit type is used: the results are the same without. */
 #ifdef __SIZEOF_INT128__
+__extension__ typedef unsigned __int128 wide_native;
+
 static inline uint64_t wide_high(uint64_t a, uint64_t b)
 {
-    __extension__ typedef unsigned __int128 u128;
-    return (uint64_t)((u128)a * b >> 64);
+    return (uint64_t)((wide_native)a * b >> 64);
+}
+
+static inline struct wide wide_product(uint64_t a, uint64_t b)
+{
+    return (struct wide){wide_high(a, b), a * b};
+}
+
+static inline uint64_t wide_scaled(uint64_t a, uint64_t b)
+{
+    return (uint64_t)((wide_native)a * b >> 40);
 }
 #else
 uint64_t wide_high(uint64_t a, uint64_t b);
+struct wide wide_product(uint64_t a, uint64_t b);
+uint64_t wide_scaled(uint64_t a, uint64_t b);
 #endif
 
 /* |a|, whatever a is. */
 static inline uint64_t size_of(int64_t a)
 {
     return a < 0 ? 0 - (uint64_t)a : (uint64_t)a;
-}
-
-static inline struct wide wide_product(uint64_t a, uint64_t b)
-{
-    return (struct wide){wide_high(a, b), a * b};
 }
 
 static inline struct wide wide_sum(struct wide a, struct wide b)

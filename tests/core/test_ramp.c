@@ -126,13 +126,13 @@ static bool begin_block(struct rkm04_ramp *ramp, uint32_t rate)
 {
     const uint32_t slope = motion_random(8) == 0 ? 0 : motion_pick(1, 60000);
     const uint64_t fast = ramp_fast_from(slope, rate), top = UINT64_C(2) * rate * RKM04_SPEED_MAX;
-    uint64_t w = fast * (8 + motion_random(32)) / 16;
+    uint64_t w = fast * (8 + motion_random(52)) / 16;
     if (motion_random(2) == 0 || slope == 0)
         w += motion_random(top);
     if (w > top || w < UINT64_C(2) * rate)
         return false;
     *ramp = (struct rkm04_ramp){.rate = rate, .step = 2 * (int64_t)rate * rate, .fast = fast};
-    ramp->left = 9 + (uint32_t)motion_random(80);
+    ramp->left = 9 + (uint32_t)motion_random(160);
     ramp->slope = motion_random(2) == 0 ? (int32_t)slope : -(int32_t)slope;
     ramp->w = (struct rkm04_fixed){(int64_t)w, motion_random(UINT64_MAX)};
     ramp->y = (struct rkm04_fixed){(int64_t)motion_random(w), motion_random(UINT64_MAX)};
@@ -170,7 +170,7 @@ START_TEST(R1_blocks_of_pulses_are_right_to_less_than_what_is_looked_at_anew)
         }
     }
     ck_assert_uint_gt(blocks, motion_count(80000));
-    ck_assert_uint_eq(sizes, 1 << 8 | 1 << 6 | 1 << 4 | 1 << 3 | 1 << 2 | 1 << 1); /* 64, 48, 32, 24, 16, 12 and 8 */
+    ck_assert_uint_eq(sizes, 1 << 16 | 1 << 12 | 1 << 8 | 1 << 6 | 1 << 4 | 1 << 3 | 1 << 2 | 1 << 1); /* 128, 96 … 12 and 8 */
 }
 END_TEST
 
@@ -201,24 +201,25 @@ static unsigned block_at(uint64_t w, uint32_t left)
     return ramp_begin_block(&ramp) ? ramp.block : 0;
 }
 
-/* The same bound for blocks of other sizes: they begin at the sixteenth of that speed that is the next to it. */
+/* The same bound for blocks of other sizes: they begin at the sixteenth of that speed that is the next to it, those above 64 up to
+ * a fifteenth later. */
 START_TEST(R1_blocks_are_as_large_as_the_speed_allows)
 {
-    static const unsigned sizes[] = {0, 8, 12, 16, 24, 32, 48, 64, 0};
+    static const unsigned sizes[] = {0, 8, 12, 16, 24, 32, 48, 64, 96, 128, 0};
     const uint64_t fast = ramp_fast_from(9000, 1000000);
     unsigned found = 0;
-    for (uint64_t w = fast / 2; w < 3 * fast; w += fast / 256) {
+    for (uint64_t w = fast / 2; w < 4 * fast; w += fast / 256) {
         const unsigned pulses = block_at(w, 1000);
         ck_assert(pulses == sizes[found] || pulses == sizes[found + 1]);
         if (pulses == sizes[found])
             continue;
         const double sixteenths = 16 * (double)w / (double)fast, bound = 16 * pow(pulses / 16.0, 4.0 / 7);
-        ck_assert_msg(fabs(sixteenths - bound) < 0.62, "%u pulses from %g/16 on, not %g/16", pulses, sixteenths, bound);
+        ck_assert_msg(sixteenths > bound - 0.62 && sixteenths < bound * (pulses > 64 ? 16.0 / 15 : 1) + 0.62, "%u pulses from %g/16 on, not %g/16", pulses, sixteenths, bound);
         ck_assert_uint_eq(block_at(w, pulses + 1), pulses); /* none is the last of its leg */
         ck_assert_uint_eq(block_at(w, pulses), sizes[found]);
         found++;
     }
-    ck_assert_uint_eq(found, 7);
+    ck_assert_uint_eq(found, 9);
 }
 END_TEST
 

@@ -56,6 +56,10 @@ START_TEST(upper_half_of_a_product)
         mpz_set_ui(product, a);
         mpz_mul_ui(product, product, b);
         expect("product", product, wide_product(a, b));
+        ck_assert_uint_eq(wide_high(a, b), wide_product(a, b).high);
+        mpz_tdiv_q_2exp(product, product, 40);
+        if (mpz_fits_ulong_p(product))
+            expect("product / 2^40", product, (struct wide){0, wide_scaled(a, b)});
     }
     mpz_clear(product);
 }

@@ -36,8 +36,9 @@ size_t pulses_put_steps(struct pulses *pulses, unsigned number, const uint64_t *
     if (count > room)
         count = room;
     for (size_t i = 0; i < count; i++, in++) {
-        lane->tick[in % PULSES_ROOM] = (uint32_t)tick[i];
-        lane->item[in % PULSES_ROOM] = PULSE_STEP;
+        const uint32_t at = in % PULSES_ROOM;
+        lane->tick[at] = (uint32_t)tick[i];
+        lane->item[at] = PULSE_STEP;
     }
     __atomic_signal_fence(__ATOMIC_SEQ_CST);
     lane->in = in;
