@@ -201,8 +201,8 @@ static unsigned block_at(uint64_t w, uint32_t left)
     return ramp_begin_block(&ramp) ? ramp.block : 0;
 }
 
-/* The same bound for blocks of other sizes: they begin at the sixteenth of that speed that is the next to it, those above 64 up to
- * a fifteenth later. */
+/* The same bound for blocks of other sizes: they begin at the sixteenth of that speed that is the next to it, those above 64 up
+ * to a fifteenth later. */
 START_TEST(R1_blocks_are_as_large_as_the_speed_allows)
 {
     static const unsigned sizes[] = {0, 8, 12, 16, 24, 32, 48, 64, 96, 128, 0};
@@ -214,7 +214,8 @@ START_TEST(R1_blocks_are_as_large_as_the_speed_allows)
         if (pulses == sizes[found])
             continue;
         const double sixteenths = 16 * (double)w / (double)fast, bound = 16 * pow(pulses / 16.0, 4.0 / 7);
-        ck_assert_msg(sixteenths > bound - 0.62 && sixteenths < bound * (pulses > 64 ? 16.0 / 15 : 1) + 0.62, "%u pulses from %g/16 on, not %g/16", pulses, sixteenths, bound);
+        ck_assert_msg(sixteenths > bound - 0.62 && sixteenths < bound * (pulses > 64 ? 16.0 / 15 : 1) + 0.62,
+                      "%u pulses from %g/16 on, not %g/16", pulses, sixteenths, bound);
         ck_assert_uint_eq(block_at(w, pulses + 1), pulses); /* none is the last of its leg */
         ck_assert_uint_eq(block_at(w, pulses), sizes[found]);
         found++;
