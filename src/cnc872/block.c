@@ -2,18 +2,6 @@
 /* block.c: the block machine (NB1, NB2, NB7, NB8). */
 #include "frame.h"
 
-/* Bits that are 1 for the block in which something is programmed (NG1, NG2). */
-static const uint16_t block_bits[] = {CNC_BIT_M00_PID, CNC_BIT_M01_PID, CNC_BIT_M02_PID, CNC_BIT_M30_PID, CNC_BIT_M10PID,
-                                      CNC_BIT_M11PID,  CNC_BIT_M06PID,  CNC_BIT_M60PI,   CNC_BIT_ZMSHPI,  CNC_BIT_ZMSTPI};
-
-static void clear_block_bits(struct cnc *cnc)
-{
-    for (unsigned i = 0; i < sizeof block_bits / sizeof *block_bits; i++)
-        cnc_set(cnc, block_bits[i], false);
-    for (unsigned i = 0; i < CNC_M_GROUPS; i++)
-        cnc_set(cnc, CNC_BIT_ZMMnPI + i, false);
-}
-
 const struct cnc_nc_block *cnc_present_block(const struct cnc *cnc)
 {
     return cnc->machine.block == CNC_NO_BLOCK ? NULL : &cnc->program->blocks[cnc->machine.block];
@@ -66,9 +54,21 @@ static void publish_motion(struct cnc *cnc)
         cnc_put_real(&cnc->cells, CNC_CELL_rAxGParabAccel, 0, cnc_segment_change(segment, cnc->config));
 }
 
+/* The speed of the spindle does not fit its gear: the program stops before this block (NF5). */
+static void refuse_block(struct cnc *cnc, const struct cnc_nc_block *block)
+{
+    cnc_set(cnc, CNC_BIT_SF_STOP, true);
+    cnc_report_event(cnc, CNC_EVENT_BLOCK_REFUSED, block->line);
+}
+
 void cnc_publish_block(struct cnc *cnc)
 {
     struct cnc_machine *machine = &cnc->machine;
+    const struct cnc_nc_block *next = &cnc->program->blocks[machine->next];
+    if (cnc->move.section.count == 0 && !cnc_gear_fits(cnc, next)) {
+        refuse_block(cnc, next);
+        return;
+    }
     machine->block = machine->next++;
     const struct cnc_nc_block *block = cnc_present_block(cnc);
     const bool is_selected = machine->block == machine->selected;
@@ -81,7 +81,9 @@ void cnc_publish_block(struct cnc *cnc)
     cnc_set(cnc, CNC_BIT_G00PI, block->motion == CNC_MOTION_RAPID);
     cnc_set(cnc, CNC_BIT_G33PI, block->motion == CNC_MOTION_THREAD);
     cnc_set(cnc, CNC_BIT_SF_BLOCKFINISHED, false);
-    clear_block_bits(cnc);
+    cnc_end_functions(cnc);
+    if (!is_selected || !machine->technology_off)
+        cnc_publish_functions(cnc, block);
     const int64_t delay = cnc_nc_word(cnc->program, block, CNC_NC_DELAY);
     machine->delay = (delay + 999) / 1000;
     publish_motion(cnc);
@@ -117,7 +119,7 @@ void cnc_end_block(struct cnc *cnc)
     cnc_set(cnc, CNC_BIT_BLOCK_RESTART, false);
     cnc_set(cnc, CNC_BIT_SF_BLOCKFINISHED, true);
     cnc_put_number(&cnc->cells, CNC_CELL_STATUS_RESTART, 0, 0);
-    clear_block_bits(cnc);
+    cnc_end_functions(cnc);
     machine->phase = CNC_IDLE;
     machine->block = CNC_NO_BLOCK;
     machine->is_reference = machine->is_continued = false;
@@ -242,9 +244,9 @@ static void begin_annulment(struct cnc *cnc)
     cnc_set(cnc, CNC_BIT_BLOCK_RESTART, false);
     cnc_set(cnc, CNC_BIT_SF_BLOCKFINISHED, false);
     cnc_put_number(&cnc->cells, CNC_CELL_STATUS_RESTART, 0, 0);
-    cnc_put_number(&cnc->cells, CNC_CELL_HOMING_START_REQ, 0, 0);
+    cnc_drop_references(cnc);
     cnc_set_critical(cnc, 0);
-    clear_block_bits(cnc);
+    cnc_end_functions(cnc);
     set_request_bits(cnc, 0xFFFF, false);
     cnc_drop_motion(cnc);
     machine->block = machine->selected = CNC_NO_BLOCK;

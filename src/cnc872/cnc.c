@@ -63,9 +63,14 @@ void cnc_begin(struct cnc *cnc, const struct cnc_setup *setup)
     cnc->panel.feed = cnc->panel.spindle = 100;
     cnc->machine.is_reached = true;
     memset(cnc->machine.m, CNC_NC_NO_M, sizeof cnc->machine.m);
+    cnc->switches = setup->switches;
+    cnc->switch_count = setup->switch_count;
     cnc_clear_cells(&cnc->cells);
+    if (setup->backup != NULL)
+        memcpy(cnc->cells.memory + cnc_cell_place(CNC_CELL_PLC_MEM_BACKUP), setup->backup, CNC_BACKUP_SIZE);
     take_program(cnc, setup->program);
     cnc_put_configuration(cnc);
+    cnc_put_time(cnc);
     cnc_put_status(cnc);
 }
 
@@ -87,14 +92,25 @@ void cnc_tick(struct cnc *cnc)
 {
     cnc->turn++;
     cnc->tick = cnc->turn * CNC_TICKS_PER_T;
+    /* from outside */
+    cnc_drive_switches(cnc);
+    cnc_put_time(cnc);
     /* PLC */
     cnc_begin_start(cnc);
     cnc_run_pass(cnc);
     /* requests and block machine */
+    cnc_take_displays(cnc);
+    cnc_take_backup(cnc);
+    cnc_take_references(cnc);
     cnc_take_stop(cnc);
     cnc_run_machine(cnc);
     /* motion */
     cnc_move_path(cnc);
+    if (!cnc->move.is_going) {
+        cnc_move_manual(cnc);
+        cnc_move_references(cnc);
+    }
+    cnc_move_spindles(cnc);
     cnc_run_servo(cnc);
     cnc_end_motion(cnc);
     cnc_note_stop(cnc);
@@ -131,6 +147,7 @@ const char *cnc_result_text(enum cnc_result result)
         [CNC_STOPPI] = "STOPPI is 1",
         [CNC_DISABLED] = "START_DISABLE is 1",
         [CNC_NO_SUCH_BLOCK] = "the NC program has no such block",
+        [CNC_NO_AXIS] = "the configuration has no such axis",
         [CNC_STOPPED] = "a stop came before the start was done",
     };
     return text[result];

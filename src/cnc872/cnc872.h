@@ -27,9 +27,16 @@
 #include "path.h"
 #include "plc.h"
 #include "section.h"
+#include "single.h"
 
 #define CNC_TICKS_PER_T 1000u /* of 1 us (NT1) */
-#define CNC_FEED_PERCENT_MAX 200u
+#define CNC_PERCENT_MAX 200u /* of the pots %F and %S */
+#define CNC_GEAR_SPEED_STANDARD 4000000 /* 1/1000 rev/min, of a gear without configuration */
+#define CNC_DISPLAYS 2u       /* DISPTOC1, DISPTOC2 (NO2) */
+#define CNC_DISPLAY_LINES 8u
+#define CNC_DISPLAY_COLUMNS 16u
+#define CNC_BACKUP_SIZE 10000u /* bytes of PLC_MEM_BACKUP (NO3) */
+#define CNC_BACKUP_PAUSE 1000u /* T's after a save that failed, until the next one */
 #define CNC_QUEUE_MAX 15u     /* blocks behind the present one (NQ1) */
 #define CNC_NO_BLOCK UINT32_MAX
 
@@ -50,6 +57,7 @@ enum cnc_result {
     CNC_STOPPI,       /* STOPPI is still 1 */
     CNC_DISABLED,     /* START_DISABLE is 1 */
     CNC_NO_SUCH_BLOCK,
+    CNC_NO_AXIS,      /* the configuration has no such axis */
     CNC_STOPPED,      /* a stop came while START_SUSPEND held the start back */
     CNC_RESULTS
 };
@@ -62,12 +70,28 @@ enum cnc_event {
     CNC_EVENT_SHORT_STOPPI,  /* value: T's that STOPPI was 1, fewer than 200 (NB3) */
     CNC_EVENT_BEYOND_QUEUE,  /* a BLK beyond the queue has been read; value: n (NQ1) */
     CNC_EVENT_CRITICAL,      /* BZH13 has become this value (NS5) */
+    CNC_EVENT_BLOCK_REFUSED, /* S is outside of the limits of the gear (NF5); value: line of the block */
+    CNC_EVENT_REFERENCE_DONE,   /* value: the axis (NH2) */
+    CNC_EVENT_REFERENCE_FAILED, /* value: the axis; it has ended, or was refused */
+    CNC_EVENT_SAVED,         /* the backup memory (NO3) */
+    CNC_EVENT_NOT_SAVED,     /* the backup memory could not be saved; it is tried again after CNC_BACKUP_PAUSE */
     CNC_EVENTS
 };
 
-/* Where events go: during cnc_tick() and requests, which must not be called from there. `event` may be NULL. */
+/* Where events and the backup memory go: during cnc_tick() and requests, which must not be called from there. Each may be
+ * NULL. */
 struct cnc_port {
     void (*event)(void *context, enum cnc_event event, int64_t value);
+    /* Save the backup memory (NO3). Returns whether it is saved. NULL: there is no file, a request is done at once. */
+    bool (*save_backup)(void *context, const uint8_t *bytes, size_t size);
+};
+
+/* A switch of the machine: a bit that is 1 while POS6 of an axis is in a range, in step 1 of every T (NJ4). */
+struct cnc_switch {
+    uint16_t place; /* of the bit */
+    uint8_t axis;
+    bool has_at_least, has_at_most;
+    int64_t at_least, at_most; /* u */
 };
 
 /* The switches, keys and pots of the panel: to be written at any time, they act in the next T. */
@@ -87,6 +111,8 @@ struct cnc_axis {
     int64_t stop_position;    /* where the last stop left it */
     struct cnc_path path;     /* of a motion of its own: manual, reference, spindle axis */
     int8_t direction;         /* of that motion, 1 or -1; 0: there is none */
+    uint8_t kind;             /* of that motion, enum cnc_single_kind */
+    struct cnc_reference reference;
 };
 
 /* The block machine (section 10). */
@@ -132,6 +158,19 @@ struct cnc_move {
     bool has_look;
 };
 
+/* The spindle (NF2 to NF4): what is programmed, in millionths. */
+struct cnc_spindle {
+    int64_t speed, limit;  /* the last S of G97, L: rev/min; 0: none */
+    int64_t cutting_speed; /* the last S of G96, m/min; 0: none */
+    bool constant_cut;     /* G96 */
+};
+
+/* What the display of a hand-wheel panel shows (NO2); a place that nothing was written to is 0. */
+struct cnc_display {
+    uint8_t text[CNC_DISPLAY_LINES][CNC_DISPLAY_COLUMNS];
+    uint8_t size, inverse;
+};
+
 struct cnc {
     const struct cnc_config *config;
     const struct cnc_nc_program *program;
@@ -145,6 +184,13 @@ struct cnc {
     struct cnc_axis axis[CNC_AXES];
     struct cnc_machine machine;
     struct cnc_move move;
+    struct cnc_spindle spindle;
+    struct cnc_display display[CNC_DISPLAYS];
+    const struct cnc_switch *switches;
+    uint16_t switch_count;
+    uint16_t spindle_asked;                     /* axes that SPI_AX_x has asked for (NF6) */
+    uint16_t manual_stopped, manual_emergency;  /* axes that a stop has stopped in a manual move; by STOP EMERGENCY */
+    uint16_t backup_pause;                      /* T's until saving is tried again */
 };
 
 /* What a cnc is begun with; all of it stays the caller's. */
@@ -152,6 +198,9 @@ struct cnc_setup {
     const struct cnc_config *config;
     const struct cnc_nc_program *program; /* NULL: none */
     const struct cnc_port *port;          /* NULL: none */
+    const struct cnc_switch *switches;    /* of the machine */
+    uint16_t switch_count;
+    const uint8_t *backup;                /* CNC_BACKUP_SIZE bytes of PLC_MEM_BACKUP; NULL: all 0. They are copied */
     void *context;
 };
 
@@ -183,6 +232,12 @@ void cnc_reset(struct cnc *cnc);
 
 /* Choose the block at which the next START begins (NQ2), by index from 0; technology: publish its M, S, T, H. */
 enum cnc_result cnc_select(struct cnc *cnc, uint32_t block, bool technology);
+
+/* The panel's key `home` of an axis (NH3). */
+enum cnc_result cnc_home(struct cnc *cnc, unsigned axis);
+
+/* The bytes of PLC_MEM_BACKUP, to be saved at a regular end (NO3). */
+const uint8_t *cnc_backup(const struct cnc *cnc);
 
 /* A critical error of the real time (NS5): BZH13. 0: none. */
 void cnc_set_critical(struct cnc *cnc, uint8_t number);

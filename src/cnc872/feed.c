@@ -8,7 +8,7 @@ struct cnc_override cnc_feed_override(const struct cnc *cnc)
     if (cnc->machine.override_cancelled)
         return (struct cnc_override){1000, 1000};
     const int64_t word = cnc_read_number(&cnc->cells, cnc_cell_place(CNC_CELL_BZH09), CNC_WORD);
-    const uint32_t pot = cnc->panel.feed < CNC_FEED_PERCENT_MAX ? cnc->panel.feed : CNC_FEED_PERCENT_MAX;
+    const uint32_t pot = cnc->panel.feed < CNC_PERCENT_MAX ? cnc->panel.feed : CNC_PERCENT_MAX;
     return (struct cnc_override){cnc_is_set(cnc, CNC_BIT_FEED_OVR) ? (uint32_t)word : pot * 10u,
                                  (uint32_t)cnc_number(&cnc->cells, CNC_CELL_FEED_OVR_MULTIPLIER, 0)};
 }
@@ -33,12 +33,11 @@ int64_t cnc_feed_speed(int64_t feed, struct cnc_override override, int64_t speed
     return scale((uint64_t)feed * override.multiplier, (uint64_t)speed * override.percent, divisor);
 }
 
-/* A limit that a cell may set: none while its request is 0. */
-static int64_t cell_limit(const struct cnc *cnc, unsigned request, enum cnc_cell cell)
+int64_t cnc_feed_limit(const struct cnc *cnc, bool rapid)
 {
-    if (!cnc_is_set(cnc, request))
+    if (!cnc_is_set(cnc, rapid ? CNC_BIT_LIMIT_FEED_G00_REQ : CNC_BIT_LIMIT_FEED_REQ))
         return CNC_SPEED_LIMIT;
-    const int64_t limit = cnc_number(&cnc->cells, cell, 0);
+    const int64_t limit = cnc_number(&cnc->cells, rapid ? CNC_CELL_LIMIT_FEED_G00 : CNC_CELL_LIMIT_FEED, 0);
     return limit > 0 ? limit : 0;
 }
 
@@ -49,14 +48,14 @@ static int64_t segment_target(const struct cnc *cnc, unsigned k, struct cnc_over
     int64_t target, limit;
     if (block->motion == CNC_MOTION_RAPID) {
         target = scale((uint64_t)segment->rapid, (uint64_t)override.percent * override.multiplier, 1000000);
-        limit = cell_limit(cnc, CNC_BIT_LIMIT_FEED_G00_REQ, CNC_CELL_LIMIT_FEED_G00);
+        limit = cnc_feed_limit(cnc, true);
     } else {
         const bool threads = block->motion == CNC_MOTION_THREAD;
         const bool per_revolution = threads || (block->modes & CNC_NC_PER_REVOLUTION) != 0;
         target = cnc_feed_speed(cnc_nc_value(cnc->program, block->feed),
                                 threads ? (struct cnc_override){1000, 1000} : override,
                                 per_revolution ? cnc_number(&cnc->cells, CNC_CELL_ACT_SPEED_PM, 0) : 1000);
-        limit = cell_limit(cnc, CNC_BIT_LIMIT_FEED_REQ, CNC_CELL_LIMIT_FEED);
+        limit = cnc_feed_limit(cnc, false);
     }
     target = target < segment->rapid ? target : segment->rapid;
     return target < limit ? target : limit;

@@ -125,6 +125,64 @@ void cnc_watch_section(struct cnc *cnc, enum cnc_hold hold, const int64_t target
 /* The lowest target of the segments from that in which the path is to that in which the input stage is. */
 int64_t cnc_lowest_target(const struct cnc_section *section, const struct cnc_path *path, const int64_t target[CNC_SEGMENTS_MAX]);
 
+/* LIMIT_FEED_G00 or LIMIT_FEED, u/T; CNC_SPEED_LIMIT if it is not requested. */
+int64_t cnc_feed_limit(const struct cnc *cnc, bool rapid);
+
+/* ---- Single axes: manual.c, reference.c, spindle.c ------------------------------------------------------------------- */
+
+/* Begin a motion of an axis at rest, in a direction, 1 or -1; length: u or CNC_ENDLESS. */
+void cnc_begin_single(struct cnc *cnc, unsigned axis, enum cnc_single_kind kind, int direction, int64_t length);
+
+/* It is over: PO_OSxPI becomes 0. */
+void cnc_end_single(struct cnc *cnc, unsigned axis);
+
+/* One T of it towards a target speed; by_emergency: with AccelerationEmergency. Returns the speed, 0 while BZH13 is not 0. */
+int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_emergency);
+
+/* Step 4: manual moves, references, spindle axes. */
+void cnc_move_manual(struct cnc *cnc);
+void cnc_move_references(struct cnc *cnc);
+void cnc_move_spindles(struct cnc *cnc);
+
+/* Step 3: HOMING_REQ and HOMING_START_REQ. */
+void cnc_take_references(struct cnc *cnc);
+
+/* A stop came: moved axes run out, references end. */
+void cnc_stop_manual(struct cnc *cnc, bool by_emergency);
+void cnc_stop_references(struct cnc *cnc, bool by_emergency);
+
+/* Central annulment: no reference is left. */
+void cnc_drop_references(struct cnc *cnc);
+
+/* SPI_AX_x (NF6). Nothing happens if it is not a rotary axis. */
+void cnc_position_spindle(struct cnc *cnc, unsigned axis);
+
+/* ---- Technology: m_functions.c, spindle.c ---------------------------------------------------------------------------- */
+
+/* What a block says to the PLC program: M, S, T, H (NG1, NG2); and the bits that are over with it. */
+void cnc_publish_functions(struct cnc *cnc, const struct cnc_nc_block *block);
+void cnc_end_functions(struct cnc *cnc);
+
+/* Parts of it: a function of group 3; S. */
+void cnc_publish_gear(struct cnc *cnc, uint8_t m, const struct cnc_nc_block *block);
+void cnc_publish_spindle(struct cnc *cnc, const struct cnc_nc_block *block);
+
+/* Is S of the block within the limits of its gear (NF5)? */
+bool cnc_gear_fits(const struct cnc *cnc, const struct cnc_nc_block *block);
+
+/* Step 5: cells of the spindle. */
+void cnc_put_spindle(struct cnc *cnc);
+
+/* ---- Surroundings: panel.c ------------------------------------------------------------------------------------------- */
+
+/* Step 1: cells of time; switches of the machine, keys. */
+void cnc_put_time(struct cnc *cnc);
+void cnc_drive_switches(struct cnc *cnc);
+
+/* Step 3: DISPTOC1, DISPTOC2; REQ_BACKUP_MEM. */
+void cnc_take_displays(struct cnc *cnc);
+void cnc_take_backup(struct cnc *cnc);
+
 /* ---- Cells: status.c, queue.c ----------------------------------------------------------------------------------------- */
 
 /* Cells of the configuration, at power-up (section 8.4.6 of the source). */

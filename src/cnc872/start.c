@@ -119,6 +119,8 @@ bool cnc_take_stop(struct cnc *cnc)
         return false;
     if (machine->start == CNC_START_WAITS && cnc_is_set(cnc, CNC_BIT_START_SUSPEND))
         refuse(cnc, CNC_STOPPED);
+    cnc_stop_manual(cnc, emergency);
+    cnc_stop_references(cnc, emergency);
     if (machine->block == CNC_NO_BLOCK)
         return true;
     if (emergency)

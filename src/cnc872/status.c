@@ -69,6 +69,7 @@ void cnc_put_status(struct cnc *cnc)
     const bool moves = cnc_axes_move(cnc) || cnc->move.v > 0;
     const bool passes = machine->phase == CNC_INIT || machine->phase == CNC_DONE;
     put_axes(cnc);
+    cnc_put_spindle(cnc);
     const bool in_position = !moves && cnc_in_tolerance(cnc, cnc->config->axes);
     cnc_set(cnc, CNC_BIT_INPOS, in_position);
     cnc_set(cnc, CNC_BIT_SF_NOTINPOS, !in_position);

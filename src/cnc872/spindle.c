@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+/* spindle.c: speed of the spindle and its gear (NF2 to NF5), spindle axes (NF6). */
+#include "frame.h"
+#include "wide.h"
+
+#define VOLTAGE_MAX 32767 /* 7FFFh */
+#define SPEED_MAX INT64_C(1000000000000000) /* 1/1000 rev/min: no gear reaches it, whatever the overrides */
+#define TURN (INT64_C(360000) * CNC_U_PER_UM)
+
+/* a * b / divisor, rounded down; the result fits. */
+static int64_t scale(int64_t a, int64_t b, int64_t divisor)
+{
+    uint64_t rest;
+    return (int64_t)wide_divide(wide_product((uint64_t)a, (uint64_t)b), (uint64_t)divisor, &rest);
+}
+
+/* Highest speed of the gear that is in, 1/1000 rev/min. */
+static int64_t find_gear_speed(const struct cnc *cnc)
+{
+    const int64_t gear = cnc_number(&cnc->cells, CNC_CELL_SPINDLE_GEAR_ACT_1, 0);
+    if (gear < 1 || gear > (int64_t)CNC_GEARS || !cnc->config->gear[gear].is_configured)
+        return CNC_GEAR_SPEED_STANDARD;
+    return cnc->config->gear[gear].max_speed;
+}
+
+/* ---- M40 to M44 (NF5) --------------------------------------------------------------------------------------------------- */
+
+/* The lowest of the gears 1 to 4 that reaches S, or else the highest of them. */
+static unsigned choose_gear(const struct cnc *cnc, int64_t speed)
+{
+    unsigned chosen = 1;
+    for (unsigned gear = 1; gear <= 4; gear++) {
+        if (!cnc->config->gear[gear].is_configured)
+            continue;
+        chosen = gear;
+        if ((int64_t)cnc->config->gear[gear].max_speed * 1000 >= speed)
+            break;
+    }
+    return chosen;
+}
+
+/* The gear that M40 to M44 ask for. */
+static unsigned find_gear(const struct cnc *cnc, uint8_t m, const struct cnc_nc_block *block)
+{
+    return m == 40 ? choose_gear(cnc, cnc_nc_value(cnc->program, block->speed)) : m - 40u;
+}
+
+static bool has_external_gear(const struct cnc *cnc)
+{
+    return cnc_is_set(cnc, CNC_BIT_REQ_EXT_SPINDLE_GEAR) && cnc_is_set(cnc, CNC_BIT_REQ_MAN_SPINDLE_GEAR);
+}
+
+void cnc_publish_gear(struct cnc *cnc, uint8_t m, const struct cnc_nc_block *block)
+{
+    const unsigned gear = find_gear(cnc, m, block);
+    for (unsigned i = 1; i <= 4; i++)
+        cnc_set(cnc, CNC_BIT_M41PI + i - 1, i == gear);
+    if (!has_external_gear(cnc)) /* else the PLC program writes the gear */
+        cnc_put_number(&cnc->cells, CNC_CELL_SPINDLE_GEAR_ACT_1, 0, gear);
+}
+
+bool cnc_gear_fits(const struct cnc *cnc, const struct cnc_nc_block *block)
+{
+    const int64_t speed = cnc_nc_value(cnc->program, block->speed);
+    const bool has_gear = block->m[3] >= 40 && block->m[3] <= 44;
+    if ((block->modes & CNC_NC_CONSTANT_CUT) != 0 || speed == 0 || !(block->has_speed || has_gear) || has_external_gear(cnc))
+        return true;
+    const int64_t gear = has_gear ? find_gear(cnc, block->m[3], block)
+                                  : cnc_number(&cnc->cells, CNC_CELL_SPINDLE_GEAR_ACT_1, 0);
+    if (gear < 1 || gear > (int64_t)CNC_GEARS || !cnc->config->gear[gear].is_configured)
+        return true;
+    const struct cnc_gear *limits = &cnc->config->gear[gear];
+    return speed >= (int64_t)limits->min_speed * 1000 && speed <= (int64_t)limits->max_speed * 1000;
+}
+
+/* ---- Speed -------------------------------------------------------------------------------------------------------------- */
+
+void cnc_publish_spindle(struct cnc *cnc, const struct cnc_nc_block *block)
+{
+    struct cnc_spindle *spindle = &cnc->spindle;
+    spindle->speed = cnc_nc_value(cnc->program, block->speed);
+    spindle->cutting_speed = cnc_nc_value(cnc->program, block->cutting_speed);
+    spindle->limit = cnc_nc_value(cnc->program, block->speed_limit);
+    spindle->constant_cut = (block->modes & CNC_NC_CONSTANT_CUT) != 0;
+}
+
+/* G96: the speed of X as radius (NF4), 1/1000 rev/min. */
+static int64_t find_cut_speed(const struct cnc *cnc)
+{
+    const struct cnc_spindle *spindle = &cnc->spindle;
+    const uint64_t radius = size_of(cnc->axis[0].position);
+    const int64_t limit = spindle->limit > 0 ? spindle->limit / 1000 : SPEED_MAX;
+    if (spindle->cutting_speed == 0)
+        return 0;
+    if (radius == 0)
+        return limit;
+    /* S in millionths of m/min is V in thousandths of mm/min: V * 10^9 * 1000 * 65 536 000 / (2 * 3 141 592 654 * |X|). */
+    uint64_t rest;
+    const struct wide product = wide_product((uint64_t)spindle->cutting_speed, UINT64_C(16384000000000000));
+    const uint64_t way = wide_divide(product, 1570796327, &rest);
+    return way / radius < (uint64_t)limit ? (int64_t)(way / radius) : limit;
+}
+
+/* The two factors of NF2 in per mille; none with G33. */
+static int64_t find_override(const struct cnc *cnc)
+{
+    if (cnc_is_set(cnc, CNC_BIT_G33PI))
+        return 1000000;
+    const int64_t pot = cnc->panel.spindle < CNC_PERCENT_MAX ? cnc->panel.spindle : (int64_t)CNC_PERCENT_MAX;
+    const int64_t factor = cnc_is_set(cnc, CNC_BIT_SPEED_OVR) ? cnc_number(&cnc->cells, CNC_CELL_SPEED_OVR_EXT, 0) : pot * 10;
+    return factor * cnc_number(&cnc->cells, CNC_CELL_SPEED_OVR_MULTIPLIER, 0);
+}
+
+static int64_t find_voltage(int64_t speed, int64_t unit, int64_t most)
+{
+    return speed / unit >= most ? VOLTAGE_MAX : speed * VOLTAGE_MAX / (most * unit);
+}
+
+static void put_actual_speed(struct cnc *cnc, int64_t pm, int64_t pt)
+{
+    const bool turns = cnc_is_set(cnc, CNC_BIT_M03PI) || cnc_is_set(cnc, CNC_BIT_M04PI);
+    const int64_t simulated = cnc_number(&cnc->cells, CNC_CELL_SIM_SPEED_PT, 0);
+    if (simulated != 0) {
+        pt = simulated;
+        pm = simulated * 1000 / 6;
+    }
+    cnc_put_number(&cnc->cells, CNC_CELL_ACT_SPEED_PM, 0, turns ? pm : 0);
+    cnc_put_number(&cnc->cells, CNC_CELL_AVG_SPEED_PM, 0, turns ? pm : 0);
+    cnc_put_number(&cnc->cells, CNC_CELL_ACT_SPEED_PT, 0, turns ? pt : 0);
+    cnc_put_number(&cnc->cells, CNC_CELL_AVG_SPEED_PT, 0, turns ? pt : 0);
+}
+
+void cnc_put_spindle(struct cnc *cnc)
+{
+    const int64_t most = find_gear_speed(cnc), override = find_override(cnc);
+    /* Either way 1/1000 rev/min are rounded down once, after the overrides. */
+    const int64_t speed = cnc->spindle.constant_cut ? scale(find_cut_speed(cnc), override, 1000000)
+                                                    : scale(cnc->spindle.speed, override, 1000000000);
+    const int64_t voltage = find_voltage(speed, 1, most), pm = voltage * most / VOLTAGE_MAX, pt = pm * 6 / 1000;
+    cnc_write_number(&cnc->cells, cnc_cell_place(CNC_CELL_PB11), CNC_WORD, find_voltage(cnc->spindle.speed, 1000, most));
+    cnc_put_number(&cnc->cells, CNC_CELL_VYSOVERS, 0, voltage);
+    cnc_put_number(&cnc->cells, CNC_CELL_REQ_SPEED_PM, 0, pm);
+    cnc_put_number(&cnc->cells, CNC_CELL_REQ_SPEED_PT, 0, pt);
+    put_actual_speed(cnc, pm, pt);
+}
+
+/* ---- Spindle axes (NF6) ------------------------------------------------------------------------------------------------- */
+
+void cnc_position_spindle(struct cnc *cnc, unsigned axis)
+{
+    if (cnc->config->axis[axis].is_configured && cnc->config->axis[axis].is_rotary)
+        cnc->spindle_asked = (uint16_t)(cnc->spindle_asked | 1u << axis);
+}
+
+/* Way in + to the next whole turn, 0: it is there. */
+static int64_t find_way_to_turn(int64_t position)
+{
+    const int64_t beyond = position % TURN;
+    return beyond == 0 ? 0 : beyond > 0 ? TURN - beyond : -beyond;
+}
+
+/* Begin once nothing else moves the axis. */
+static void begin_axis(struct cnc *cnc, unsigned i)
+{
+    struct cnc_axis *axis = &cnc->axis[i];
+    const bool is_moved = cnc->move.is_going && ((unsigned)cnc->move.section.axes >> i & 1u) != 0;
+    if (axis->kind != CNC_SINGLE_NONE || is_moved)
+        return;
+    const int64_t way = find_way_to_turn(axis->position);
+    cnc->spindle_asked = (uint16_t)(cnc->spindle_asked & ~(1u << i));
+    cnc_set(cnc, CNC_BIT_POLOHV_x + i, way != 0);
+    if (way == 0)
+        return;
+    cnc_begin_single(cnc, i, CNC_SINGLE_SPINDLE, 1, way);
+    cnc_set(cnc, CNC_BIT_PO_OSxPI + i, true);
+}
+
+void cnc_move_spindles(struct cnc *cnc)
+{
+    for (unsigned i = 0; i < CNC_AXES; i++) {
+        if (((unsigned)cnc->spindle_asked >> i & 1u) != 0)
+            begin_axis(cnc, i);
+        if (cnc->axis[i].kind != CNC_SINGLE_SPINDLE)
+            continue;
+        const bool is_held = !cnc_is_set(cnc, CNC_BIT_MPxPI + i) || cnc_find_limit(cnc, i, 1) != CNC_LIMIT_NONE;
+        cnc_step_single(cnc, i, is_held ? 0 : cnc_speed_of(cnc->config->axis[i].feed_reference), is_held);
+        if (cnc_path_rest(&cnc->axis[i].path) == 0) {
+            cnc_set(cnc, CNC_BIT_POLOHV_x + i, false);
+            cnc_end_single(cnc, i);
+        }
+    }
+}
