@@ -31,3 +31,13 @@ def test_lines_through_a_port():
                 assert bus.now == pytest.approx(26 * 1041.67, abs=10), "26 bytes at 9600 baud"
         finally:
             rkm04.unpublish(url)
+
+
+@pytest.mark.parametrize("timed", [True, False])
+def test_messages_of_modbus_are_exchanged(timed):
+    with rkm04.Bus("1,2", device="pmc-1hs", settings={"face": "modbus"}, timed=timed) as bus:
+        assert bytes(bus.exchange(2, bytes.fromhex("03 04 4E 00 02"))) == bytes.fromhex("03 04 00 0A 01 90")
+        assert bytes(bus.exchange(1, bytes.fromhex("05 00 00 FF 00"))) == bytes.fromhex("85 01"), "an exception"
+        with pytest.raises(rkm04.NoAnswerError):
+            bus.exchange(3, bytes.fromhex("03 04 4E 00 02"), limit="100ms")
+        assert [exchange.node for exchange in bus.dialogue] == [2, 1, 3]

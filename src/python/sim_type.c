@@ -407,11 +407,14 @@ static PyObject *sim_frame(struct sim_object *self, PyObject *args)
     if (!handle)
         return NULL;
     const struct rkm04_framing *framing = handle->sim.monitor.framing->link;
-    const unsigned most = sim_device(&handle->sim)->request_max;
+    const struct device_kind *kind = sim_device(&handle->sim);
     leave(self);
-    if (node >= 0 && node <= 255 && length <= (Py_ssize_t)most)
+    if (!kind->receive)
+        return PyErr_Format(PyExc_ValueError, "the device %s has no bus, and takes no messages", kind->name);
+    if (node >= 0 && node <= 255 && length <= (Py_ssize_t)kind->request_max)
         return frame_message(framing, node, (const uint8_t *)message, (size_t)length);
-    PyErr_Format(PyExc_ValueError, "expected a node from 0 (all units) to 255 and a message of at most %u bytes", most);
+    PyErr_Format(PyExc_ValueError, "expected a node from 0 (all units) to 255 and a message of at most %u bytes",
+                 kind->request_max);
     return NULL;
 }
 

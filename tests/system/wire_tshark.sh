@@ -44,9 +44,8 @@ test_every_frame_is_a_packet_of_RTAC_serial() {
     same "7e03000431799e7e" "$(fields data.data | head -n 1 | tr -d ':')" "bytes of the first packet"
 }
 
-test_packets_and_lines_of_the_log_say_the_same() {
-    session
-    finish
+# The packets have the words, bytes and times of the log.
+compare_with_log() {
     # direction: message
     sed '/^#/d; s/^ *[0-9]* *[0-9]*  //; s/ | .*//; s/   */: /' "$folder/bus.log" >"$folder/log.words"
     fields frame.comment >"$folder/packet.words"
@@ -59,6 +58,28 @@ test_packets_and_lines_of_the_log_say_the_same() {
     diff "$folder/log.times" "$folder/packet.times" || fail "times differ"
     fields rtacser.timestamp >"$folder/rtac.times"
     diff "$folder/log.times" "$folder/rtac.times" || fail "times in the packets differ"
+}
+
+test_packets_and_lines_of_the_log_say_the_same() {
+    session
+    finish
+    compare_with_log
+}
+
+# Frames of Modbus RTU end with a silence, not with a byte.
+test_frames_that_end_with_a_silence_are_packets() {
+    serve bus --device pmc-2hs --device-option face=modbus --wire "$folder/bus.pcapng" --wire "$folder/bus.log"
+    exec 3<>"$folder/bus"
+    dialogue 3 "01 03 04 4E 00 08 25 2B" "01 03 10 00 0a 01 90 01 90 00 32 00 0a 00 64 03 e8 1f 40 b0 16" "parameters"
+    say_bytes 3 "01 03 04 4E 00 08 25 2C" # a wrong check value
+    soon "the frame is logged" grep -q 'dropped' "$folder/bus.log"
+    dialogue 3 "01 05 00 00 FF 00 8C 3A" "01 85 01 83 50" "an unknown function"
+    finish
+    same "0x01 0x02 0x01 0x01 0x02" "$(echo $(fields rtacser.eventtype))" "directions"
+    same "0 0 1 0 0" "$(echo $(fields frame.packet_flags_crc_error | sed 's/True/1/; s/False/0/'))" "wrong check values"
+    same "0103044e0008252b 010310000a01900190… 0103044e0008252c 01050000ff008c3a 0185018350" \
+        "$(echo $(fields data.data | tr -d ':' | sed 's/^\(010310.\{12\}\).*/\1…/'))" "bytes"
+    compare_with_log
 }
 
 test_a_display_filter_finds_what_was_refused_or_dropped() {
