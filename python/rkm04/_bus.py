@@ -272,7 +272,8 @@ class Bus:
         self._names: Optional[List[str]] = None
         self._snapshots = 0
         self._messages = Events(transport, ["message"], None, None)
-        self._dialogue = Dialogue(self._messages.take)
+        self._device: Optional[Dict[str, Any]] = None
+        self._dialogue = Dialogue(self._messages.take, device=lambda: str(self._kind["name"]))
 
     # ---- Anything ----
 
@@ -310,6 +311,12 @@ class Bus:
     def device(self) -> Dict[str, Any]:
         """What the units are: `name`, how many `axes`, `inputs`, `outputs`, …"""
         return self.call("device")
+
+    @property
+    def _kind(self) -> Dict[str, Any]:
+        if self._device is None:
+            self._device = self.device
+        return self._device
 
     @property
     def units(self) -> List[Unit]:
@@ -423,9 +430,10 @@ class Bus:
         self.send(node, message)
         heard = self._transport.hear_message(to_us(limit))
         if heard is None:
-            raise NoAnswerError(f"expected an answer of node {node} to {Message(bytes(message)).words} within "
+            words = Message(bytes(message), False, str(self._kind["name"])).words
+            raise NoAnswerError(f"expected an answer of node {node} to {words} within "
                                 f"{_seconds(to_us(limit))}, seen none at {_seconds(self.now)}")
-        return Message(heard, True)
+        return Message(heard, True, str(self._kind["name"]))
 
     @property
     def dialogue(self) -> Dialogue:

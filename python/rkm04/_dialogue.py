@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Optional, Union, overload
 
 from ._errors import always_shown
-from ._message import Kind, Message, number_of
+from ._message import RKM04, Kind, Message, number_of
 from ._time import Time, to_us
 
 if TYPE_CHECKING:
@@ -26,9 +26,10 @@ class Exchange:
     refused: what the unit objects to, in words; None: nothing.
     """
 
-    __slots__ = ("tick", "end", "node", "request", "answer", "dropped", "refused", "events")
+    __slots__ = ("tick", "end", "node", "request", "answer", "dropped", "refused", "events", "device")
 
-    def __init__(self, event: Dict[str, Any]) -> None:
+    def __init__(self, event: Dict[str, Any], device: str = RKM04) -> None:
+        self.device = device
         self.tick: int = event["start_us"]
         self.end: int = event["t_us"]
         self.node: Optional[int] = None
@@ -47,10 +48,10 @@ class Exchange:
         self.refused = self.refused or event["refused"]
         data = bytes.fromhex(event["message"])
         if event["answer"]:
-            self.answer = Message(data, True) if data else self.answer
+            self.answer = Message(data, True, self.device) if data else self.answer
             self.node = self.node if self.node is not None else _sender(event)
         else:
-            self.request = Message(data) if data else None
+            self.request = Message(data, False, self.device) if data else None
             self.node = event["dnode"] if data else None
 
     @property
@@ -90,8 +91,10 @@ class Count(int):
 class Dialogue(Base):
     """A list of exchanges, in the order in which they began. That of a bus grows with it; what its methods return does not."""
 
-    def __init__(self, pull: Optional[Callable[[], List[Dict[str, Any]]]] = None, exchanges: Sequence[Exchange] = ()) -> None:
+    def __init__(self, pull: Optional[Callable[[], List[Dict[str, Any]]]] = None, exchanges: Sequence[Exchange] = (),
+                 device: Callable[[], str] = lambda: RKM04) -> None:
         self._pull = pull
+        self._device = device
         self._exchanges: List[Exchange] = list(exchanges)
         self._open: List[Exchange] = []
         self._sought = ""
@@ -109,16 +112,17 @@ class Dialogue(Base):
             self._open.remove(waiting)
             waiting._add(event)
             return
-        exchange = Exchange(event)
+        exchange = Exchange(event, self._device())
         self._exchanges.append(exchange)
         if exchange.request is not None and exchange.dropped is None:
             self._open.append(exchange)
             del self._open[:-16]
 
     def _find_open(self, event: Dict[str, Any]) -> Optional[Exchange]:
-        """The request that an answer belongs to: the last one to that unit, with its number if the answer has one."""
+        """The request that an answer belongs to: the last one to that unit, with its number if the answer has one, as those of
+        an RKM04."""
         node = _sender(event)
-        number = event["value"]
+        number = event["value"] if self._device() == RKM04 else None
         for exchange in reversed(self._open):
             if node is not None and exchange.node not in (node, 0):
                 continue

@@ -407,11 +407,13 @@ def bus_made(bus: Any) -> None:
 
 def facts_of(bus: Any) -> Facts:
     """What the first run shows of a bus."""
-    events = sorted((event for exchange in bus.dialogue for event in exchange.events), key=lambda event: int(event["start_us"]))
+    events = sorted(((event, exchange.device) for exchange in bus.dialogue for event in exchange.events),
+                    key=lambda each: int(each[0]["start_us"]))
     requests = answers = 0
     messages = []
-    for event in events:
-        words = Message(bytes.fromhex(event["message"]), event["answer"]).words if event["message"] else "a broken frame"
+    for event, device in events:
+        data = bytes.fromhex(event["message"])
+        words = Message(data, event["answer"], device).words if data else "a broken frame"
         if event["answer"]:
             answers += 1
             text = f"answer {answers} ({words})"

@@ -7,6 +7,9 @@ from typing import Optional, Union
 
 from . import _sim
 
+RKM04 = "rkm04"
+"""The device whose messages these are, unless another is named."""
+
 NAMES = {
     1: "Version",
     2: "Set Command",
@@ -34,50 +37,58 @@ def number_of(kind: Kind) -> int:
 class Message:
     """A request or an answer.
 
-    data: its bytes, the number first. is_answer: it comes from a unit.
+    data: its bytes, of an RKM04 the number first. is_answer: it comes from a unit. device: what kind of unit.
     """
 
-    __slots__ = ("data", "is_answer")
+    __slots__ = ("data", "is_answer", "device")
 
-    def __init__(self, data: bytes, is_answer: bool = False) -> None:
+    def __init__(self, data: bytes, is_answer: bool = False, device: str = RKM04) -> None:
         self.data = data
         self.is_answer = is_answer
+        self.device = device
+
+    @property
+    def _numbered(self) -> bytes:
+        """The data if they begin with a number: those of an RKM04 do."""
+        return self.data if self.device == RKM04 else b""
 
     @property
     def number(self) -> Optional[int]:
-        """Its number, 0 to 255: an answer has that of its request; 255: the unit does not know the request."""
-        return self.data[0] if self.data else None
+        """Its number, 0 to 255: an answer has that of its request; 255: the unit does not know the request. None: it has none, as
+        those of other devices than the RKM04."""
+        return self._numbered[0] if self._numbered else None
 
     @property
     def name(self) -> str:
         """ "Set Command", …; "" if the number is none of the manual's."""
-        return NAMES.get(self.data[0], "") if self.data else ""
+        return NAMES.get(self.number, "") if self.number is not None else ""
 
     @property
     def motor(self) -> Optional[int]:
         """The motor that it is about, 1 to 4; 0: all. None: about none."""
-        if len(self.data) < 2 or not 2 <= self.data[0] <= 7 or not 0x30 <= self.data[1] <= 0x39:
+        data = self._numbered
+        if len(data) < 2 or not 2 <= data[0] <= 7 or not 0x30 <= data[1] <= 0x39:
             return None
-        return self.data[1] - 0x30
+        return data[1] - 0x30
 
     @property
     def text(self) -> str:
-        """What stands behind number and motor, as characters: the program of a Set Command, the program in the answer to a
-        Get Command, the version."""
-        return self.data[2:].decode("latin-1")
+        """What follows number and motor, as characters: the program of a Set Command, the program in the answer to a Get
+        Command, the version. Of other devices than the RKM04 all of it."""
+        return self.data[2 if self.device == RKM04 else 0:].decode("latin-1")
 
     @property
     def flag(self) -> Optional[int]:
         """Of the answer to a Set Command, 0: accepted, 1: wrong value, 2: unknown command, 3: memory overflowed; of that to a
         Store Flash, 0: written."""
-        if self.is_answer and len(self.data) >= 3 and self.data[0] in (2, 3):
+        if self.is_answer and len(self._numbered) >= 3 and self.data[0] in (2, 3):
             return self.data[2]
         return None
 
     @property
     def words(self) -> str:
         """In words, as in the log of --wire: `2 Set Command m1 "F5000 R"`."""
-        return _sim.words(self.data, self.is_answer)
+        return _sim.words(self.data, self.is_answer, self.device)
 
     def __bytes__(self) -> bytes:
         return self.data

@@ -18,25 +18,34 @@ if TYPE_CHECKING:
 UnitName = Union[int, str]
 """A unit by its address at the start, 3 or "3"; the second one with the same address is "3-2"."""
 
+BitName = Union[int, str]
+"""An input, output or variable by its number; an input or output by the name that the device has for it."""
+
 Level = Union[bool, int]
 """The level of an input or output, 0 or 1."""
 
 
 class Bits:
-    """Inputs, outputs or variables of a unit by their numbers: `bus.do[3]`. As an int: the mask, the first one in bit 0."""
+    """Inputs, outputs or variables of a unit by their numbers: `bus.do[3]`; where the device has names for them, by those, too:
+    `bus.di["x.near"]`. As an int: the mask, the first one in bit 0."""
 
-    def __init__(self, unit: "Unit", member: str, first: int, count: int) -> None:
+    def __init__(self, unit: "Unit", member: str, first: int, count: int, names: List[str]) -> None:
         self._unit = unit
         self._member = member
         self._first = first
         self._count = count
+        self._names = names
 
-    def _place(self, number: int) -> int:
-        if isinstance(number, bool) or not self._first <= number < self._first + self._count:
-            raise IndexError(f"expected {self._member} {self._first} to {self._first + self._count - 1}, found {number!r}")
+    def _place(self, number: BitName) -> int:
+        if isinstance(number, str) and number in self._names:
+            return self._names.index(number)
+        if isinstance(number, bool) or not isinstance(number, int) or not self._first <= number < self._first + self._count:
+            numbers = f"{self._first} to {self._first + self._count - 1}" if self._count > 0 else "none"
+            names = f" or {', '.join(self._names)}" if self._names else ""
+            raise IndexError(f"expected {self._member} {numbers}{names}, found {number!r}")
         return number - self._first
 
-    def __getitem__(self, number: int) -> int:
+    def __getitem__(self, number: BitName) -> int:
         place = self._place(number)
         return self.mask >> place & 1
 
@@ -57,26 +66,27 @@ class Bits:
 
     @always_shown
     def __repr__(self) -> str:
-        on = [str(self._first + place) for place, level in enumerate(self) if level]
+        names = self._names or [str(self._first + place) for place in range(self._count)]
+        on = [name for name, level in zip(names, self) if level]
         return f"<{self._member} on: {' '.join(on) or 'none'}>"
 
 
 class Inputs(Bits):
-    """The inputs DI 01 to DI 08 of a unit: `bus.di[3] = 1`."""
+    """The inputs of a unit: `bus.di[3] = 1`."""
 
-    def __setitem__(self, number: int, level: Level) -> None:
+    def __setitem__(self, number: BitName, level: Level) -> None:
         self._place(number)
         if level not in (0, 1):
             raise ValueError(f"expected level 0 or 1, found {level!r}")
         self._unit._call("di.set", di={str(number): int(level)})
 
-    def set(self, levels: Mapping[int, Level]) -> List[int]:
+    def set(self, levels: Mapping[BitName, Level]) -> List[int]:
         """Set several at once. Returns those that keep another level, because the plant or an injected fault holds them."""
         result = self._unit._call("di.set", di={str(number): int(level) for number, level in levels.items()})
         return list(result["overridden"])
 
     def set_mask(self, mask: int) -> List[int]:
-        """Set all eight, DI 01 in bit 0; 0 to 255. Returns as set()."""
+        """Set all of them, the first one in bit 0. Returns as set()."""
         return list(self._unit._call("di.set", mask=mask)["overridden"])
 
 
@@ -212,9 +222,9 @@ class Unit:
         return int(self.state["node"])
 
     def motor(self, number: int) -> Motor:
-        """Motor 1 to 4."""
+        """One of its motors: 1 to 4 of an RKM04."""
         if isinstance(number, bool) or not isinstance(number, int) or number < 1:
-            raise ValueError(f"expected a motor from 1 to 4, found {number!r}")
+            raise ValueError(f"expected a motor from 1 to {self.bus._kind['axes']}, found {number!r}")
         return Motor(self, number)
 
     @property
@@ -224,18 +234,20 @@ class Unit:
 
     @property
     def di(self) -> Inputs:
-        """DI 01 to DI 08."""
-        return Inputs(self, "di", 1, 8)
+        """Its inputs: DI 01 to DI 08 of an RKM04."""
+        kind = self.bus._kind
+        return Inputs(self, "di", 1, int(kind["inputs"]), kind.get("input_names", []))
 
     @property
     def do(self) -> Bits:
-        """DO 01 to DO 08."""
-        return Bits(self, "do", 1, 8)
+        """Its outputs: DO 01 to DO 08 of an RKM04."""
+        kind = self.bus._kind
+        return Bits(self, "do", 1, int(kind["outputs"]), kind.get("output_names", []))
 
     @property
     def var(self) -> Bits:
-        """VAR 80 to VAR 95."""
-        return Bits(self, "var", 80, 16)
+        """Its variables: VAR 80 to VAR 95 of an RKM04."""
+        return Bits(self, "var", int(self.bus._kind["first_variable"]), int(self.bus._kind["variables"]), [])
 
     @property
     def power(self) -> Power:

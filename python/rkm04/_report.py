@@ -45,20 +45,21 @@ def sections(bus: Any, nodeid: str, directory: Path) -> Iterator[Tuple[str, str]
 
 def dialogue_lines(dialogue: Dialogue) -> List[str]:
     """A dialogue as in the log of --wire, the last lines of it."""
-    events = sorted((event for exchange in dialogue for event in exchange.events), key=lambda event: int(event["t_us"]))
-    lines = [_event_line(event) for event in events[-_LINES:]]
+    events = sorted(((event, exchange.device) for exchange in dialogue for event in exchange.events),
+                    key=lambda each: int(each[0]["t_us"]))
+    lines = [_event_line(event, device) for event, device in events[-_LINES:]]
     if len(events) > _LINES:
         lines.insert(0, f"({len(events) - _LINES} earlier messages)")
     return lines
 
 
-def _event_line(event: Any) -> str:
+def _event_line(event: Any, device: str) -> str:
     sender = "+".join("host" if name == "master" else str(name) for name in event["from"])
     data = bytes.fromhex(event["message"])
     if event["dropped"] is not None and not data:
         what = f"dropped: {event['dropped']}"
     else:
-        what = Message(data, event["answer"]).words
+        what = Message(data, event["answer"], device).words
         what += f"; dropped: {event['dropped']}" if event["dropped"] is not None else ""
     what += f"; refused: {event['refused']}" if event["refused"] is not None else ""
     receiver = "" if not data else " > host" if event["answer"] else f" > {event['dnode'] or 'all'}"

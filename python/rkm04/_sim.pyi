@@ -16,8 +16,8 @@ class ClosedError(Error): ...
 def time(text: str) -> int:
     """us of a time with a unit, "250us", "20ms", "1.5s". Raises ValueError."""
 
-def words(message: bytes, answer: bool) -> str:
-    """A message without framing in words, as in a log of --wire."""
+def words(message: bytes, answer: bool, device: str) -> str:
+    """A message of a device without framing in words, as in a log of --wire. Raises ValueError for an unknown device."""
 
 def frame(framing: str, node: int, message: bytes) -> bytes:
     """The bytes on the wires of a message to a node, 0 to 255; framing: "hdlc" or "plain"."""

@@ -50,17 +50,20 @@ static PyObject *module_time(PyObject *module, PyObject *text)
 static PyObject *module_words(PyObject *module, PyObject *args)
 {
     (void)module;
-    const char *message;
+    const char *message, *device;
     Py_ssize_t length;
     int answer;
-    if (!PyArg_ParseTuple(args, "y#p:words", &message, &length, &answer))
+    if (!PyArg_ParseTuple(args, "y#ps:words", &message, &length, &answer, &device))
         return NULL;
+    const struct device_kind *kind = device_kind_named(device);
+    if (!kind)
+        return PyErr_Format(PyExc_ValueError, "unknown device %s", device);
     char *text = malloc(WIRE_WORDS_MAX);
     if (!text)
         return PyErr_NoMemory();
     struct wire_text out = {.text = text, .room = WIRE_WORDS_MAX};
     if (length > 0)
-        wire_words_message(&out, rkm04_device.words, (const uint8_t *)message, (size_t)length, answer != 0);
+        wire_words_message(&out, kind->words, (const uint8_t *)message, (size_t)length, answer != 0);
     PyObject *result = PyUnicode_FromString(wire_text_end(&out));
     free(text);
     return result;

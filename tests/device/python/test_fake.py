@@ -26,21 +26,29 @@ def silent():
 
 def test_a_device_without_a_bus_moves_and_is_waited_for(alone):
     motor = alone.unit(1).motor(1)
-    assert alone.call("alone.obey", text="MOVE 5") == {"answer": "OK"}
-    assert motor.wait(position=3, limit="1s") == 30000
+    assert alone.call("alone.obey", text="MOVE 5")["answer"] == "OK"
+    assert motor.wait(position=3, limit="1s") == 30001
     motor.wait(state="idle", limit="1s")
     assert motor.position == 5
-    assert alone.now == 50000
+    assert alone.now == 50001
 
 
 def test_inputs_and_outputs_of_a_device_without_a_bus(alone):
     unit = alone.unit(1)
-    unit.di[1] = 1
-    assert unit.di[1] == 1
-    unit.di["lmt+"] = 0
+    unit.di["lmt+"] = 1
+    assert unit.di[1] == unit.di["lmt+"] == 1 and len(unit.di) == 3
+    assert repr(unit.di) == "<di on: lmt+>"
+    assert unit.di.set({"lmt+": 0, "near": 1, 3: 1}) == []
+    assert int(unit.di) == 6
     alone.call("alone.obey", text="OUT 1")
     alone.advance("1ms")
-    assert unit.do[1] == 1
+    assert list(unit.do) == [1, 0, 0, 0, 0] and unit.do["lamp"] == 1
+    with pytest.raises(IndexError, match=r"expected di 1 to 3 or lmt\+, near, DI3, found 'far'"):
+        unit.di["far"] = 1
+    with pytest.raises(IndexError, match="expected do 1 to 5 or lamp, a1, b1, a2, b2, found 6"):
+        unit.do[6]
+    with pytest.raises(IndexError, match="expected var none, found 1"):
+        unit.var[1]
 
 
 def test_messages_of_a_device_without_a_bus_are_refused(alone):
@@ -94,7 +102,7 @@ def test_time_passes_until_the_silence_is_over_and_no_longer(silent):
 
 
 def test_messages_with_a_wrong_check_value_are_no_answers(silent):
-    silent.faults.inject("flip", mask=1, direction="to_host", count=1)
+    silent.faults.inject("flip", mask=1, direction="to_master", count=1)
     with pytest.raises(rkm04.NoAnswerError):
         silent.exchange(1, b"POS?", limit="100ms")
     assert bytes(silent.exchange(1, b"POS?")) == b"0"
@@ -107,6 +115,9 @@ def test_dialogue_of_messages_that_end_with_a_silence(silent):
     (exchange,) = silent.dialogue
     assert bytes(exchange.request) == b"POS?"
     assert bytes(exchange.answer) == b"0"
+    assert exchange.node == 1
+    assert exchange.words == "request POS? | 0"
+    assert exchange.request.text == "POS?" and exchange.request.number is None and exchange.answer.motor is None
 
 
 def test_a_message_is_as_long_as_the_device_takes(silent):
