@@ -8,6 +8,7 @@ import os
 import select
 import shutil
 import socket
+import stat
 import subprocess
 import tempfile
 import termios
@@ -25,8 +26,24 @@ PATIENCE = 30.0
 """s of real time for what rkm04 does at once."""
 
 
+def _connect(path: str) -> socket.socket:
+    """A Unix socket. A path of one has at most 107 bytes: a longer one is reached through its folder."""
+    made, folder = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM), -1
+    try:
+        if len(os.fsencode(path)) > 107:
+            folder = os.open(os.path.dirname(path), os.O_PATH)
+        made.connect(path if folder < 0 else f"/proc/self/fd/{folder}/{os.path.basename(path)}")
+    except OSError:
+        made.close()
+        raise
+    finally:
+        if folder >= 0:
+            os.close(folder)
+    return made
+
+
 class ControlSocket(Transport):
-    """JSON-RPC, one object a line."""
+    """JSON-RPC, one object a line. path: of the socket, or of the control file of a TCP port."""
 
     def __init__(self, path: str, link: Optional[str]) -> None:
         self._path = path
@@ -36,25 +53,28 @@ class ControlSocket(Transport):
         self._events: Dict[int, List[Dict[str, Any]]] = {}
         self._lost = 0
         self._host: Optional[PtyHost] = None
-        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
-            self._connect(path)
+            self._socket = self._enter(path) if stat.S_ISREG(os.stat(path).st_mode) else _connect(path)
         except OSError as error:
-            self._socket.close()
             raise Error(f"expected the control socket of a running rkm04 serve at {path}, found: {error.strerror or error}") \
                 from None
         self.framing: str = self.call("units", {}).get("framing", "hdlc")
 
-    def _connect(self, path: str) -> None:
-        """A path of a socket has at most 107 bytes: a longer one is reached through its folder."""
-        if len(os.fsencode(path)) <= 107:
-            self._socket.connect(path)
-            return
-        folder = os.open(os.path.dirname(path), os.O_PATH)
+    def _enter(self, path: str) -> socket.socket:
+        """The TCP port of a control file, with its token shown."""
+        with open(path, encoding="ascii", errors="replace") as file:
+            parts = file.read(200).split()
+        host, _, port = parts[0][len("tcp:"):].rpartition(":") if len(parts) == 2 else ("", "", "")
+        if not parts or not parts[0].startswith("tcp:") or not port.isdecimal():
+            raise Error(f"expected the control socket of a running rkm04 serve at {path}, found another file")
+        self._socket = socket.create_connection((host.strip("[]"), int(port)))
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         try:
-            self._socket.connect(f"/proc/self/fd/{folder}/{os.path.basename(path)}")
-        finally:
-            os.close(folder)
+            self.call("authenticate", {"token": parts[1]})
+        except BaseException:
+            self._socket.close()
+            raise
+        return self._socket
 
     def _line(self) -> Dict[str, Any]:
         while b"\n" not in self._rest:
@@ -290,7 +310,7 @@ class RemoteBus(Bus):
 
 
 def connect(path: "Union[str, os.PathLike[str]]", link: "Union[None, str, os.PathLike[str]]" = None) -> RemoteBus:
-    """The bus of a running `rkm04 serve`, by the path of its control socket.
+    """The bus of a running `rkm04 serve`, by the path of its control socket or control file.
 
     link: the link to its pty, for send(), exchange() and host; if left out, the path without ".control" if that is there.
     """

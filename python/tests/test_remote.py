@@ -14,8 +14,15 @@ def bus():
         yield bus
 
 
-@pytest.fixture(params=["in process", "served"])
-def either(request, bus):
+@pytest.fixture(scope="module")
+def tcp_bus():
+    with rkm04.serve(units="1,2", clock="stepped", arguments=["--control", "tcp:0"]) as bus:
+        yield bus
+
+
+@pytest.fixture(params=["in process", "served", "over TCP"])
+def either(request, bus, tcp_bus):
+    bus = tcp_bus if request.param == "over TCP" else bus
     if request.param == "in process":
         with rkm04.Bus(units="1,2", timed=False) as own:
             yield own
@@ -80,6 +87,20 @@ def test_connect(bus):
 def test_nothing_there_says_so(tmp_path):
     with pytest.raises(rkm04.Error, match="expected the control socket of a running rkm04 serve at .*nothing"):
         rkm04.connect(tmp_path / "nothing")
+
+
+def test_connect_with_a_control_file(tcp_bus, tmp_path):
+    file = tcp_bus.ready["control"]
+    with rkm04.connect(file) as other:
+        assert other.unit(2).motor(1).position == tcp_bus.unit(2).motor(1).position
+        assert other.link == tcp_bus.link
+    with open(file, encoding="ascii") as content:
+        address, token = content.read().split()
+    for text, found in [(f"{address} {token[:-1]}x", "token: wrong"), (f"{address}", "another file"), ("", "another file"),
+                        (f"tcp:127.0.0.1:1 {token}", "refused"), ("diary of a user", "another file")]:
+        (tmp_path / "wrong").write_text(text, encoding="ascii")
+        with pytest.raises(rkm04.Error, match=found):
+            rkm04.connect(tmp_path / "wrong")
 
 
 def test_a_long_path(tmp_path):

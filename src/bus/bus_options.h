@@ -52,7 +52,9 @@ struct bus_options {
     const char *trace[BUS_FILES_MAX], *wire[BUS_FILES_MAX]; /* patterns; NULL: no more */
     const char *record;         /* pattern; NULL: none */
     unsigned output_flags;      /* of output_file.h: --force */
-    const char *control;        /* socket; NULL: the default */
+    const char *control;        /* socket, or file of a TCP port; NULL: the default */
+    const char *control_file;   /* as it was given; NULL: it was not */
+    const char *control_tcp;    /* address of the TCP port; NULL: none is asked for */
     bool no_control;
     const char *window;         /* ADDRESS:PORT of --window; NULL: none */
     bool verbose;

@@ -3,7 +3,7 @@
  *
  *     client_request, client_send, client_answer    requests to a unit over a port, and its answers
  *     client_port, client_link                      the port: pty, device or TCP; one client at a time
- *     client_control*, client_rpc                   methods of a control socket
+ *     client_control*, client_rpc, client_socket    methods of a control socket
  *     client_watch, client_panel                    the front panel in a terminal
  *     client_find                                   the emulators that are running
  *     client_report                                 where messages about ports go

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "client_find.h"
 
+#include <dirent.h>
 #include <err.h>
 #include <jansson.h>
 #include <stdio.h>
@@ -10,17 +11,18 @@
 #include <unistd.h>
 
 #include "client_rpc.h"
+#include "client_socket.h"
 
 #define ENDING ".control"
 #define ANSWER_MS 500
 
-/* Is `path` a socket of this user that ends like a control socket? */
+/* Is `path` a socket, or a file as control files are, of this user that ends like a control socket? */
 static bool is_candidate(const char *path)
 {
     struct stat found;
     size_t length = strlen(path), end = sizeof ENDING - 1;
     return path[0] == '/' && length > end && strcmp(path + length - end, ENDING) == 0 && stat(path, &found) == 0 &&
-           S_ISSOCK(found.st_mode) && found.st_uid == geteuid();
+           (S_ISSOCK(found.st_mode) || S_ISREG(found.st_mode)) && found.st_uid == geteuid();
 }
 
 static bool is_known(const struct client_found *found, size_t count, const char *path)
@@ -62,10 +64,26 @@ static bool ask(struct client_found *found, const char *path)
     return answered;
 }
 
+/* Add those with a control file in `folder` to `count` that are known. Returns their number. */
+static size_t find_in_folder(struct client_found found[CLIENT_FOUND_MAX], size_t count, const char *folder)
+{
+    DIR *opened = opendir(folder);
+    const struct dirent *entry;
+    char path[PATH_MAX];
+    while (opened != NULL && count < CLIENT_FOUND_MAX && (entry = readdir(opened)) != NULL)
+        if (snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) < (int)sizeof path && is_candidate(path) &&
+            !is_known(found, count, path))
+            count += ask(&found[count], path);
+    if (opened != NULL)
+        closedir(opened);
+    return count;
+}
+
+/* Unix sockets wherever they are; control files in the folders of default links. */
 size_t client_find(struct client_found found[CLIENT_FOUND_MAX])
 {
     FILE *sockets = fopen("/proc/net/unix", "re");
-    char line[PATH_MAX + 128];
+    char line[PATH_MAX + 128], folder[PATH_MAX];
     size_t count = 0;
     while (sockets != NULL && count < CLIENT_FOUND_MAX && fgets(line, sizeof line, sockets) != NULL) {
         char *path = strchr(line, '/');
@@ -77,6 +95,8 @@ size_t client_find(struct client_found found[CLIENT_FOUND_MAX])
     }
     if (sockets != NULL)
         fclose(sockets);
+    for (unsigned i = 0; client_socket_folder(i, folder); i++)
+        count = find_in_folder(found, count, folder);
     return count;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* client_find.h: the emulators of this user that are running now: those that answer on a control socket (/proc/net/unix). */
+/* client_find.h: the emulators of this user that are running now: those that answer on a control socket
+ * (/proc/net/unix), or at the address of a control file in the folders of default links. */
 #ifndef RKM04_CLIENT_FIND_H
 #define RKM04_CLIENT_FIND_H
 

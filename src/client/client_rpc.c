@@ -3,46 +3,38 @@
 
 #include <err.h>
 #include <errno.h>
-#include <poll.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "client_port.h"
-#include "options/options.h"
+#include "client_socket.h"
 
 #define LINE_MAX_BYTES (64u << 20) /* longest object believed to be an answer */
 #define ROOM_FIRST 65536u
+#define ENTRY_MS 10000 /* for the answer to the token */
 
 /* ---- The default ------------------------------------------------------------------------------------------------------ */
 
-static bool put_path(char found[PATH_MAX], const char *format, const char *folder, unsigned long user)
-{
-    return snprintf(found, PATH_MAX, format, folder, user) < PATH_MAX;
-}
-
-/* As link_path.c finds the default link, of line 0. */
+/* As link_path.c finds the default link, of line 0: the emulator may have had no use for the first folder. */
 static bool default_path(char found[PATH_MAX])
 {
-    const char *base = getenv("XDG_RUNTIME_DIR");
-    if (base != NULL && base[0] == '/') {
-        if (!put_path(found, "%s/rkm04/bus0.control", base, 0))
+    char folder[PATH_MAX], first[PATH_MAX] = "";
+    for (unsigned i = 0; client_socket_folder(i, folder); i++) {
+        if (snprintf(found, PATH_MAX, "%s/bus0.control", folder) >= PATH_MAX)
             return false;
         if (access(found, F_OK) == 0)
-            return true; /* otherwise the emulator may have had no use for that folder */
+            return true;
+        if (first[0] == '\0')
+            strcpy(first, found);
     }
-    const char *temporary = getenv("TMPDIR");
-    char other[PATH_MAX];
-    if (!put_path(other, "%s/rkm04-%lu/bus0.control", temporary != NULL && temporary[0] == '/' ? temporary : "/tmp", geteuid()))
-        return false;
-    if (base == NULL || base[0] != '/' || access(other, F_OK) == 0)
-        strcpy(found, other);
-    return true;
+    strcpy(found, first);
+    return first[0] != '\0';
 }
 
 bool client_rpc_path(const char *path, char found[PATH_MAX])
@@ -69,10 +61,10 @@ static void report(struct client_rpc *rpc, const char *format, ...)
         warnx("%s", rpc->trouble);
 }
 
-static const char *connect_advice(const char *path, int error)
+static const char *connect_advice(const char *path, bool is_tcp, int error)
 {
     struct stat found;
-    if (stat(path, &found) == 0 && !S_ISSOCK(found.st_mode))
+    if (!is_tcp && stat(path, &found) == 0 && !S_ISSOCK(found.st_mode))
         return "; expected the control socket of `rkm04 serve', by default LINK.control";
     switch (error) {
     case ENOENT:
@@ -88,59 +80,75 @@ static const char *connect_advice(const char *path, int error)
     }
 }
 
-/* Is it an emulator of another user? Another user may have made the default folder before us. */
-static bool is_foreign(const struct client_rpc *rpc)
+/* What a control file has (docs/CONTROL.md). */
+struct entrance {
+    char address[80], token[65];
+    bool foreign; /* the file is another user's */
+};
+
+/* Returns false if it is no control file. */
+static bool read_entrance(struct entrance *entrance, const char *path)
 {
-    struct ucred peer;
-    socklen_t size = sizeof peer;
-    return getsockopt(rpc->fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0 || (peer.uid != geteuid() && peer.uid != 0);
+    char line[160] = "";
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    ssize_t length = fd >= 0 ? read(fd, line, sizeof line - 1) : -1;
+    bool ok = length > 0 && sscanf(line, "tcp:%79s %64s", entrance->address, entrance->token) == 2;
+    entrance->foreign = ok && client_socket_is_foreign_file(fd);
+    if (fd >= 0)
+        close(fd);
+    return ok;
 }
 
-/* Connect to rpc->path. Returns false and errno if that does not work; rpc->fd is left to the caller. */
-static bool connect_to(struct client_rpc *rpc)
+/* Show the token. Returns false if that did not let us in (reported). */
+static bool authenticate(struct client_rpc *rpc, const char *token)
 {
-    struct sockaddr_un address;
-    int folder;
-    bool connected = socket_address_find(rpc->path, &address, &folder) &&
-                     (rpc->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) >= 0 &&
-                     connect(rpc->fd, (const struct sockaddr *)&address, sizeof address) == 0;
-    int error = errno;
-    if (folder >= 0)
-        close(folder);
-    errno = error;
-    return connected;
+    json_t *json;
+    enum client_rpc_outcome outcome =
+        client_rpc_call(rpc, "authenticate", json_pack("{s:s}", "token", token), ENTRY_MS, &json);
+    const char *message = json_string_value(json_object_get(json, "message"));
+    if (outcome == CLIENT_RPC_REFUSED)
+        report(rpc, "%s: the emulator refuses: %s", rpc->path, message != NULL ? message : "");
+    else if (outcome == CLIENT_RPC_NOTHING)
+        report(rpc, "%s: no answer from the emulator", rpc->path);
+    json_decref(json);
+    return outcome == CLIENT_RPC_RESULT;
 }
 
 bool client_rpc_open(struct client_rpc *rpc, const char *path)
 {
     const char *chosen = path != NULL ? path : getenv("RKM04_CONTROL");
+    struct entrance entrance;
     if (!client_rpc_path(path, rpc->path))
         return false;
+    const bool is_named = chosen != NULL && chosen[0] != '\0', is_tcp = read_entrance(&entrance, rpc->path);
     rpc->fd = -1;
-    bool connected = connect_to(rpc);
+    if (!is_tcp || is_named || !entrance.foreign)
+        rpc->fd = is_tcp ? client_socket_open_tcp(entrance.address) : client_socket_open(rpc->path);
     int error = errno;
-    if (connected && ((chosen != NULL && chosen[0] != '\0') || !is_foreign(rpc)))
-        return true;
-    if (connected)
+    bool is_foreign = !is_named && (is_tcp ? entrance.foreign : rpc->fd >= 0 && client_socket_is_foreign(rpc->fd));
+    if (is_foreign)
         report(rpc, "%s: it belongs to another user's emulator; to use it, name it: --control PATH", rpc->path);
-    else
-        report(rpc, "cannot connect to %s: %s%s", rpc->path, strerror(error), connect_advice(rpc->path, error));
+    else if (rpc->fd < 0)
+        report(rpc, "cannot connect to %s: %s%s", rpc->path, strerror(error), connect_advice(rpc->path, is_tcp, error));
+    else if (!is_tcp || authenticate(rpc, entrance.token))
+        return true;
     if (rpc->fd >= 0)
-        close(rpc->fd);
+        client_rpc_close(rpc);
     return false;
 }
 
 void client_rpc_close(struct client_rpc *rpc)
 {
-    close(rpc->fd);
+    client_socket_close(rpc->fd);
     free(rpc->buffer);
     rpc->buffer = NULL;
+    rpc->begin = rpc->length = rpc->room = 0;
 }
 
 static bool write_all(struct client_rpc *rpc, const char *bytes, size_t length)
 {
     while (length > 0) {
-        ssize_t done = send(rpc->fd, bytes, length, MSG_NOSIGNAL);
+        ssize_t done = client_socket_write(rpc->fd, bytes, length);
         if (done < 0 && errno == EINTR)
             continue;
         if (done < 0) {
@@ -204,15 +212,13 @@ static bool make_room(struct client_rpc *rpc)
 /* Read what there is, waiting for it up to `timeout_ms`. Returns CLIENT_RPC_RESULT if something came. */
 static enum client_rpc_outcome read_bytes(struct client_rpc *rpc, int timeout_ms)
 {
-    struct pollfd ready = {.fd = rpc->fd, .events = POLLIN};
-    int count = poll(&ready, 1, timeout_ms);
-    if (count == 0 || (count < 0 && errno == EINTR))
+    if (!client_socket_wait(rpc->fd, timeout_ms))
         return CLIENT_RPC_NOTHING;
     if (!make_room(rpc)) {
         report(rpc, "%s does not speak JSON-RPC: expected the control socket of `rkm04 serve'", rpc->path);
         return CLIENT_RPC_LOST;
     }
-    ssize_t length = read(rpc->fd, rpc->buffer + rpc->length, rpc->room - rpc->length);
+    ssize_t length = client_socket_read(rpc->fd, rpc->buffer + rpc->length, rpc->room - rpc->length);
     if (length < 0 && errno == EINTR)
         return CLIENT_RPC_NOTHING;
     if (length <= 0) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* client_rpc.h: the way to the control socket of an emulator: JSON-RPC 2.0, one object a line (docs/CONTROL.md). */
+/* client_rpc.h: the way to the control socket of an emulator: JSON-RPC 2.0, one object a line (docs/CONTROL.md). The path is that
+ * of a Unix socket, or of a control file with a TCP address and a token. */
 #ifndef RKM04_CLIENT_RPC_H
 #define RKM04_CLIENT_RPC_H
 

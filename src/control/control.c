@@ -3,10 +3,10 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "control_inside.h"
-#include "line/line.h"
+#include "control_socket.h"
+#include "control_system.h"
 
 #define BACKLOG 128
 #define BUDGET 500000u   /* ns a turn of the loop for the lines of all clients; a unit waits no longer */
@@ -103,6 +103,8 @@ static void remove_client(struct control_client *client)
     control_time_remove_client(client);
     control_subscribe_remove_client(client);
     control_restore_remove_client(client);
+    if (control_door_remove(client))
+        return;
     if (control->ender == client && control->open)
         call_shutdown(control);
     for (struct control_client **at = &control->clients; *at; at = &(*at)->next) {
@@ -120,7 +122,7 @@ static void remove_client(struct control_client *client)
 static void refuse_client(struct control_client *client)
 {
     struct refusal refusal;
-    refuse(&refusal, REFUSED_STATE, "too many clients: expected at most %u at a time", CONTROL_CLIENTS);
+    refuse(&refusal, REFUSED_STATE, CONTROL_TOO_MANY, CONTROL_CLIENTS);
     control_refuse(client, json_null(), &refusal);
     connection_flush(&client->connection);
     connection_close(&client->connection);
@@ -134,12 +136,19 @@ static struct control_client *client_of(const struct connection *connection)
 
 static bool on_line(struct connection *connection, const char *line, size_t length)
 {
-    return control_handle_line(client_of(connection), line, length);
+    struct control_client *client = client_of(connection);
+    if (!connection->stranger)
+        return control_handle_line(client, line, length);
+    control_door_line(client, line, length);
+    return true;
 }
 
 static void on_bad_line(struct connection *connection, int code, const char *text)
 {
-    control_refuse_line(client_of(connection), code, text);
+    if (connection->stranger)
+        control_door_refuse(client_of(connection));
+    else
+        control_refuse_line(client_of(connection), code, text);
 }
 
 static bool is_held(const struct connection *connection)
@@ -155,7 +164,7 @@ static bool is_expecting(const struct connection *connection)
 
 static bool is_queued(const struct connection *connection)
 {
-    return client_of(connection)->control->working;
+    return !connection->stranger && client_of(connection)->control->working;
 }
 
 static void on_lines_left(struct connection *connection)
@@ -206,33 +215,71 @@ static struct control_client *accept_client(struct control *control, uv_stream_t
     return connection_accept(&client->connection, control->loop, listener, &connection_calls) ? client : NULL;
 }
 
+void control_add_client(struct control_client *client)
+{
+    struct control *control = client->control;
+    client->next = control->clients;
+    control->clients = client;
+    control->client_count++;
+    control->calls.presence(control->calls.context);
+}
+
 static void on_connection(uv_stream_t *listener, int status)
 {
     struct control *control = listener->data;
     struct control_client *client = status == 0 ? accept_client(control, listener) : NULL;
     if (!client)
         return;
-    if (control->client_count == CONTROL_CLIENTS) {
+    if (client->connection.stranger) {
+        control_door_add(client);
+    } else if (control->client_count < CONTROL_CLIENTS) {
+        control_add_client(client);
+    } else {
         refuse_client(client);
         return;
     }
-    client->next = control->clients;
-    control->clients = client;
-    control->client_count++;
-    control->calls.presence(control->calls.context);
     connection_start(&client->connection);
 }
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
-static bool listen_at(struct control *control, int fd)
+static bool is_loopback(const char *digits)
 {
-    int error = uv_pipe_open(&control->listener, fd);
+    return strncmp(digits, "127.", 4) == 0 || strncmp(digits, "[::1]:", 6) == 0;
+}
+
+bool control_tcp_valid(const char *address)
+{
+    bool port = strchr(address, ':') == NULL || address[0] == ':';
+    return net_address_valid(address) && (port || is_loopback(address) || strncmp(address, "localhost:", 10) == 0);
+}
+
+/* Listen first: a client that finds the file can use it. */
+static bool listen_tcp(struct control *control, const char *path, const char *tcp)
+{
+    uv_tcp_init(control->loop, &control->listener.tcp);
+    const char *wrong = is_loopback(tcp) ? net_listen(&control->listener.tcp, tcp, on_connection, control->address)
+                                         : "it is not an address of the loopback interface";
+    if (wrong)
+        log_error("the control socket cannot listen at %s: %s", tcp, wrong);
+    return !wrong && control_file_token(control->token) &&
+           control_file_write(&control->place, path, control->address, control->token);
+}
+
+static bool listen_unix(struct control *control, const char *path)
+{
+    uv_pipe_init(control->loop, &control->listener.pipe, 0);
+    int fd = control_socket_open(&control->place, path);
+    if (fd < 0)
+        return false;
+    int error = uv_pipe_open(&control->listener.pipe, fd);
     if (error == 0)
-        error = uv_listen((uv_stream_t *)&control->listener, BACKLOG, on_connection);
-    if (error != 0)
-        log_error("cannot listen at the control socket %s: %s", control->socket.path, uv_strerror(error));
-    return error == 0;
+        error = uv_listen(&control->listener.stream, BACKLOG, on_connection);
+    if (error == 0)
+        return true;
+    log_error("cannot listen at the control socket %s: %s", path, uv_strerror(error));
+    control_place_release(&control->place);
+    return false;
 }
 
 static void make_handles(struct control *control)
@@ -242,7 +289,9 @@ static void make_handles(struct control *control)
     uv_idle_init(control->loop, &control->restoring);
     uv_timer_init(control->loop, &control->check);
     uv_timer_init(control->loop, &control->ending);
+    uv_timer_init(control->loop, &control->door);
     control->turn.data = control->work.data = control->restoring.data = control->check.data = control->ending.data = control;
+    control->door.data = control;
     control->open = true;
     uv_prepare_start(&control->turn, on_turn);
     uv_unref((uv_handle_t *)&control->turn);
@@ -253,7 +302,7 @@ static void on_listener_closed(uv_handle_t *listener)
     free(listener->data);
 }
 
-struct control *control_open(uv_loop_t *loop, const char *path, struct bus *const *buses, unsigned lines,
+struct control *control_open(uv_loop_t *loop, const char *path, const char *tcp, struct bus *const *buses, unsigned lines,
                              const struct control_calls *calls)
 {
     struct control *control = calloc(1, sizeof *control);
@@ -265,15 +314,13 @@ struct control *control_open(uv_loop_t *loop, const char *path, struct bus *cons
     control->buses = buses;
     control->lines = lines;
     control->calls = *calls;
-    if (!control_socket_open(&control->socket, path)) {
-        free(control);
-        return NULL;
-    }
-    uv_pipe_init(loop, &control->listener, 0);
-    control->listener.data = control;
-    if (!listen_at(control, control->socket.fd)) {
-        control_socket_release(&control->socket);
-        uv_close((uv_handle_t *)&control->listener, on_listener_closed);
+    control->place.lock = -1;
+    if (!tcp)
+        tcp = control_system_instead();
+    bool ok = tcp ? listen_tcp(control, path, tcp) : listen_unix(control, path);
+    control->listener.handle.data = control;
+    if (!ok) {
+        uv_close(&control->listener.handle, on_listener_closed);
         return NULL;
     }
     make_handles(control);
@@ -282,7 +329,12 @@ struct control *control_open(uv_loop_t *loop, const char *path, struct bus *cons
 
 const char *control_path(const struct control *control)
 {
-    return control ? control->socket.path : NULL;
+    return control ? control->place.path : NULL;
+}
+
+const char *control_address(const struct control *control)
+{
+    return control && control->address[0] ? control->address : NULL;
 }
 
 unsigned control_clients(const struct control *control)
@@ -295,16 +347,19 @@ void control_close(struct control *control)
     if (!control || !control->open)
         return;
     control->open = false;
-    control_socket_release(&control->socket);
+    control_place_release(&control->place);
     while (control->clients)
         connection_close(&control->clients->connection);
+    while (control->strangers)
+        connection_close(&control->strangers->connection);
     control_trace_end(control);
-    uv_close((uv_handle_t *)&control->listener, NULL);
+    uv_close(&control->listener.handle, NULL);
     uv_close((uv_handle_t *)&control->turn, NULL);
     uv_close((uv_handle_t *)&control->work, NULL);
     uv_close((uv_handle_t *)&control->restoring, NULL);
     uv_close((uv_handle_t *)&control->check, NULL);
     uv_close((uv_handle_t *)&control->ending, NULL);
+    uv_close((uv_handle_t *)&control->door, NULL);
 }
 
 void control_free(struct control *control)

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "control_connection.h"
 
-#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "control_rpc.h"
+#include "control_system.h"
 
 #define BYTES_AT_FIRST 4096u
 #define BYTES_KEPT 65536u /* a larger buffer is given back when it is empty */
@@ -127,7 +127,7 @@ static void write_out(struct connection *connection)
         connection->wire = connection->out;
         connection->out = empty;
         uv_buf_t rest = uv_buf_init(connection->wire.byte + connection->wire.at, (unsigned)unread_length(&connection->wire));
-        int written = uv_try_write((uv_stream_t *)&connection->pipe, &rest, 1);
+        int written = uv_try_write(&connection->end.stream, &rest, 1);
         if (written < 0 && written != UV_EAGAIN) {
             mark_failed(connection);
             return;
@@ -138,7 +138,7 @@ static void write_out(struct connection *connection)
             continue;
         }
         rest = uv_buf_init(connection->wire.byte + connection->wire.at, (unsigned)unread_length(&connection->wire));
-        connection->writing = uv_write(&connection->write, (uv_stream_t *)&connection->pipe, &rest, 1, on_written) == 0;
+        connection->writing = uv_write(&connection->write, &connection->end.stream, &rest, 1, on_written) == 0;
         if (!connection->writing)
             mark_failed(connection);
     }
@@ -147,8 +147,11 @@ static void write_out(struct connection *connection)
 /* Is it to be closed: has it ended its sending, and got all that it may wait for? */
 static bool is_done(const struct connection *connection)
 {
-    return connection->leaving && unread_length(&connection->in) == 0 && connection_unread(connection) == 0 &&
-           !connection->calls->is_expecting(connection);
+    const struct connection_calls *calls = connection->calls;
+    if (!connection->leaving || connection_unread(connection) > 0)
+        return false;
+    bool is_served = unread_length(&connection->in) == 0;
+    return connection->is_tcp ? is_served || calls->is_held(connection) : is_served && !calls->is_expecting(connection);
 }
 
 void connection_flush(struct connection *connection)
@@ -176,7 +179,8 @@ static void on_room(uv_handle_t *handle, size_t suggested, uv_buf_t *buffer)
 {
     struct connection *connection = handle->data;
     (void)suggested;
-    size_t most = CONNECTION_IN_MAX - unread_length(&connection->in), room = most < BYTES_KEPT ? most : BYTES_KEPT;
+    size_t limit = connection->stranger ? BYTES_AT_FIRST : CONNECTION_IN_MAX, most = limit - unread_length(&connection->in);
+    size_t room = most < BYTES_KEPT ? most : BYTES_KEPT;
     if (room == 0 || !reserve(&connection->in, room)) {
         *buffer = uv_buf_init(NULL, 0);
         return;
@@ -189,7 +193,7 @@ static void end_input(struct connection *connection)
 {
     connection->reading = false;
     connection->leaving = true;
-    uv_read_stop((uv_stream_t *)&connection->pipe);
+    uv_read_stop(&connection->end.stream);
     if (connection_is_gone(connection)) {
         connection_close(connection);
         return;
@@ -200,14 +204,24 @@ static void end_input(struct connection *connection)
 
 static void set_reading(struct connection *connection);
 
+/* Bytes of one that has been turned away. */
+static void ignore(struct connection *connection, size_t length)
+{
+    connection->ignored += length;
+    if (connection->ignored > CONNECTION_IGNORED_MAX)
+        connection_close(connection);
+}
+
 static void on_read(uv_stream_t *stream, ssize_t length, const uv_buf_t *buffer)
 {
     struct connection *connection = stream->data;
     (void)buffer;
-    if (length == UV_EOF) {
-        end_input(connection);
-    } else if (length < 0) {
+    if (length < 0 && (length != UV_EOF || connection->turned_away || connection->stranger)) {
         connection_close(connection);
+    } else if (length < 0) {
+        end_input(connection);
+    } else if (connection->turned_away) {
+        ignore(connection, (size_t)length);
     } else if (length > 0) {
         connection->in.length += (size_t)length;
         if (connection->calls->is_queued(connection) || connection_serve(connection, 0))
@@ -222,10 +236,10 @@ static void set_reading(struct connection *connection)
     bool wanted = !connection->closing && !connection->leaving && unread_length(&connection->in) < CONNECTION_IN_MAX;
     if (wanted == connection->reading)
         return;
-    if (wanted && uv_read_start((uv_stream_t *)&connection->pipe, on_room, on_read) != 0)
+    if (wanted && uv_read_start(&connection->end.stream, on_room, on_read) != 0)
         mark_failed(connection);
     if (!wanted)
-        uv_read_stop((uv_stream_t *)&connection->pipe);
+        uv_read_stop(&connection->end.stream);
     connection->reading = wanted;
 }
 
@@ -237,13 +251,18 @@ static void consume(struct connection *connection, size_t length)
     release_if_empty(&connection->in);
 }
 
+static size_t line_max(const struct connection *connection)
+{
+    return connection->stranger ? CONNECTION_FIRST_MAX : CONNECTION_LINE_MAX;
+}
+
 /* What there is has no newline: too much of it is given up, up to the newline. */
 static void skip_long_line(struct connection *connection)
 {
     connection->scanned = unread_length(&connection->in);
     if (connection->skipping) {
         consume(connection, unread_length(&connection->in));
-    } else if (unread_length(&connection->in) > CONNECTION_LINE_MAX) {
+    } else if (unread_length(&connection->in) > line_max(connection)) {
         connection->skipping = true;
         connection->calls->refuse(connection, RPC_NO_REQUEST, TOO_LONG);
         consume(connection, unread_length(&connection->in));
@@ -276,7 +295,7 @@ static bool serve_line(struct connection *connection)
     connection->scanned = length;
     if (connection->skipping) {
         connection->skipping = false;
-    } else if (length > CONNECTION_LINE_MAX) {
+    } else if (length > line_max(connection)) {
         connection->calls->refuse(connection, RPC_NO_REQUEST, TOO_LONG);
     } else if (!is_blank(begin, length)) {
         if (!connection->calls->handle_line(connection, begin, length)) {
@@ -284,7 +303,7 @@ static bool serve_line(struct connection *connection)
             return false;
         }
     }
-    if (!connection->closing)
+    if (!connection->closing && !connection->turned_away)
         consume(connection, length + 1);
     return true;
 }
@@ -292,8 +311,8 @@ static bool serve_line(struct connection *connection)
 bool connection_serve(struct connection *connection, uint64_t budget)
 {
     uint64_t begin = uv_hrtime();
-    while (!connection->closing && !connection->failed && !connection->calls->is_held(connection) && !connection->blocked &&
-           connection_unread(connection) <= CONNECTION_QUEUE_MAX) {
+    while (!connection->closing && !connection->failed && !connection->turned_away && !connection->blocked &&
+           !connection->calls->is_held(connection) && connection_unread(connection) <= CONNECTION_QUEUE_MAX) {
         if (!serve_line(connection)) {
             set_reading(connection);
             return false;
@@ -310,9 +329,13 @@ bool connection_accept(struct connection *connection, uv_loop_t *loop, uv_stream
                        const struct connection_calls *calls)
 {
     connection->calls = calls;
-    connection->pipe.data = connection->write.data = connection;
-    uv_pipe_init(loop, &connection->pipe, 0);
-    if (uv_accept(listener, (uv_stream_t *)&connection->pipe) == 0)
+    connection->is_tcp = connection->stranger = listener->type == UV_TCP;
+    if (connection->is_tcp)
+        uv_tcp_init(loop, &connection->end.tcp);
+    else
+        uv_pipe_init(loop, &connection->end.pipe, 0);
+    connection->end.handle.data = connection->write.data = connection;
+    if (uv_accept(listener, &connection->end.stream) == 0)
         return true;
     connection_close(connection);
     return false;
@@ -320,16 +343,30 @@ bool connection_accept(struct connection *connection, uv_loop_t *loop, uv_stream
 
 void connection_start(struct connection *connection)
 {
+    if (connection->is_tcp)
+        uv_tcp_nodelay(&connection->end.tcp, 1);
     set_reading(connection);
+}
+
+void connection_admit(struct connection *connection)
+{
+    connection->stranger = false;
+}
+
+void connection_turn_away(struct connection *connection)
+{
+    connection_flush(connection);
+    if (connection->closing)
+        return;
+    connection->turned_away = true;
+    connection->in.at = connection->in.length = connection->scanned = 0;
+    if (uv_shutdown(&connection->shutdown, &connection->end.stream, NULL) != 0)
+        connection_close(connection);
 }
 
 bool connection_is_gone(const struct connection *connection)
 {
-    uv_os_fd_t fd;
-    if (uv_fileno((const uv_handle_t *)&connection->pipe, &fd) != 0)
-        return true;
-    struct pollfd look = {.fd = fd};
-    return poll(&look, 1, 0) > 0 && (look.revents & (POLLHUP | POLLERR)) != 0;
+    return !connection->is_tcp && control_system_is_gone(&connection->end.pipe);
 }
 
 static void on_closed(uv_handle_t *handle)
@@ -347,5 +384,5 @@ void connection_close(struct connection *connection)
         return;
     connection->closing = true;
     connection->calls->gone(connection);
-    uv_close((uv_handle_t *)&connection->pipe, on_closed);
+    uv_close(&connection->end.handle, on_closed);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* control_connection.h: the connection of one control client: its lines, the bytes that wait to be read by it, and the limits
- * of both. It does not interpret the lines.
+ * of both. It does not interpret the lines. A client is a stranger, of whom few bytes are taken, until it is admitted.
  *
  *     socket --on_read--> in --connection_serve()--> handle_line()
  *     connection_send(), connection_begin_event() --> out --connection_flush()--> wire --> socket
@@ -17,6 +17,8 @@
 
 #define CONNECTION_LINE_MAX 1048576u           /* bytes of a request, without its newline */
 #define CONNECTION_IN_MAX (CONNECTION_LINE_MAX + 65536u)
+#define CONNECTION_FIRST_MAX 512u              /* bytes of the first line of a stranger */
+#define CONNECTION_IGNORED_MAX 65536u          /* bytes of a client that has been turned away; then it is closed */
 #define CONNECTION_EVENTS_MAX (8u << 20)       /* bytes not yet read beyond which events are dropped */
 #define CONNECTION_QUEUE_MAX (CONNECTION_EVENTS_MAX + (1u << 20)) /* beyond which requests wait */
 #define CONNECTION_QUEUE_SMALL (1u << 20)      /* below which an `advance` continues */
@@ -47,8 +49,18 @@ struct bytes {
 
 struct connection {
     const struct connection_calls *calls;
-    uv_pipe_t pipe;
+    union {
+        uv_handle_t handle;
+        uv_stream_t stream;
+        uv_pipe_t pipe;
+        uv_tcp_t tcp;
+    } end; /* ours */
     uv_write_t write;
+    uv_shutdown_t shutdown;
+    bool is_tcp;     /* who has ended its sending has gone: the system does not know more */
+    bool stranger;   /* not admitted yet */
+    bool turned_away;
+    size_t ignored;  /* bytes since then */
     bool leaving;    /* it sends no more; it may still read */
     bool closing;
     bool failed;     /* it is to be closed at the next turn */
@@ -61,9 +73,17 @@ struct connection {
     uint64_t lost_tick; /* of the first one */
 };
 
-/* Accept a client; *connection is zero. Returns false if there is none; the connection is closed then. */
+/* Accept a client; *connection is zero. Over TCP it is a stranger. Returns false if there is none; the connection is closed
+ * then. */
 bool connection_accept(struct connection *connection, uv_loop_t *loop, uv_stream_t *listener,
                        const struct connection_calls *calls);
+
+/* Its further lines are read with the limits of all clients. */
+void connection_admit(struct connection *connection);
+
+/* Send what was given to connection_send() and close it: not at once, since bytes that it has still sent would take the answer
+ * away with them. What comes is ignored. */
+void connection_turn_away(struct connection *connection);
 
 /* Start reading. */
 void connection_start(struct connection *connection);

@@ -6,11 +6,14 @@
 #include "condition/condition.h"
 #include "control.h"
 #include "control_connection.h"
+#include "control_file.h"
+#include "control_place.h"
 #include "control_rpc.h"
-#include "control_socket.h"
+#include "line/line.h"
 #include "trace/trace.h"
 
 #define CONTROL_CLIENTS 64u
+#define CONTROL_TOO_MANY "too many clients: expected at most %u at a time"
 #define CONTROL_WAITS 64u        /* per client */
 #define CONTROL_SUBSCRIPTIONS 16u /* per client */
 
@@ -37,6 +40,7 @@ struct control_client {
     bool restores;                /* a `restore` of it continues (control_restore.c) */
     struct subscription *subscriptions; /* control_subscribe.c, as the next one */
     unsigned subscribed;          /* number of the last subscription */
+    uint64_t deadline;            /* ms of the loop; of a stranger (control_door.c) */
 };
 
 struct control {
@@ -44,19 +48,29 @@ struct control {
     struct bus *const *buses;
     unsigned lines;
     struct control_calls calls;
-    struct control_socket socket;
+    struct control_place place;
+    char address[NET_NAME_SIZE];             /* of the TCP port; "": a Unix socket */
+    char token[CONTROL_TOKEN_LENGTH + 1];
 
-    uv_pipe_t listener;
+    union {
+        uv_handle_t handle;
+        uv_stream_t stream;
+        uv_pipe_t pipe;
+        uv_tcp_t tcp;
+    } listener;
     uv_prepare_t turn;   /* once a turn of the loop: sends what has been gathered for the clients */
     uv_idle_t work;      /* runs while there are lines to be handled */
     uv_idle_t restoring; /* runs while there is a `restore` */
     struct control_restore restore;
     uv_timer_t check;   /* runs while a client has closed its sending side: checks whether it is gone */
     uv_timer_t ending;  /* shutdown: the longest time for the answer to be read */
+    uv_timer_t door;    /* runs while there are strangers */
     bool open, working;
 
     struct control_client *clients;
     unsigned client_count;
+    struct control_client *strangers; /* clients that have not shown the token yet, the newest first */
+    unsigned stranger_count;
     struct control_client *ender; /* who asked for shutdown; NULL: none */
     struct trace_set traces;
 };
@@ -70,6 +84,16 @@ void control_end(struct control_client *client);
 
 /* A line was too long, or has no newline. */
 void control_refuse_line(struct control_client *client, int code, const char *text);
+
+/* A client may send requests from now on. */
+void control_add_client(struct control_client *client);
+
+/* A stranger has come; it goes, or is a stranger no longer: returns false if it was none. Its first line has come, or cannot be
+ * one. control_door.c. */
+void control_door_add(struct control_client *client);
+bool control_door_remove(struct control_client *client);
+void control_door_line(struct control_client *client, const char *line, size_t length);
+void control_door_refuse(struct control_client *client);
 
 /* Schedule the handling of lines in the next turn of the loop. */
 void control_schedule_lines(struct control *control);

@@ -12,7 +12,7 @@
 #define RPC_DEPTH 64u /* nested lists and objects */
 
 /* Codes of JSON-RPC besides those of command.h. */
-enum rpc_code { RPC_NO_JSON = -32700, RPC_NO_REQUEST = -32600 };
+enum rpc_code { RPC_NO_JSON = -32700, RPC_NO_REQUEST = -32600, RPC_NO_TOKEN = -32001 };
 
 /* A request. All of it belongs to `json`. */
 struct rpc_request {

@@ -1,28 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* control_socket.h: a Unix stream socket that listens under a path, for its owner alone.
- *
- * Beside it lies PATH.lock, locked as long as the emulator runs; it says which socket is ours. Nothing else is ever removed, and
- * no link is followed in the last part of the path. */
+/* control_socket.h: a Unix stream socket under a path, for its owner alone. */
 #ifndef RKM04_CONTROL_SOCKET_H
 #define RKM04_CONTROL_SOCKET_H
 
-#include <limits.h>
-#include <stdbool.h>
-#include <sys/types.h>
+#include "control_place.h"
 
-struct control_socket {
-    char path[PATH_MAX], lock_path[PATH_MAX];
-    int lock;    /* -1: not claimed */
-    int fd;      /* -1: none, or given away */
-    dev_t device; /* of the socket that we made; both 0: none */
-    ino_t inode;
-};
-
-/* Make the socket `path`; it does not listen yet. Failures are reported with advice. Returns false if it did not work: then
- * nothing is left behind. */
-bool control_socket_open(struct control_socket *socket, const char *path);
-
-/* Remove what is ours and give the lock free; `fd` is not closed. One that was never opened, or is released, is left alone. */
-void control_socket_release(struct control_socket *socket);
+/* Make the socket `path` at a place that is not claimed; it does not listen yet. Failures are reported with advice. Returns its
+ * descriptor; -1 if it did not work: then nothing is left behind. control_place_release() removes it. */
+int control_socket_open(struct control_place *place, const char *path);
 
 #endif

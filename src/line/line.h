@@ -121,6 +121,7 @@ void line_make_raw(struct termios *settings);
 #include "link_path.h"
 #include "lock_file.h"
 #include "log.h"
+#include "net_listen.h"
 #include "net_port.h"
 #include "service_port.h"
 #include "wine_link.h"

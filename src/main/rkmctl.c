@@ -55,8 +55,8 @@ static const struct argp_option option_table[] = {
      "set, send: a program that overflows the unit's memory is a warning, not a failure", 0},
     {NULL, 0, NULL, 0, "The emulator:", 2},
     {"control", 'c', "PATH", 0,
-     "Its control socket (default: RKM04_CONTROL of the environment, else that of the emulator of RKM04_PORT, else that of "
-     "an `rkm04 serve' without --link, else that of your emulator, if only one is running)", 0},
+     "Its control socket or control file (default: RKM04_CONTROL of the environment, else that of the emulator of RKM04_PORT, "
+     "else that of an `rkm04 serve' without --link, else that of your emulator, if only one is running)", 0},
     {"unit", 'u', "UNIT", 0, "The unit, as in 3; 3-2: the second unit with address 3; not needed if there is only one", 0},
     {"line", KEY_LINE, "N", 0, "The bus of an emulator with several, 0 to 255 (default 0)", 0},
     {"limit", KEY_LIMIT, "TIME", 0,

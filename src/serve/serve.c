@@ -42,6 +42,7 @@ static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
 struct serve {
     struct bus_options options;
     char tcp[NET_NAME_SIZE], rfc2217[NET_NAME_SIZE], service[DEVICE_SERVICES_MAX][NET_NAME_SIZE]; /* of options, in digits */
+    char control_tcp[NET_NAME_SIZE];
     struct bus *bus[BUS_LINES_MAX];
     struct line_watch watch;
     struct coverage coverage;
@@ -87,7 +88,7 @@ static void on_failed(void *context)
 static json_t *on_ready(void *context)
 {
     const struct serve *serve = context;
-    return serve_report_json(&serve->options, serve->bus, control_path(serve->control));
+    return serve_report_json(&serve->options, serve->bus, serve->control);
 }
 
 /* A client has come or gone, or a device has been used. */
@@ -166,7 +167,7 @@ static rlim_t count_files(const struct bus_options *options)
     for (unsigned i = 0; i < BUS_FILES_MAX; i++)
         line += (rlim_t)(options->trace[i] != NULL) + (options->wire[i] != NULL);
     return FILES_LOOP + options->lines * line + (options->pty ? FILES_WATCH : 0) + (options->no_control ? 0 : FILES_CONTROL) +
-           (options->coverage ? FILES_COVERAGE : 0) + (options->window != NULL);
+           (options->coverage ? FILES_COVERAGE : 0) + (options->window != NULL) + (options->control_tcp ? CONTROL_STRANGERS : 0);
 }
 
 /* The lowest `ulimit -n' with so many free numbers: some are in use already by the process that started us. */
@@ -282,11 +283,12 @@ static bool start_control(struct serve *serve)
     if (options->no_control)
         return true;
     if (options->control || default_control(serve, path))
-        serve->control = control_open(&serve->loop, options->control ? options->control : path, serve->bus, options->lines,
-                                      &control_calls);
-    if (!serve->control && !options->control)
+        serve->control = control_open(&serve->loop, options->control ? options->control : path, options->control_tcp, serve->bus,
+                                      options->lines, &control_calls);
+    const bool is_wanted = options->control || options->control_tcp;
+    if (!serve->control && !is_wanted)
         log_error("continuing without a control socket; choose another path with --control PATH");
-    return serve->control || !options->control;
+    return serve->control || !is_wanted;
 }
 
 /* Read a whole plant. Returns a string to be freed; NULL: reported. */
@@ -339,7 +341,8 @@ static bool find_address(const char **address, char found[NET_NAME_SIZE])
 static bool find_addresses(struct serve *serve)
 {
     struct bus_options *options = &serve->options;
-    bool ok = find_address(&options->tcp, serve->tcp) && find_address(&options->rfc2217, serve->rfc2217);
+    bool ok = find_address(&options->tcp, serve->tcp) && find_address(&options->rfc2217, serve->rfc2217) &&
+              find_address(&options->control_tcp, serve->control_tcp);
     for (unsigned at = 0; ok && at < DEVICE_SERVICES_MAX; at++)
         ok = find_address(&options->service[at].address, serve->service[at]);
     return ok;
@@ -359,7 +362,7 @@ static bool start_serve(struct serve *serve)
     serve_sandbox_files(options, serve->bus, control_path(serve->control));
     log_start_thread();
     log_flush(LOG_WAIT_MS); /* before READY, for readers of both */
-    if (!serve_report_ready(options, serve->bus, control_path(serve->control)))
+    if (!serve_report_ready(options, serve->bus, serve->control))
         return false;
     if (serve->window >= 0)
         serve_window_show(serve->window);

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "control/control.h"
 #include "file/file.h"
 #include "line/line.h"
 #include "notify.h"
@@ -51,7 +52,8 @@ enum key {
     KEY_NO_SANDBOX,
     KEY_NO_CONTROL,
     KEY_WINDOW,
-    KEY_WINE
+    KEY_WINE,
+    KEY_CONTROL_FILE
 };
 
 static const struct argp_option table[] = {
@@ -97,9 +99,12 @@ static const struct argp_option table[] = {
      "What happens after the process was stopped for a while: catch-up (default), the units catch up; skip: the units' clock was "
      "paused", 0},
     {NULL, 0, NULL, 0, "For tests:", 4},
-    {"control", KEY_CONTROL, "PATH", 0,
+    {"control", KEY_CONTROL, "PATH|tcp:HOST:PORT", 0,
      "Unix socket to read and change the state of all units (JSON-RPC; rkmctl --control); default: the link's name and "
-     ".control; without a link, a name from the serial device, address or kind of device, in the folder of default links", 0},
+     ".control; without a link, a name from the serial device, address or kind of device, in the folder of default links. "
+     "tcp:PORT: a TCP port of this machine instead (0: a free one), and at that path a file with its address and a token, which "
+     "clients take in place of the socket", 0},
+    {"control-file", KEY_CONTROL_FILE, "PATH", 0, "With --control tcp:PORT: this file instead", 0},
     {"no-control", KEY_NO_CONTROL, NULL, 0, "No control socket", 0},
     {"window", KEY_WINDOW, "ADDRESS:PORT", OPTION_ARG_OPTIONAL,
      "Show the units in a browser, too (rkmctl window): the address is printed after READY; default 127.0.0.1:0, any port", 0},
@@ -146,6 +151,7 @@ static const char doc[] =
     "  rkm04 serve --clock x20 --baud 0\n"
     "  rkm04 serve --readings hold-exit=latch,speed-change=500ms\n"
     "  rkm04 serve --clock stepped --control test.control --plant axis.yaml\n"
+    "  rkm04 serve --control tcp:0 --control-file test.control\n"
     "  rkm04 serve --trace pulses.vcd --wire line.pcapng --record session.record\n"
     "  rkm04 serve --exit-when-idle=2 --coverage covered.txt --min-coverage 80\n"
     "\n"
@@ -229,6 +235,16 @@ static const char *read_path(const char *name, const char *text, struct argp_sta
         argp_error(state, "--%s: the path is not valid UTF-8, which the READY line needs", name);
     json_decref(string);
     return text;
+}
+
+/* A path, or tcp:HOST:PORT; the last one given counts. */
+static void read_control(struct bus_options *options, const char *text, struct argp_state *state)
+{
+    const bool is_tcp = strncmp(text, "tcp:", 4) == 0;
+    options->control = is_tcp ? NULL : read_path("control", text, state);
+    options->control_tcp = is_tcp ? text + 4 : NULL;
+    if (is_tcp && !control_tcp_valid(text + 4))
+        argp_error(state, "--control: `%s' is wrong: expected tcp: and " CONTROL_TCP_EXPECTED, text);
 }
 
 /* A path in which %n and %l may be. */
@@ -370,8 +386,12 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
         argp_error(state, "--turnaround needs bytes that take time: expected it without --baud 0");
     if (options->turnaround == NO_TURNAROUND)
         options->turnaround = options->baud != 0 ? device_turnaround(options->device.kind) : 0;
-    if (options->control && options->no_control)
+    if ((options->control || options->control_tcp || options->control_file) && options->no_control)
         argp_error(state, "expected either --control or --no-control");
+    if (options->control_file && !options->control_tcp)
+        argp_error(state, "--control-file is for a TCP port: expected --control tcp:PORT, too");
+    if (options->control_file)
+        options->control = options->control_file;
     if (options->window && options->no_control)
         argp_error(state, "--window needs the control socket: expected it without --no-control");
     check_patterns(options, state);
@@ -470,7 +490,10 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
         options->output_flags |= OUTPUT_FORCE;
         return 0;
     case KEY_CONTROL:
-        options->control = read_path("control", text, state);
+        read_control(options, text, state);
+        return 0;
+    case KEY_CONTROL_FILE:
+        options->control_file = read_path("control-file", text, state);
         return 0;
     case KEY_ALLOW_FOLDER:
         add_folder(options, text, state);

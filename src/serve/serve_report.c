@@ -118,15 +118,16 @@ static json_t *ports_json(const struct bus *bus)
 }
 
 /* With several lines the ports at the top are those of line 0, and `lines` has all. */
-json_t *serve_report_json(const struct bus_options *options, struct bus *const *buses, const char *control)
+json_t *serve_report_json(const struct bus_options *options, struct bus *const *buses, const struct control *control)
 {
     const struct device_kind *kind = options->device.kind;
     json_t *ready = ports_json(buses[0]), *lines = NULL;
-    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:o*, s:s?, s:s?, s:s}", "node", (int)options->nodes.node[0],
+    json_t *rest = json_pack("{s:i, s:o, s:s, s:i, s:i, s:s, s:o*, s:s?, s:s?, s:s, s:s*}", "node", (int)options->nodes.node[0],
                              "nodes", nodes_json(&options->nodes), "framing", framing_name(options), "baud",
                              (int)options->baud, "turnaround", (int)options->turnaround, "clock", options->clock_text,
                              "readings", kind->readings ? kind->readings->json(&options->device.config) : NULL, "flash",
-                             options->flash, "control", control, "device", kind->name);
+                             options->flash, "control", control_path(control), "device", kind->name, "control_tcp",
+                             control_address(control));
     bool ok = ready && rest && json_object_update(ready, rest) == 0;
     json_decref(rest);
     if (ok && options->lines > 1) {
@@ -141,7 +142,7 @@ json_t *serve_report_json(const struct bus_options *options, struct bus *const *
     return NULL;
 }
 
-bool serve_report_ready(const struct bus_options *options, struct bus *const *buses, const char *control)
+bool serve_report_ready(const struct bus_options *options, struct bus *const *buses, const struct control *control)
 {
     json_t *ready = serve_report_json(options, buses, control);
     char *text = ready ? json_dumps(ready, JSON_COMPACT) : NULL, *line = NULL;

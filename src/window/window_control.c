@@ -93,6 +93,7 @@ struct window_control *window_control_open(uv_loop_t *loop, const char *path, co
         free(control);
         return NULL;
     }
+    free(rpc.buffer); /* nothing comes unasked */
     control->calls = *calls;
     control->pipe.data = control;
     uv_pipe_init(loop, &control->pipe, 0);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_control_socket.c: the file of the control socket: whose it is, and what is never touched.
+/* test_control_socket.c: the control socket and the control file: whose they are, and what is never touched.
  * One test case alone: CK_RUN_CASE=socket ./test_control_socket */
 #include <check.h>
 #include <fcntl.h>
@@ -13,10 +13,30 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "control/control_file.h"
 #include "control/control_socket.h"
 
 static char folder[64], path[96], lock_path[112], other[96];
-static struct control_socket ours;
+static struct opened {
+    struct control_place place;
+    int fd; /* of a socket */
+} ours;
+static char token[CONTROL_TOKEN_LENGTH + 1];
+
+static bool open_socket(struct opened *opened, const char *name)
+{
+    opened->fd = control_socket_open(&opened->place, name);
+    return opened->fd >= 0;
+}
+
+static bool write_file(struct opened *opened, const char *name)
+{
+    opened->fd = -1;
+    return control_file_write(&opened->place, name, "127.0.0.1:4711", token);
+}
+
+/* Both keep to the same rules: a socket that listens, and a file. */
+static bool (*const makers[])(struct opened *opened, const char *name) = {open_socket, write_file};
 
 static void setup(void)
 {
@@ -25,13 +45,14 @@ static void setup(void)
     snprintf(path, sizeof path, "%s/control", folder);
     snprintf(lock_path, sizeof lock_path, "%s.lock", path);
     snprintf(other, sizeof other, "%s/other", folder);
-    ours.lock = ours.fd = -1;
+    ours.place.lock = ours.fd = -1;
+    ck_assert(control_file_token(token));
 }
 
 static void teardown(void)
 {
     char command[80];
-    control_socket_release(&ours);
+    control_place_release(&ours.place);
     snprintf(command, sizeof command, "rm -rf %s", folder);
     ck_assert_int_eq(system(command), 0);
 }
@@ -53,12 +74,12 @@ static bool can_connect(void)
 }
 
 /* Another emulator has made the socket and been killed. */
-static void leave_stale(void)
+static void leave_stale(int maker)
 {
     pid_t child = fork();
     if (child == 0) {
-        struct control_socket socket;
-        bool ok = control_socket_open(&socket, path) && listen(socket.fd, 1) == 0;
+        struct opened left;
+        bool ok = makers[maker](&left, path) && (left.fd < 0 || listen(left.fd, 1) == 0);
         raise(ok ? SIGKILL : SIGTERM);
         _exit(1);
     }
@@ -72,7 +93,7 @@ START_TEST(the_socket_is_for_its_owner_alone)
 {
     struct stat found;
     mode_t mask = umask(0);
-    ck_assert(control_socket_open(&ours, path));
+    ck_assert(open_socket(&ours, path));
     ck_assert_int_eq(umask(mask), 0); /* it is as it was */
     ck_assert_int_eq(stat(path, &found), 0);
     ck_assert(S_ISSOCK(found.st_mode));
@@ -84,10 +105,10 @@ END_TEST
 
 START_TEST(it_is_removed_at_the_end)
 {
-    ck_assert(control_socket_open(&ours, path));
+    ck_assert(open_socket(&ours, path));
     ck_assert_int_eq(listen(ours.fd, 1), 0);
     ck_assert(can_connect());
-    control_socket_release(&ours);
+    control_place_release(&ours.place);
     ck_assert(!exists(path));
     ck_assert(!exists(lock_path));
 }
@@ -95,9 +116,9 @@ END_TEST
 
 START_TEST(one_that_a_killed_emulator_left_is_replaced)
 {
-    leave_stale();
+    leave_stale(_i);
     ck_assert(!can_connect());
-    ck_assert(control_socket_open(&ours, path));
+    ck_assert(open_socket(&ours, path));
     ck_assert_int_eq(listen(ours.fd, 1), 0);
     ck_assert(can_connect());
 }
@@ -105,11 +126,11 @@ END_TEST
 
 START_TEST(one_that_is_in_use_is_left_alone)
 {
-    struct control_socket second;
-    ck_assert(control_socket_open(&ours, path));
+    struct opened second;
+    ck_assert(open_socket(&ours, path));
     ck_assert_int_eq(listen(ours.fd, 1), 0);
-    ck_assert(!control_socket_open(&second, path));
-    control_socket_release(&second); /* does nothing */
+    ck_assert(!open_socket(&second, path));
+    control_place_release(&second.place); /* does nothing */
     ck_assert(can_connect());
     ck_assert(exists(lock_path));
 }
@@ -147,9 +168,9 @@ static void (*const strangers[])(void) = {make_file, make_folder, make_link, mak
 START_TEST(what_is_not_ours_is_never_removed)
 {
     struct stat before, after;
-    strangers[_i]();
+    strangers[_i % 4]();
     ck_assert_int_eq(lstat(path, &before), 0);
-    ck_assert(!control_socket_open(&ours, path));
+    ck_assert(!makers[_i / 4](&ours, path));
     ck_assert_int_eq(lstat(path, &after), 0);
     ck_assert(before.st_ino == after.st_ino && before.st_mode == after.st_mode);
     ck_assert(!exists(other));
@@ -160,11 +181,11 @@ END_TEST
 START_TEST(what_took_the_place_of_a_stale_one_is_never_removed)
 {
     struct stat before, after;
-    leave_stale();
+    leave_stale(_i / 4);
     ck_assert_int_eq(rename(path, other), 0); /* keeps its number in use */
-    strangers[_i]();
+    strangers[_i % 4]();
     ck_assert_int_eq(lstat(path, &before), 0);
-    ck_assert(!control_socket_open(&ours, path));
+    ck_assert(!makers[_i / 4](&ours, path));
     ck_assert_int_eq(lstat(path, &after), 0);
     ck_assert(before.st_ino == after.st_ino && before.st_mode == after.st_mode);
 }
@@ -172,10 +193,10 @@ END_TEST
 
 START_TEST(what_took_the_place_of_ours_is_not_removed_at_the_end)
 {
-    ck_assert(control_socket_open(&ours, path));
+    ck_assert(makers[_i / 4](&ours, path));
     ck_assert_int_eq(rename(path, other), 0);
-    strangers[_i]();
-    control_socket_release(&ours);
+    strangers[_i % 4]();
+    control_place_release(&ours.place);
     ck_assert(exists(path));
 }
 END_TEST
@@ -183,13 +204,13 @@ END_TEST
 /* Somebody has cleaned the folder, and another emulator has taken the place. */
 START_TEST(a_successor_keeps_its_lock_file_and_socket)
 {
-    struct control_socket before;
-    ck_assert(control_socket_open(&before, path));
+    struct opened before;
+    ck_assert(open_socket(&before, path));
     ck_assert_int_eq(unlink(path), 0);
     ck_assert_int_eq(unlink(lock_path), 0);
-    ck_assert(control_socket_open(&ours, path));
+    ck_assert(open_socket(&ours, path));
     ck_assert_int_eq(listen(ours.fd, 1), 0);
-    control_socket_release(&before);
+    control_place_release(&before.place);
     close(before.fd);
     ck_assert(exists(lock_path));
     ck_assert(can_connect());
@@ -201,7 +222,7 @@ START_TEST(a_lock_file_of_somebody_else_is_left_alone)
     FILE *file = fopen(lock_path, "w");
     fputs("diary\n", file);
     fclose(file);
-    ck_assert(!control_socket_open(&ours, path));
+    ck_assert(!open_socket(&ours, path));
     ck_assert(exists(lock_path));
     ck_assert(!exists(path));
 }
@@ -210,7 +231,7 @@ END_TEST
 START_TEST(no_link_is_followed_to_the_lock)
 {
     ck_assert_int_eq(symlink(other, lock_path), 0);
-    ck_assert(!control_socket_open(&ours, path));
+    ck_assert(!open_socket(&ours, path));
     ck_assert(!exists(other));
 }
 END_TEST
@@ -223,10 +244,10 @@ START_TEST(a_path_may_be_longer_than_the_address_of_a_socket)
     ck_assert_int_eq(mkdir(deep, 0700), 0);
     strcat(deep, "/control");
     ck_assert_uint_gt(strlen(deep), 107);
-    ck_assert(control_socket_open(&ours, deep));
+    ck_assert(open_socket(&ours, deep));
     ck_assert_int_eq(stat(deep, &found), 0);
     ck_assert_int_eq(found.st_mode & 07777, 0600);
-    control_socket_release(&ours);
+    control_place_release(&ours.place);
     ck_assert(!exists(deep));
 }
 END_TEST
@@ -235,15 +256,76 @@ START_TEST(a_name_that_is_too_long_is_refused)
 {
     char longest[256];
     snprintf(longest, sizeof longest, "%s/%0120d", folder, 0);
-    ck_assert(!control_socket_open(&ours, longest));
+    ck_assert(!open_socket(&ours, longest));
     ck_assert(!exists(longest));
-    ck_assert(!control_socket_open(&ours, ""));
+    ck_assert(!open_socket(&ours, ""));
 }
 END_TEST
 
 START_TEST(a_folder_that_is_not_there_is_refused)
 {
-    ck_assert(!control_socket_open(&ours, "/nonexistent/control"));
+    ck_assert(!open_socket(&ours, "/nonexistent/control"));
+}
+END_TEST
+
+START_TEST(the_file_is_for_its_owner_alone_and_has_address_and_token)
+{
+    struct stat found;
+    char line[200] = "", wanted[200];
+    mode_t mask = umask(0);
+    ck_assert(write_file(&ours, path));
+    umask(mask);
+    ck_assert_int_eq(lstat(path, &found), 0);
+    ck_assert(S_ISREG(found.st_mode));
+    ck_assert_int_eq(found.st_mode & 07777, 0600);
+    FILE *file = fopen(path, "r");
+    ck_assert_ptr_nonnull(fgets(line, sizeof line, file));
+    fclose(file);
+    snprintf(wanted, sizeof wanted, "tcp:127.0.0.1:4711 %s\n", token);
+    ck_assert_str_eq(line, wanted);
+}
+END_TEST
+
+START_TEST(the_file_is_removed_at_the_end_and_not_made_twice)
+{
+    struct opened second;
+    ck_assert(write_file(&ours, path));
+    ck_assert(!write_file(&second, path));
+    ck_assert(!open_socket(&second, path));
+    ck_assert(exists(path) && exists(lock_path));
+    control_place_release(&ours.place);
+    ck_assert(!exists(path) && !exists(lock_path));
+}
+END_TEST
+
+START_TEST(a_file_that_a_killed_emulator_left_is_replaced_by_a_file)
+{
+    leave_stale(1);
+    ck_assert(write_file(&ours, path));
+    ck_assert(exists(path));
+}
+END_TEST
+
+START_TEST(each_token_is_another_one_of_64_digits)
+{
+    char next[CONTROL_TOKEN_LENGTH + 1];
+    ck_assert_uint_eq(strlen(token), 64);
+    ck_assert_uint_eq(strspn(token, "0123456789abcdef"), 64);
+    ck_assert(control_file_token(next));
+    ck_assert_str_ne(token, next);
+}
+END_TEST
+
+START_TEST(a_token_that_differs_anywhere_is_another_one)
+{
+    char wrong[CONTROL_TOKEN_LENGTH + 1];
+    ck_assert(control_file_is_token(token, token, 64));
+    for (size_t at = 0; at < 64; at++) {
+        strcpy(wrong, token);
+        wrong[at] ^= 1;
+        ck_assert(!control_file_is_token(token, wrong, 64));
+        ck_assert(!control_file_is_token(token, token, at));
+    }
 }
 END_TEST
 
@@ -254,17 +336,22 @@ int main(void)
     tcase_add_checked_fixture(tests, setup, teardown);
     tcase_add_test(tests, the_socket_is_for_its_owner_alone);
     tcase_add_test(tests, it_is_removed_at_the_end);
-    tcase_add_test(tests, one_that_a_killed_emulator_left_is_replaced);
+    tcase_add_loop_test(tests, one_that_a_killed_emulator_left_is_replaced, 0, 2);
     tcase_add_test(tests, one_that_is_in_use_is_left_alone);
-    tcase_add_loop_test(tests, what_is_not_ours_is_never_removed, 0, 4);
-    tcase_add_loop_test(tests, what_took_the_place_of_a_stale_one_is_never_removed, 0, 4);
-    tcase_add_loop_test(tests, what_took_the_place_of_ours_is_not_removed_at_the_end, 0, 4);
+    tcase_add_loop_test(tests, what_is_not_ours_is_never_removed, 0, 8);
+    tcase_add_loop_test(tests, what_took_the_place_of_a_stale_one_is_never_removed, 0, 8);
+    tcase_add_loop_test(tests, what_took_the_place_of_ours_is_not_removed_at_the_end, 0, 8);
     tcase_add_test(tests, a_successor_keeps_its_lock_file_and_socket);
     tcase_add_test(tests, a_lock_file_of_somebody_else_is_left_alone);
     tcase_add_test(tests, no_link_is_followed_to_the_lock);
     tcase_add_test(tests, a_path_may_be_longer_than_the_address_of_a_socket);
     tcase_add_test(tests, a_name_that_is_too_long_is_refused);
     tcase_add_test(tests, a_folder_that_is_not_there_is_refused);
+    tcase_add_test(tests, the_file_is_for_its_owner_alone_and_has_address_and_token);
+    tcase_add_test(tests, the_file_is_removed_at_the_end_and_not_made_twice);
+    tcase_add_test(tests, a_file_that_a_killed_emulator_left_is_replaced_by_a_file);
+    tcase_add_test(tests, each_token_is_another_one_of_64_digits);
+    tcase_add_test(tests, a_token_that_differs_anywhere_is_another_one);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

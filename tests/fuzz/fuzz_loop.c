@@ -120,7 +120,7 @@ static void start(void)
     }
     for (unsigned i = 0; i < options.lines; i++)
         FUZZ_CHECK(bus_start(bus[i]), "no start");
-    control = control_open(&loop, socket_path, bus, options.lines, &control_calls);
+    control = control_open(&loop, socket_path, NULL, bus, options.lines, &control_calls);
     FUZZ_CHECK(control, "no control socket");
 }
 

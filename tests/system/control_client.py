@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """control_client.py: a client of the control socket, as small as can be, for the system tests."""
 import json
+import os
 import select
 import socket
+import stat
 import time
 
 LIMIT = 60  # seconds until something counts as never coming
@@ -16,16 +18,32 @@ class Refused(Exception):
         self.code, self.message = error["code"], error["message"]
 
 
+def entrance(path):
+    """(family, address, token) of a control socket, or of a control file."""
+    if stat.S_ISSOCK(os.stat(path).st_mode):
+        return socket.AF_UNIX, path, None
+    with open(path, encoding="ascii") as file:
+        address, token = file.read().split()
+    host, port = address[len("tcp:"):].rsplit(":", 1)
+    return (socket.AF_INET6 if host[0] == "[" else socket.AF_INET), (host.strip("[]"), int(port)), token
+
+
 class Client:
-    def __init__(self, path, receive_buffer=None):
-        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    """path: of a control socket, or of a control file; with admit=False its token is not shown."""
+
+    def __init__(self, path, receive_buffer=None, admit=True):
+        family, address, token = entrance(path)
+        self.socket = socket.socket(family, socket.SOCK_STREAM)
         if receive_buffer:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-        self.socket.connect(path)
         self.socket.settimeout(LIMIT)
+        self.socket.connect(address)
         self.buffer = b""
         self.last = 0
         self.events = []  # notifications that came before answers
+        if token and admit:
+            self.call("authenticate", token=token)
+            self.last = 0
 
     def send(self, data):
         self.socket.sendall(data)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """control_robust.py: clients of the control socket that behave badly, and what others see of that.
 
-    RKM04=… RKMCTL=… control_robust.py [CASE]"""
+    RKM04=… RKMCTL=… [CONTROL=tcp:0] control_robust.py [CASE]
+
+CONTROL: over TCP instead of a Unix socket."""
 import json
 import os
 import re
@@ -13,7 +15,7 @@ import tempfile
 import termios
 import time
 
-from control_client import Client, soon
+from control_client import Client, entrance, soon
 
 MIB = 1 << 20
 
@@ -28,7 +30,9 @@ class Emulator:
         if "--lines" in options:
             self.link += "%l"
             self.path = os.path.join(self.folder.name, "control")
-            options += ("--control", self.path)
+            options += ("--control", self.path) if "CONTROL" not in os.environ else ()
+        if "tcp" in os.environ.get("CONTROL", ""):
+            options += ("--control", os.environ["CONTROL"], "--control-file", self.path)
         self.start(*options)
         self.clients = []
 
@@ -179,6 +183,8 @@ def test_a_client_that_leaves_in_the_middle_does_no_harm(emulator):
 
 
 def test_one_that_only_ends_its_sending_gets_its_answers(emulator):
+    if "CONTROL" in os.environ:
+        return  # the system does not tell it from one that has gone
     client, other = emulator.client(), emulator.client()
     client.send(b'{"jsonrpc":"2.0","id":1,"method":"wait","params":{"until":{"di":{"1":1}}}}\n'
                 b'{"jsonrpc":"2.0","id":2,"method":"units"}\n{"jsonrpc":"2.0","id":3,"method":"units"}')
@@ -202,17 +208,29 @@ def test_one_that_ends_its_sending_and_goes_is_noticed(emulator):
     soon("it is gone", lambda: emulator.files() == files)
 
 
+def show_token(client, path):
+    """The answer is not taken. False: none is needed."""
+    token = entrance(path)[2]
+    if token:
+        client.request("authenticate", token=token)
+    return token
+
+
 def test_one_too_many_is_turned_away(emulator):
     clients = [emulator.client() for _ in range(64)]
     for client in clients:
         client.call("units")
-    extra = Client(emulator.path)
+    extra = Client(emulator.path, admit=False)
+    show_token(extra, emulator.path)
     assert extra.line()["error"] == {"code": -32000, "message": "too many clients: expected at most 64 at a time"}
     assert extra.line() is None
     clients[0].close()
 
     def there_is_room():
-        new = Client(emulator.path)
+        new = Client(emulator.path, admit=False)
+        if show_token(new, emulator.path) and "error" in new.line():
+            new.close()
+            return False
         new.send(b'{"jsonrpc":"2.0","id":1,"method":"units"}\n')
         answer = new.line()
         new.close()
@@ -440,11 +458,11 @@ OPTIONS = {
 }
 
 
-def run(name):
+def run(name, function=None):
     options = OPTIONS.get(name, ["--clock", "stepped"])
     emulator = Emulator(*options)
     try:
-        globals()[name](emulator)
+        (function or globals()[name])(emulator)
         error = None
     except Exception as caught:  # pylint: disable=broad-except
         error = f"{type(caught).__name__}: {caught}"
@@ -469,4 +487,5 @@ def main():
     sys.exit(not all([run(name) for name in names]))
 
 
-main()
+if __name__ == "__main__":
+    main()
