@@ -13,7 +13,7 @@
 #include "run/run.h"
 #include "serve/serve.h"
 
-#define NAMES "serve, exec, check, fmt, explain, estimate, lsp, test, replay, plot or devices"
+#define NAMES "serve, exec, check, fmt, explain, estimate, lsp, test, replay, plot, devices or signals"
 
 const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
@@ -29,6 +29,7 @@ static const char help[] =
     "  or:  rkm04 replay [OPTION...] RECORDING\n"
     "  or:  rkm04 plot [OPTION...] [M=]FILE...\n"
     "  or:  rkm04 devices [--json]\n"
+    "  or:  rkm04 signals [--json]\n"
     "A virtual RKM04, the unit for four stepper motors on RS485.\n"
     "\n"
     "  serve      units on a bus (pseudo terminal, serial device or TCP), in real time\n"
@@ -42,6 +43,7 @@ static const char help[] =
     "  replay     repeat a recording of `serve' or `test' and compare\n"
     "  plot       draw speed and position over time\n"
     "  devices    list the devices that serve and scenarios know\n"
+    "  signals    list the cells between CNC system and PLC program of a CNC872\n"
     "\n"
     "      --help      print this help; `rkm04 COMMAND --help' describes a command\n"
     "      --version   print the program's version\n"
@@ -73,6 +75,7 @@ static const struct {
     {"replay", "rkm04 replay", replay_main},
     {"plot", "rkm04 plot", plot_main},
     {"devices", "rkm04 devices", devices_main},
+    {"signals", "rkm04 signals", signals_main},
 };
 
 int main(int argc, char **argv)
