@@ -109,7 +109,7 @@ static size_t write_several(struct cib_unit *unit, const uint8_t *request, size_
     return write_words(unit, first, value, count, exception);
 }
 
-size_t cib_modbus(struct cib_unit *unit, const uint8_t *request, size_t length, uint8_t answer[CIB_PDU_MAX])
+size_t cib_modbus(struct cib_unit *unit, const uint8_t *request, size_t length, uint8_t answer[MODBUS_PDU_MAX])
 {
     enum modbus_exception exception = MODBUS_NO_EXCEPTION;
     size_t answered = 0;

@@ -11,11 +11,9 @@
 #include "cib/cib.h"
 #include "modbus/modbus.h"
 
-#define CIB_PDU_MAX 253u /* bytes of a request or answer, from the function on */
-
-/* Execute a request of `length` bytes, 1..CIB_PDU_MAX, at the present tick. An exception changes nothing. Returns the length of
- * the answer, which is never empty. */
-size_t cib_modbus(struct cib_unit *unit, const uint8_t *request, size_t length, uint8_t answer[CIB_PDU_MAX]);
+/* Execute a request of `length` bytes, 1..MODBUS_PDU_MAX, at the present tick. An exception changes nothing. Returns the
+ * length of the answer, which is never empty. */
+size_t cib_modbus(struct cib_unit *unit, const uint8_t *request, size_t length, uint8_t answer[MODBUS_PDU_MAX]);
 
 /* Does a request with this function write, so that a broadcast of it is executed (BL2)? */
 bool cib_modbus_writes(uint8_t function);

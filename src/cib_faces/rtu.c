@@ -41,7 +41,7 @@ static void put_answer(struct cib_rtu *rtu, size_t length)
 static void execute(struct cib_rtu *rtu, struct cib_unit *unit)
 {
     const uint8_t *request = rtu->frame + 1;
-    uint8_t unheard[CIB_PDU_MAX];
+    uint8_t unheard[MODBUS_PDU_MAX];
     size_t length = rtu->length - OVERHEAD;
     rtu->counters.requests++;
     rtu->waiting = false;

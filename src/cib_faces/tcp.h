@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* tcp.h: a connection of a Modbus TCP client to CIB modules (docs/CIB.md, BL6).
- *
- *     transaction, protocol 0, length: two bytes each; unit; then function and data
- *
  * A request is executed and answered in the tick in which its last byte comes. */
 #ifndef RKM04_CIB_FACES_TCP_H
 #define RKM04_CIB_FACES_TCP_H
@@ -11,13 +8,9 @@
 #include "pdu.h"
 #include "variables.h"
 
-#define CIB_TCP_HEAD 7u
-#define CIB_TCP_MAX (CIB_TCP_HEAD + CIB_PDU_MAX) /* bytes of a request or answer */
-
 /* State of a connection: plain data, zero-initialised. */
 struct cib_tcp {
-    uint16_t length; /* bytes of the request so far */
-    uint8_t frame[CIB_TCP_MAX];
+    struct modbus_tcp request;
 };
 
 /* Gets the answers. */

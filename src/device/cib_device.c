@@ -228,8 +228,8 @@ static void find_check_value(const struct device_unit *unit, uint32_t *at, uint8
 static size_t exchange(struct device_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room)
 {
     struct cib_device *device = cib_device_of(unit);
-    uint8_t whole[CIB_PDU_MAX];
-    if (length < 1 || length > CIB_PDU_MAX)
+    uint8_t whole[MODBUS_PDU_MAX];
+    if (length < 1 || length > MODBUS_PDU_MAX)
         return 0;
     cib_note_request(&device->unit);
     size_t answered = cib_modbus(&device->unit, message, length, whole);

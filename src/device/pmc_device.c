@@ -380,7 +380,7 @@ static const char *const outputs_2hs[] = {"x.out0", "x.out1", "y.out0", "y.out1"
     .outputs_of = outputs_of, .variables_of = variables_of, .node = node, .axis = axis, .plan = pmc_device_plan, \
     .command_text = command_text, .set_text = set_text, .is_stuck = is_stuck, .state_name = pmc_state_name, \
     .fault_name = pmc_fault_name, .led_name = led_name, .state = pmc_json_state, .describe = pmc_json_describe, \
-    .methods = pmc_methods, .settings = pmc_setting_names, .put_settings = pmc_put_settings, \
+    .methods = pmc_methods, .services = pmc_services, .settings = pmc_setting_names, .put_settings = pmc_put_settings, \
     .read_setting = pmc_read_setting, .unlike = pmc_settings_difference, .framing = pmc_framing, .words = &pmc_words, \
     .repeat_size = sizeof(struct pmc_repeat), .find_repeat = pmc_find_repeat, .is_endless = is_endless
 

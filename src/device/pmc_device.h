@@ -74,9 +74,10 @@ unsigned pmc_fault_of(uint8_t errors);
 /* The errors by name, as a list. */
 json_t *pmc_errors_json(uint8_t errors);
 
-/* ---- pmc_device_methods.c, pmc_device_wire.c, pmc_device_plan.c, pmc_device_repeat.c --------------------------------------- */
+/* ---- pmc_device_methods.c, pmc_device_wire.c, pmc_device_plan.c, pmc_device_repeat.c, pmc_services.c --------------------- */
 
 extern const struct device_method pmc_methods[];
+extern const struct device_service pmc_services[];
 extern const struct device_words pmc_words;
 const struct device_framing *pmc_framing(const struct device_config *config);
 size_t pmc_device_plan(const struct device_unit *unit, unsigned axis, struct device_plan_point *point, size_t room);

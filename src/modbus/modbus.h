@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* modbus.h: frames of Modbus RTU (MODBUS over Serial Line 1.02): check value, length, words, exceptions.
+/* modbus.h: frames of Modbus RTU (MODBUS over Serial Line 1.02): check value, length, words, exceptions; requests of Modbus TCP.
  *
  * A frame is address, function, data, check value (low byte first); words in it have their high byte first. When a frame is over,
  * and what its registers mean, is the device's business. */
@@ -63,5 +63,34 @@ void modbus_put_word(uint8_t *bytes, uint16_t word);
 
 /* Make the function code and data of a refusal of `function`, after the address. Returns their length. */
 size_t modbus_put_exception(uint8_t *bytes, uint8_t function, enum modbus_exception exception);
+
+/* ---- Modbus TCP: modbus_tcp.c --------------------------------------------------------------------------------------
+ *
+ *     transaction, protocol 0, length: two bytes each; unit; then function and data
+ */
+
+#define MODBUS_TCP_HEAD 7u
+#define MODBUS_TCP_UNIT 6u /* where the unit stands in the head */
+#define MODBUS_PDU_MAX 253u /* bytes of function and data */
+#define MODBUS_TCP_MAX (MODBUS_TCP_HEAD + MODBUS_PDU_MAX) /* bytes of a request or answer */
+
+/* The request of a client that comes in: plain data, zero at the begin. */
+struct modbus_tcp {
+    uint16_t length; /* bytes so far */
+    uint8_t frame[MODBUS_TCP_MAX];
+};
+
+enum modbus_tcp_result {
+    MODBUS_TCP_MORE,  /* the request is not whole yet */
+    MODBUS_TCP_WHOLE, /* function and data are `length - MODBUS_TCP_HEAD` bytes, one at least, behind the head */
+    MODBUS_TCP_WRONG  /* it is not Modbus TCP: the connection is to be closed, and nothing more taken */
+};
+
+/* Take a byte of a client. A whole request must be ended by modbus_tcp_answer(). */
+enum modbus_tcp_result modbus_tcp_take(struct modbus_tcp *tcp, uint8_t byte);
+
+/* Write the head of an answer whose function and data, `length` bytes, lie behind it already, and end the request. Returns the
+ * length of the whole answer. */
+size_t modbus_tcp_answer(struct modbus_tcp *tcp, uint8_t answer[MODBUS_TCP_MAX], size_t length);
 
 #endif

@@ -159,7 +159,7 @@ static enum pmc_answer store(struct pmc_unit *unit, unsigned axes)
 /* Commands for axes 01 X, 02 Y, 03 both. */
 static enum pmc_answer execute_for_axes(struct pmc_unit *unit, uint8_t code, uint8_t axes)
 {
-    const uint8_t *reg = unit->face.modbus.start;
+    const uint8_t *reg = unit->start;
     if (!are_axes(unit, axes))
         return PMC_RANGE;
     switch (code) {

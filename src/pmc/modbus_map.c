@@ -88,7 +88,7 @@ uint16_t pmc_read_holding(const struct pmc_unit *unit, const struct pmc_place *p
     case PMC_PLACE_SPEED:
         return axis->speed;
     case PMC_PLACE_START:
-        return unit->face.modbus.start[place->axis];
+        return unit->start[place->axis];
     case PMC_PLACE_REGISTER:
         return command_word(&axis->program[place->index], place->word);
     default:
@@ -147,7 +147,7 @@ enum pmc_answer pmc_write_holding(struct pmc_unit *unit, const struct pmc_place 
         request.value[place->axis] = modbus_word(words);
         return pmc_request(unit, &request);
     case PMC_PLACE_START:
-        unit->face.modbus.start[place->axis] = (uint8_t)modbus_word(words);
+        unit->start[place->axis] = (uint8_t)modbus_word(words);
         return PMC_OK;
     default:
         (void)command_of(words, &command);

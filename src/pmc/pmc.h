@@ -379,6 +379,7 @@ struct pmc_unit {
     uint64_t now;       /* first tick not yet done */
     uint16_t inputs;    /* levels */
     uint8_t outputs;
+    uint8_t start[PMC_AXES]; /* registers from which Modbus command 07 runs the program (AB4) */
     bool touched;       /* something came in: every axis has its turn in the next slot */
     struct pmc_axis axis[PMC_AXES];
     union pmc_face_state face;

@@ -55,7 +55,6 @@ struct pmc_modbus {
     uint64_t last;   /* tick of the last byte */
     uint16_t length; /* bytes of the frame that comes in; PMC_FRAME_MAX + 1: it is too long */
     bool is_spoilt;  /* silence inside, or a byte of it was lost */
-    uint8_t start[2]; /* registers from which command 07 runs the program (AB4) */
     uint8_t frame[PMC_FRAME_MAX]; /* that comes in or goes out */
 };
 
@@ -76,5 +75,8 @@ void pmc_lose_byte(struct pmc_unit *unit);
 /* Execute one message at the present tick: a line without CR, or a frame without address and check value. Returns the length of
  * the answer, which may be more than `room`; 0: none. What is on the line, and its counters, stay as they are. */
 size_t pmc_exchange(struct pmc_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room);
+
+/* The same with a frame of Modbus, whatever face the unit has at its line. */
+size_t pmc_modbus_exchange(struct pmc_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room);
 
 #endif

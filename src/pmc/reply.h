@@ -16,7 +16,6 @@ size_t pmc_reply_take(struct pmc_unit *unit, const uint8_t *answer, uint8_t *byt
 
 /* pmc_exchange(), pmc_lose_byte() of a face. */
 size_t pmc_ascii_exchange(struct pmc_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room);
-size_t pmc_modbus_exchange(struct pmc_unit *unit, const uint8_t *message, size_t length, uint8_t *answer, size_t room);
 void pmc_ascii_lose_byte(struct pmc_unit *unit);
 void pmc_modbus_lose_byte(struct pmc_unit *unit);
 

@@ -128,7 +128,7 @@ START_TEST(bl5_functions_with_a_wrong_length_or_address_are_refused)
         {{15, 0, 0, 0x07, 0xB1, 0xF7, 7}, 7, 3}, {{16, 0, 0, 0, 124, 248, 0}, 7, 3},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        uint8_t answer[CIB_PDU_MAX];
+        uint8_t answer[MODBUS_PDU_MAX];
         ck_assert_msg(cib_modbus(&unit, rows[i].request, rows[i].length, answer) == 2, "row %zu", i);
         ck_assert_msg(answer[0] == (rows[i].request[0] | MODBUS_IS_EXCEPTION) && answer[1] == rows[i].exception,
                       "row %zu: exception %u", i, answer[1]);

@@ -34,9 +34,10 @@ static void power_up(struct server *server)
 static void hear(void *context, const uint8_t *bytes, size_t length)
 {
     struct server *server = context;
-    FUZZ_CHECK(length > CIB_TCP_HEAD && length <= CIB_TCP_MAX, "%zu bytes", length);
+    FUZZ_CHECK(length > MODBUS_TCP_HEAD && length <= MODBUS_TCP_MAX, "%zu bytes", length);
     FUZZ_CHECK(modbus_word(bytes + 2) == 0 && modbus_word(bytes + 4) == length - 6u, "a wrong head");
-    FUZZ_CHECK(memcmp(bytes, server->tcp.frame, 4) == 0 && bytes[6] == server->tcp.frame[6], "another request's head");
+    const uint8_t *head = server->tcp.request.frame;
+    FUZZ_CHECK(memcmp(bytes, head, 4) == 0 && bytes[6] == head[6], "another request's head");
     length = server->length + length <= OUT_MAX ? length : 0;
     memcpy(server->out + server->length, bytes, length);
     server->length += length;

@@ -20,7 +20,7 @@ static void check_unit(const struct pmc_unit *unit)
         }
         for (unsigned reg = 0; reg < PMC_REGISTERS; reg++)
             FUZZ_CHECK(pmc_command_valid(&state->program[reg]), "register %u", reg);
-        FUZZ_CHECK(unit->face.modbus.start[axis] < PMC_REGISTERS, "start %u", unit->face.modbus.start[axis]);
+        FUZZ_CHECK(unit->start[axis] < PMC_REGISTERS, "start %u", unit->start[axis]);
         FUZZ_CHECK(state->speed >= 1 && state->speed <= PMC_SPEED_MAX, "speed %u", state->speed);
     }
 }

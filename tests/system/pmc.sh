@@ -230,6 +230,32 @@ test_pymodbus_on_the_pty() {
     client modbus "$folder/bus"
 }
 
+# address: where the server listens.
+address() {
+    sed -n "s/.*: modbus-tcp on //p" "$folder/bus.err"
+}
+
+test_pymodbus_over_tcp_is_recorded_and_replayed() {
+    [[ $python != none ]] || skip_case "there is no pymodbus; apt-get install python3-pymodbus"
+    unit --service modbus-tcp=127.0.0.1:0 --record "$folder/a.record"
+    client modbus "$(address)"
+    exits 0 pmc position # lines of text on the bus, all the while
+    holds "$said" "y: -1000" "the position"
+    exits 0 "$RKMCTL" -c "$folder/bus.control" shutdown
+    exits 0 "$RKM04" replay "$folder/a.record"
+    exits 2 "$RKM04" serve --device pmc-2hs --service plccoms=127.0.0.1:0
+    holds "$complained" "modbus-tcp" "the servers there are"
+}
+
+test_mbpoll_over_tcp() {
+    local at
+    command -v mbpoll >/dev/null || skip_case "there is no mbpoll; apt-get install mbpoll"
+    unit --service modbus-tcp=127.0.0.1:0
+    at=$(address)
+    exits 0 mbpoll -m tcp -a 1 -p "${at##*:}" -0 -1 -q -t 4 -r 1102 -c 2 "${at%:*}"
+    holds "$said" "[1103]: 	400" "the acceleration"
+}
+
 test_pyserial_speaks_the_lines() {
     unit
     client lines "$folder/bus"

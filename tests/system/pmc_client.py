@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Host programs of a PMC-2HS for pmc.sh: pmc_client.py modbus|lines PORT; with pymodbus, with pyserial."""
+"""Host programs of a PMC-2HS for pmc.sh: pmc_client.py modbus|lines PORT, or modbus HOST:PORT; with pymodbus, with pyserial."""
 import sys
 import time
 
@@ -25,9 +25,11 @@ def signed(high, low):
 
 class Unit:
     def __init__(self, port):
-        from pymodbus.client import ModbusSerialClient
+        from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 
-        self.bus = ModbusSerialClient(port, baudrate=9600, timeout=5)
+        host, _, number = port.rpartition(":")
+        self.bus = (ModbusTcpClient(host, port=int(number), timeout=5) if host
+                    else ModbusSerialClient(port, baudrate=9600, timeout=5))
         assert self.bus.connect()
 
     def holding(self, address, count=1):
