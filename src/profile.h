@@ -30,7 +30,7 @@ struct profile_goal {
     uint16_t acceleration, deceleration; /* steps/s^2 */
     int8_t early; /* TO_PLACE: the braking ends that many steps before the place, and the rest is done at start_speed, or at the
                    * speed if that is lower; < 0: it is planned to end behind the place, where the caller cuts it. What can be
-                   * reached is asked of the place itself. Takes two segments */
+                   * reached is asked of the place itself. Takes two segments: RKM04_SEGMENTS_MAX of 2 at least */
 };
 
 enum profile_answer {

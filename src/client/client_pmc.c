@@ -22,6 +22,62 @@ struct doing {
 
 static const char *const axis_names[PMC_AXES] = {"x", "y"};
 
+/* ---- The way to the unit ---------------------------------------------------------------------------------------------- */
+
+/* The speed of a real line; a pty takes any. */
+static bool set_baud(int fd, unsigned baud)
+{
+    static const struct {
+        unsigned baud;
+        speed_t speed;
+    } speeds[] = {{9600, B9600}, {19200, B19200}, {38400, B38400}, {57600, B57600}, {115200, B115200}};
+    struct termios settings;
+    if (tcgetattr(fd, &settings) != 0)
+        return true; /* no terminal: TCP */
+    for (size_t i = 0; i < sizeof speeds / sizeof *speeds; i++)
+        if (speeds[i].baud == baud)
+            return cfsetspeed(&settings, speeds[i].speed) == 0 && tcsetattr(fd, TCSANOW, &settings) == 0;
+    return false;
+}
+
+static enum exit_status open_line(struct doing *doing, const char *port)
+{
+    const struct client_pmc *pmc = doing->pmc;
+    if (!client_port_valid(port))
+        return client_usage("--port: expected tcp:HOST:PORT, PORT 1 to 65535, like tcp:localhost:4001, found '%s'", port);
+    doing->link.way = pmc->face && strcmp(pmc->face, "modbus") == 0 ? &client_pmc_modbus : &client_pmc_lines;
+    doing->link.port = port;
+    doing->link.node = (uint8_t)pmc->node;
+    doing->link.fd = client_port_open(port, pmc->timeout_ms);
+    if (doing->link.fd < 0)
+        return STATUS_FAILURE;
+    if (set_baud(doing->link.fd, pmc->baud > 0 ? pmc->baud : PMC_BAUD))
+        return STATUS_SUCCESS;
+    client_report("%s: cannot set %u baud", port, pmc->baud);
+    return STATUS_FAILURE;
+}
+
+/* The line if a port is named; else the control socket, if that is; else the bus of the emulator that is running. Once, when all
+ * words have been read: what is wrong with them needs no unit. */
+static enum exit_status open_link(struct doing *doing)
+{
+    const struct client_pmc *pmc = doing->pmc;
+    const char *named = pmc->port != NULL ? pmc->port : getenv("RKM04_PORT");
+    if (doing->link.way != NULL)
+        return STATUS_SUCCESS;
+    if (pmc->port == NULL && pmc->job->path != NULL) {
+        doing->link.way = &client_pmc_control;
+        return pmc->face == NULL ? STATUS_SUCCESS : client_usage("--face is for a port: expected --port");
+    }
+    if (named == NULL || named[0] == '\0') {
+        const struct client_found *found = client_find_one("--port");
+        if (found == NULL)
+            return STATUS_FAILURE;
+        named = found->port;
+    }
+    return open_line(doing, named);
+}
+
 /* ---- Words ---------------------------------------------------------------------------------------------------------- */
 
 static unsigned axis_of(char letter)
@@ -42,21 +98,15 @@ static uint8_t axes_of(const char *word)
     return axes;
 }
 
-/* The axes of the first word, or all that the unit has if there is none. */
-static enum exit_status read_axes(struct doing *doing, uint8_t *axes)
+/* The axes of the first word; 0, all that the unit has, if it is something else. */
+static uint8_t read_axes(struct doing *doing)
 {
-    int32_t position[PMC_AXES];
-    unsigned count;
-    enum exit_status status = STATUS_SUCCESS;
-    *axes = doing->count > 0 ? axes_of(doing->words[0]) : 0;
-    if (*axes != 0) {
+    uint8_t axes = doing->count > 0 ? axes_of(doing->words[0]) : 0;
+    if (axes != 0) {
         doing->words++;
         doing->count--;
-        return status;
     }
-    if ((status = doing->link.way->positions(&doing->link, position, &count)) == STATUS_SUCCESS)
-        *axes = count == 1 ? 1 : 3;
-    return status;
+    return axes;
 }
 
 static enum exit_status expect_no_more(const struct doing *doing)
@@ -88,19 +138,25 @@ static enum exit_status done(const struct doing *doing)
     return doing->pmc->json ? client_print_json(json_object()) : STATUS_SUCCESS;
 }
 
-static enum exit_status ask(struct doing *doing, const struct pmc_request *request)
+/* Send a request; its axes 0: all that the unit has. */
+static enum exit_status ask(struct doing *doing, struct pmc_request *request)
 {
-    enum exit_status status = doing->link.way->ask(&doing->link, request);
+    int32_t position[PMC_AXES];
+    unsigned count = 0;
+    enum exit_status status = open_link(doing);
+    if (status == STATUS_SUCCESS && request->axes == 0) {
+        status = doing->link.way->positions(&doing->link, position, &count);
+        request->axes = count == 1 ? 1 : 3;
+    }
+    if (status == STATUS_SUCCESS)
+        status = doing->link.way->ask(&doing->link, request);
     return status == STATUS_SUCCESS ? done(doing) : status;
 }
 
 static enum exit_status do_run(struct doing *doing)
 {
     unsigned reg = 0;
-    struct pmc_request request = {.kind = PMC_RUN};
-    enum exit_status status = read_axes(doing, &request.axes);
-    if (status != STATUS_SUCCESS)
-        return status;
+    struct pmc_request request = {.kind = PMC_RUN, .axes = read_axes(doing)};
     if (doing->count > 0) {
         if (!client_usage_number("pmc run: register", doing->words[0], 0, PMC_REGISTERS - 1u, &reg))
             return STATUS_USAGE;
@@ -108,7 +164,7 @@ static enum exit_status do_run(struct doing *doing)
         doing->count--;
     }
     request.value[0] = request.value[1] = (int32_t)reg;
-    status = expect_no_more(doing);
+    enum exit_status status = expect_no_more(doing);
     return status == STATUS_SUCCESS ? ask(doing, &request) : status;
 }
 
@@ -150,24 +206,20 @@ static enum exit_status do_speed(struct doing *doing)
 
 static enum exit_status do_stop(struct doing *doing)
 {
-    struct pmc_request request = {.kind = PMC_STOP};
-    enum exit_status status = read_axes(doing, &request.axes);
-    if (status == STATUS_SUCCESS && doing->count > 0 && strcmp(doing->words[0], "now") == 0) {
+    struct pmc_request request = {.kind = PMC_STOP, .axes = read_axes(doing)};
+    if (doing->count > 0 && strcmp(doing->words[0], "now") == 0) {
         request.kind = PMC_STOP_NOW;
         doing->words++;
         doing->count--;
     }
-    if (status == STATUS_SUCCESS)
-        status = expect_no_more(doing);
+    enum exit_status status = expect_no_more(doing);
     return status == STATUS_SUCCESS ? ask(doing, &request) : status;
 }
 
 static enum exit_status do_home(struct doing *doing)
 {
-    struct pmc_request request = {.kind = PMC_SEARCH};
-    enum exit_status status = read_axes(doing, &request.axes);
-    if (status == STATUS_SUCCESS)
-        status = expect_no_more(doing);
+    struct pmc_request request = {.kind = PMC_SEARCH, .axes = read_axes(doing)};
+    enum exit_status status = expect_no_more(doing);
     return status == STATUS_SUCCESS ? ask(doing, &request) : status;
 }
 
@@ -176,6 +228,8 @@ static enum exit_status do_position(struct doing *doing)
     int32_t position[PMC_AXES];
     unsigned axes;
     enum exit_status status = expect_no_more(doing);
+    if (status == STATUS_SUCCESS)
+        status = open_link(doing);
     if (status == STATUS_SUCCESS)
         status = doing->link.way->positions(&doing->link, position, &axes);
     if (status != STATUS_SUCCESS)
@@ -216,7 +270,9 @@ static enum exit_status show_errors(struct doing *doing)
 {
     uint8_t errors[PMC_AXES];
     unsigned axes;
-    enum exit_status status = doing->link.way->errors(&doing->link, errors, &axes);
+    enum exit_status status = open_link(doing);
+    if (status == STATUS_SUCCESS)
+        status = doing->link.way->errors(&doing->link, errors, &axes);
     if (status != STATUS_SUCCESS)
         return status;
     json_t *object = json_object();
@@ -242,9 +298,8 @@ static enum exit_status do_errors(struct doing *doing)
         return client_usage("pmc errors: expected clear or nothing, found '%s'", doing->words[0]);
     doing->words++;
     doing->count--;
-    enum exit_status status = read_axes(doing, &request.axes);
-    if (status == STATUS_SUCCESS)
-        status = expect_no_more(doing);
+    request.axes = read_axes(doing);
+    enum exit_status status = expect_no_more(doing);
     return status == STATUS_SUCCESS ? ask(doing, &request) : status;
 }
 
@@ -253,7 +308,9 @@ static enum exit_status do_errors(struct doing *doing)
 static enum exit_status show_file(struct doing *doing, enum pmc_text_kind kind)
 {
     char *text;
-    enum exit_status status = doing->link.way->get(&doing->link, kind, &text);
+    enum exit_status status = open_link(doing);
+    if (status == STATUS_SUCCESS)
+        status = doing->link.way->get(&doing->link, kind, &text);
     if (status != STATUS_SUCCESS)
         return status;
     if (doing->pmc->json)
@@ -273,7 +330,9 @@ static enum exit_status send_file(struct doing *doing, enum pmc_text_kind kind, 
         return STATUS_FAILURE;
     }
     char *text = strndup(file.text, file.length);
-    enum exit_status status = text ? doing->link.way->put(&doing->link, kind, name, text) : STATUS_FAILURE;
+    enum exit_status status = text ? open_link(doing) : STATUS_FAILURE;
+    if (status == STATUS_SUCCESS)
+        status = doing->link.way->put(&doing->link, kind, name, text);
     free(text);
     program_text_free(&file);
     return status == STATUS_SUCCESS ? done(doing) : status;
@@ -304,7 +363,9 @@ static enum exit_status do_store(struct doing *doing)
     uint8_t axes = doing->count > 0 ? axes_of(doing->words[0]) : 0;
     if (doing->count > 1 || (doing->count == 1 && axes == 0))
         return client_usage("pmc store: expected x, y, xy or nothing");
-    enum exit_status status = doing->link.way->store(&doing->link, axes);
+    enum exit_status status = open_link(doing);
+    if (status == STATUS_SUCCESS)
+        status = doing->link.way->store(&doing->link, axes);
     return status == STATUS_SUCCESS ? done(doing) : status;
 }
 
@@ -321,61 +382,9 @@ static const struct {
 
 #define COMMANDS (sizeof commands / sizeof commands[0])
 
-/* The speed of a real line; a pty takes any. */
-static bool set_baud(int fd, unsigned baud)
-{
-    static const struct {
-        unsigned baud;
-        speed_t speed;
-    } speeds[] = {{9600, B9600}, {19200, B19200}, {38400, B38400}, {57600, B57600}, {115200, B115200}};
-    struct termios settings;
-    if (tcgetattr(fd, &settings) != 0)
-        return true; /* no terminal: TCP */
-    for (size_t i = 0; i < sizeof speeds / sizeof *speeds; i++)
-        if (speeds[i].baud == baud)
-            return cfsetspeed(&settings, speeds[i].speed) == 0 && tcsetattr(fd, TCSANOW, &settings) == 0;
-    return false;
-}
-
-static enum exit_status open_line(struct doing *doing, const char *port)
-{
-    const struct client_pmc *pmc = doing->pmc;
-    if (!client_port_valid(port))
-        return client_usage("--port: expected tcp:HOST:PORT, PORT 1 to 65535, like tcp:localhost:4001, found '%s'", port);
-    doing->link.way = pmc->face && strcmp(pmc->face, "modbus") == 0 ? &client_pmc_modbus : &client_pmc_lines;
-    doing->link.port = port;
-    doing->link.node = (uint8_t)pmc->node;
-    doing->link.fd = client_port_open(port, pmc->timeout_ms);
-    if (doing->link.fd < 0)
-        return STATUS_FAILURE;
-    if (set_baud(doing->link.fd, pmc->baud > 0 ? pmc->baud : PMC_BAUD))
-        return STATUS_SUCCESS;
-    client_report("%s: cannot set %u baud", port, pmc->baud);
-    return STATUS_FAILURE;
-}
-
-/* The line if a port is named; else the control socket, if that is; else the bus of the emulator that is running. */
-static enum exit_status open_link(struct doing *doing)
-{
-    const struct client_pmc *pmc = doing->pmc;
-    const char *named = pmc->port != NULL ? pmc->port : getenv("RKM04_PORT");
-    doing->link = (struct pmc_link){.fd = -1, .timeout_ms = pmc->timeout_ms, .job = pmc->job};
-    if (pmc->port == NULL && pmc->job->path != NULL) {
-        doing->link.way = &client_pmc_control;
-        return pmc->face == NULL ? STATUS_SUCCESS : client_usage("--face is for a port: expected --port");
-    }
-    if (named == NULL || named[0] == '\0') {
-        const struct client_found *found = client_find_one("--port");
-        if (found == NULL)
-            return STATUS_FAILURE;
-        named = found->port;
-    }
-    return open_line(doing, named);
-}
-
 enum exit_status client_pmc(const struct client_pmc *pmc)
 {
-    struct doing doing = {.pmc = pmc};
+    struct doing doing = {.pmc = pmc, .link = {.fd = -1, .timeout_ms = pmc->timeout_ms, .job = pmc->job}};
     size_t row = 0;
     if (pmc->count == 0)
         return client_usage("pmc: expected " CLIENT_PMC_COMMANDS);
@@ -386,9 +395,7 @@ enum exit_status client_pmc(const struct client_pmc *pmc)
                             nearest_hint(pmc->words[0], CLIENT_PMC_COMMANDS));
     doing.words = pmc->words + 1;
     doing.count = pmc->count - 1;
-    enum exit_status status = open_link(&doing);
-    if (status == STATUS_SUCCESS)
-        status = commands[row].function(&doing);
+    enum exit_status status = commands[row].function(&doing);
     if (doing.link.fd >= 0)
         close(doing.link.fd);
     if (pmc->job->connected)

@@ -166,8 +166,14 @@ test_files_are_stored_at_the_start() {
 
 test_wrong_files_and_options_are_refused() {
     printf '5 REP 256\n' >"$folder/wrong.pmc"
-    exits 2 "$RKM04" serve --device pmc-2hs --device-option program="$folder/wrong.pmc"
-    holds "$complained" "$folder/wrong.pmc:1:7: error: expected a count from 1 to 255" "stderr"
+    printf 'device: pmc-2hs\nsteps: []\n' >"$folder/empty.yaml"
+    local words
+    for words in serve "exec $folder/wrong.pmc" "test $folder/empty.yaml"; do
+        exits 2 "$RKM04" $words --device pmc-2hs --device-option program="$folder/wrong.pmc"
+        holds "$complained" "$folder/wrong.pmc:1:7: error: expected a count from 1 to 255" "stderr of $words"
+        exits 1 "$RKM04" $words --device pmc-2hs --device-option program="$folder/none.pmc"
+        holds "$complained" "cannot read $folder/none.pmc" "stderr of $words"
+    done
     local option
     for option in face=hdlc baud=300 first-answer-late=60001 rep-counts=laps abs-needs-home=yes; do
         exits 2 "$RKM04" serve --device pmc-1hs --device-option "$option"
@@ -177,6 +183,21 @@ test_wrong_files_and_options_are_refused() {
     exits 2 "$RKMCTL" -p "$folder/none" pmc flip
     exits 2 "$RKMCTL" -p "$folder/none" --face rtu pmc position
     exits 2 "$RKMCTL" -p "$folder/none" --face modbus position
+}
+
+# What is wrong with the words needs no unit.
+test_wrong_words_are_told_where_no_unit_is() {
+    local words
+    for words in "jog z" jog "move q=3" "move x=" move "speed x=0" "run x 64" "run 64" "stop q" "stop x later" "home xz" \
+        "position x" "errors x" "errors clear q" program "parameters put" "store z"; do
+        exits 2 "$RKMCTL" -p "$folder/none" pmc $words
+        holds "$complained" "pmc" "stderr of $words"
+        exits 2 alone "$RKMCTL" pmc $words
+    done
+    exits 1 "$RKMCTL" -p "$folder/none" pmc jog x
+    holds "$complained" "cannot open $folder/none" "stderr"
+    exits 1 "$RKMCTL" -p "$folder/none" pmc program put "$folder/nothing.pmc"
+    holds "$complained" "cannot read $folder/nothing.pmc" "stderr"
 }
 
 test_exec_runs_a_program() {
