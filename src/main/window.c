@@ -23,7 +23,7 @@ static const struct argp_option option_table[] = {
 
 static const char doc[] =
     "Serve the service program's window to a browser on this machine, for real and virtual units. Started as `rkmctl window'. "
-    "The address is printed as WINDOW http://...; its token lets in whoever has it."
+    "The address is printed as WINDOW http://...; whoever has its token can use the window."
     "\v"
     "Examples:\n"
     "  rkmctl window --open\n"

@@ -14,7 +14,7 @@ refused() {
 test_help_and_version_go_to_stdout() {
     local command
     for command in "$RKM04 --help" "$RKM04 serve --help" "$RKM04 exec --help" "$RKM04 test --help" \
-        "$RKM04 replay --help" "$RKMCTL --help"; do
+        "$RKM04 replay --help" "$RKM04 lsp --help" "$RKMCTL --help" ${RKM04_WINDOW:+"$RKMCTL window --help"}; do
         # shellcheck disable=SC2086
         exits 0 $command
         holds "${said,,}" usage "'$command'"
@@ -45,6 +45,8 @@ test_the_manual_pages_know_every_option_and_no_other() {
         same "$(long_options "$RKM04" "$sub")" "$(in_page "rkm04-$sub.1")" "options in rkm04-$sub.1"
     done
     same "$(long_options "$RKMCTL")" "$(in_page rkmctl.1)" "options in rkmctl.1"
+    [[ -z ${RKM04_WINDOW-} ]] ||
+        same "$(long_options "$RKMCTL" window)" "$(in_page rkmctl-window.1)" "options in rkmctl-window.1"
 }
 
 test_help_hint_and_manual_page_name_every_subcommand() {
