@@ -7,6 +7,7 @@
 #include "client_job.h"
 
 #define CLIENT_PMC_COMMANDS "run, jog, move, speed, stop, home, position, errors, program, parameters or store"
+#define CLIENT_PMC_NAMES "run", "jog", "move", "speed", "stop", "home", "position", "errors", "program", "parameters", "store"
 
 struct client_pmc {
     const char *port;         /* NULL: not named */

@@ -21,6 +21,7 @@
 #include "client_control.h"
 #include "client_find.h"
 #include "client_help.h"
+#include "client_pmc.h"
 #include "client_request.h"
 #include "client_usage.h"
 #include "client_words.h"
@@ -88,6 +89,27 @@ static void add_number(struct line *line, const char *name, unsigned value)
     add_option(line, name, text);
 }
 
+static void add_control(struct line *line, const struct client_shell *shell)
+{
+    add_option(line, "control", shell->control);
+    add_option(line, "unit", shell->unit);
+    if (shell->line >= 0)
+        add_number(line, "line", (unsigned)shell->line);
+}
+
+/* pmc goes by either: the control socket can do more, but --face says what a port speaks. */
+static void add_pmc(struct line *line, const struct client_shell *shell)
+{
+    if (shell->control != NULL && shell->face == NULL) {
+        add_control(line, shell);
+        return;
+    }
+    add_option(line, "port", shell->port);
+    add_option(line, "face", shell->face);
+    if (shell->baud > 0)
+        add_number(line, "baud", shell->baud);
+}
+
 static void add_options(struct line *line, const struct state *state, const char *command)
 {
     const struct client_shell *shell = &state->shell;
@@ -103,12 +125,11 @@ static void add_options(struct line *line, const struct state *state, const char
         add_option(line, "framing", shell->framing);
         add_number(line, "message-max", shell->message_max);
         add_number(line, "motor", state->motor);
-        return;
+    } else if (strcmp(command, "pmc") == 0) {
+        add_pmc(line, shell);
+    } else {
+        add_control(line, shell);
     }
-    add_option(line, "control", shell->control);
-    add_option(line, "unit", shell->unit);
-    if (shell->line >= 0)
-        add_number(line, "line", (unsigned)shell->line);
 }
 
 static const char *given_or(const char *option, const char *name)
@@ -228,6 +249,8 @@ static enum exit_status do_line(struct state *state, char *line)
 {
     char *word[CLIENT_WORDS_MAX];
     if (client_words_is_program(line)) {
+        if (state->shell.face != NULL)
+            return report_usage(state, "expected a command, as pmc: program text is for an RKM04", line);
         char *program[] = {(char *)"set", (char *)"--", line};
         return run(state, program, 3);
     }
@@ -288,11 +311,35 @@ static char *complete_command(const char *text, int again)
     }
 }
 
+static char *complete_pmc(const char *text, int again)
+{
+    static const char *const names[] = {CLIENT_PMC_NAMES, NULL};
+    static unsigned at;
+    if (!again)
+        at = 0;
+    while (names[at] != NULL) {
+        const char *name = names[at++];
+        if (strncmp(name, text, strlen(text)) == 0)
+            return strdup(name);
+    }
+    return NULL;
+}
+
+/* Is the word that begins at `start` the first one behind `pmc'? */
+static bool is_of_pmc(const char *line, int start)
+{
+    const size_t blanks = strspn(line, " \t"), name = blanks + strlen("pmc");
+    return strncmp(line + blanks, "pmc", strlen("pmc")) == 0 && name < (size_t)start &&
+           name + strspn(line + name, " \t") == (size_t)start;
+}
+
 /* The first word is a command, others are files. */
 static char **complete(const char *text, int start, int end)
 {
     (void)end;
-    return start == 0 ? rl_completion_matches(text, complete_command) : NULL;
+    if (start > 0 && !is_of_pmc(rl_line_buffer, start))
+        return NULL;
+    return rl_completion_matches(text, start == 0 ? complete_command : complete_pmc);
 }
 
 /* $XDG_STATE_HOME/rkm04/history, else below ~/.local/state. Makes the folders. Returns false if there is no place for it. */

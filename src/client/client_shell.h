@@ -11,7 +11,8 @@ struct client_shell {
     const char *file;      /* of commands, "-" for standard input; NULL: a person types them, if standard input is a terminal */
     /* Options for each command that takes them: NULL, 0 (line: -1) are not given. */
     const char *port, *framing, *control, *unit;
-    unsigned message_max, timeout_ms;
+    const char *face;      /* of pmc: then it goes by the port */
+    unsigned message_max, timeout_ms, baud;
     int line;
     bool json;
     unsigned node, motor;  /* to begin with */

@@ -293,7 +293,7 @@ static enum exit_status do_shell(const struct options *options)
     const struct client_shell shell = {
         .file = options->file, .port = request->port, .framing = request->framing->name, .message_max = request->message_max,
         .timeout_ms = options->timed ? request->timeout_ms : 0, .control = job->path, .unit = job->unit, .line = job->line,
-        .json = options->json, .motor = request->motor, .has_node = node != NULL,
+        .face = options->face, .baud = options->baud, .json = options->json, .motor = request->motor, .has_node = node != NULL,
         .node = node != NULL ? read_number("--node", node, 0, RKM04_NODE_MAX) : 1, .run = run_line};
     return client_shell(&shell);
 }

@@ -3,12 +3,14 @@
 
     RKM04=… RKMCTL=… control_examples.py CONTROL.md [HEADING | --write]
 
-Each section of the document meets a fresh unit with a stepped clock. In its blocks `-->` is sent, `<--` has to come, `$` is run.
+Each section of the document meets a fresh unit with a stepped clock; `$ rkm04 serve OPTIONS` as its first example says with what
+options. In its blocks `-->` is sent, `<--` has to come, `$` is run.
 A line that is indented goes on with the one before. HEADING: that section alone. --write: put what came into the document, for
 those who change an answer; look at the difference then."""
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -49,10 +51,10 @@ def wrapped(answer):
 class Session:
     """A fresh unit, and a client of it."""
 
-    def __init__(self):
+    def __init__(self, options):
         self.folder = tempfile.TemporaryDirectory()
         path = os.path.join(self.folder.name, "bus")
-        self.emulator = subprocess.Popen([os.environ["RKM04"], "serve", "--link", path, "--clock", "stepped"],
+        self.emulator = subprocess.Popen([os.environ["RKM04"], "serve", "--link", path, "--clock", "stepped", *options],
                                          cwd=self.folder.name, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         ready = self.emulator.stdout.readline()
         assert ready.startswith("READY "), f"no unit: {self.emulator.stderr.read()}"
@@ -74,7 +76,10 @@ class Session:
 
 def run_section(heading, examples, lines, write):
     """Returns what is wrong; with `write`, the lines are changed instead."""
-    session, wrong = Session(), []
+    serve, options = "rkm04 serve ", []
+    if examples[0][0] == "$" and examples[0][1].startswith(serve):
+        options = shlex.split(examples.pop(0)[1][len(serve):])
+    session, wrong = Session(options), []
     try:
         for kind, text, first, last in examples:
             if kind == "$":

@@ -51,6 +51,36 @@ test_a_file_that_cannot_be_read_as_lines_is_an_error() {
     holds "$complained" "binary:1: error: expected a text" "a byte 0"
 }
 
+test_a_pmc_has_commands_over_each_way() {
+    serve bus --device pmc-2hs --control "$folder/bus.control"
+    script 'pmc move x=20' 'wait m1.position=20' 'wait m1.idle' 'pmc program get' 'pmc position' \
+        "call pmc.register_position '{\"axes\":\"x\",\"reg\":7}'" 'pmc program get'
+    exits 0 "$RKMCTL" -p "$folder/bus" -c "$folder/bus.control" shell -f "$folder/script"
+    holds "$said" "X: 07 ABS 20 V1" "the program"
+    holds "$said" "x: 20" "the position"
+    script 'pmc position'
+    exits 0 "$RKMCTL" -p "$folder/bus" shell -f "$folder/script"
+    holds "$said" "x: 20" "the position over the port"
+    script 'POS'
+    exits 2 "$RKMCTL" -p "$folder/bus" --face ascii shell -f "$folder/script"
+    holds "$complained" "expected a command, as pmc: program text is for an RKM04, found 'POS'" "program text"
+}
+
+test_a_pmc_with_modbus_has_them_too() {
+    serve bus --device pmc-1hs --device-option face=modbus --node 16
+    script 'node 16' 'pmc speed x=77' 'pmc position' 'pmc parameters get'
+    exits 0 "$RKMCTL" -p "$folder/bus" --face modbus --baud 9600 shell -f "$folder/script"
+    same "x: 0" "${said%%$'\n'*}" "the position"
+}
+
+test_commands_of_a_pmc_are_completed() {
+    serve bus --device pmc-2hs --control "$folder/bus.control"
+    person 'pmc pos\t' 'pm\tjo\tx+' 'pmc stop' quit
+    holds "$shown" "pmc position" "completion"
+    holds "$shown" "y: 0" "the positions"
+    holds "$shown" "pmc jog x+" "completion of both"
+}
+
 test_all_commands_are_for_the_same_emulator() {
     serve one --node 3
     serve two
