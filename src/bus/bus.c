@@ -352,7 +352,6 @@ bool bus_begin(struct bus *bus, unsigned number, const struct bus_options *optio
     bus->coverage = coverage;
     bus->calls = calls;
     bus->context = context;
-    bus->time.timer_fd = -1;
     bus_ports_prepare(&bus->ports, options, &bus->log, &ports_calls, bus);
     if (!bus_ports_open(&bus->ports, loop, watch) || !open_flash(bus))
         return false;
@@ -389,6 +388,7 @@ bool bus_end(struct bus *bus)
     bool ok = true;
     bus_ports_close(&bus->ports);
     bus_services_close(bus->services);
+    bus_time_end(&bus->time);
     if (!bus_files_end(&bus->files))
         ok = false;
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
@@ -400,7 +400,6 @@ bool bus_end(struct bus *bus)
 void bus_free(struct bus *bus)
 {
     sim_end(&bus->sim);
-    bus_time_free(&bus->time);
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)
         free(bus->unit[at].flash_path);
     bus_ports_free(&bus->ports);

@@ -5,8 +5,6 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "wire/wire.h"
 
@@ -135,6 +133,7 @@ void bus_ports_silence(struct bus_ports *ports)
 /* ---- The pty or device ---------------------------------------------------------------------------------------------- */
 
 static void on_retry(uv_timer_t *timer);
+static void on_pty_closed(void *context);
 static void follow_adapter(struct bus_ports *ports);
 
 static void on_event(void *context, enum line_event event)
@@ -191,12 +190,10 @@ static bool read_line(struct bus_ports *ports)
     return true;
 }
 
-static void on_readable(uv_poll_t *handle, int status, int events)
+static void on_readable(void *context)
 {
-    struct bus_ports *ports = handle->data;
+    struct bus_ports *ports = context;
     struct line *line = &ports->line;
-    (void)status; /* a hang-up shows when reading */
-    (void)events;
     if (line->watch)
         line_watch_update(line->watch);
     ports->calls->expect(ports->context);
@@ -218,10 +215,10 @@ void bus_ports_listen(struct bus_ports *ports)
     size_t most = ports->calls->room(ports->context);
     follow_adapter(ports);
     if (ports->reading && free_room(ports) == 0) {
-        uv_poll_stop(&ports->readable);
+        line_poll_stop(&ports->readable);
         ports->reading = false;
     } else if (!ports->reading && ports->line.fd >= 0 && most >= SEGMENT_ROOM / 2) {
-        ports->reading = uv_poll_start(&ports->readable, UV_READABLE, on_readable) == 0;
+        ports->reading = line_poll_start(&ports->readable) == 0;
     }
     if (most >= SEGMENT_ROOM / 2 && ports->tcp)
         net_port_wake(ports->tcp);
@@ -357,10 +354,7 @@ static struct net_port *open_net(struct bus_ports *ports, uv_loop_t *loop, const
 
 static bool poll_line(struct bus_ports *ports, uv_loop_t *loop)
 {
-    ports->readable.data = ports;
-    int error = uv_poll_init(loop, &ports->readable, ports->line.fd);
-    if (error == 0)
-        error = uv_poll_start(&ports->readable, UV_READABLE, on_readable);
+    int error = line_poll_open(&ports->readable, loop, &ports->line);
     if (error != 0)
         log_error("cannot watch the bus: %s", uv_strerror(error));
     return error == 0;
@@ -369,22 +363,15 @@ static bool poll_line(struct bus_ports *ports, uv_loop_t *loop)
 static bool open_line(struct bus_ports *ports, uv_loop_t *loop, struct line_watch *watch)
 {
     const struct bus_options *options = ports->options;
-    char path[PATH_MAX];
     if (options->port) {
         if (!line_serial_open(&ports->line, options->port, options->rts))
             return false;
         if (options->rts == LINE_RTS_TOGGLES && !bus_rts_begin(&ports->rts, &ports->line, ports->unit.baud, loop))
             return false;
     } else if (options->pty) {
-        if (options->link && !name_expand(options->link, NULL, ports->log->number, path)) {
-            log_error("--link: the path is too long");
-            return false;
-        }
         uv_timer_init(loop, &ports->retry);
         ports->retry.data = ports;
-        if ((options->wine && !wine_link_prepare(&ports->wine, options->wine, ports->log->number)) ||
-            !link_path_claim(&ports->link, options->link ? path : NULL, ports->log->number) ||
-            !line_pty_open(&ports->line, watch, on_event, ports))
+        if (!bus_pty_claim(&ports->pty, options, ports->log->number) || !line_pty_open(&ports->line, watch, on_event, ports))
             return false;
     } else {
         return true;
@@ -402,7 +389,8 @@ void bus_ports_prepare(struct bus_ports *ports, const struct bus_options *option
     ports->log = log;
     ports->calls = calls;
     ports->context = context;
-    ports->rts.timer_fd = ports->link.lock = -1;
+    ports->readable = (struct line_poll){.readable = on_readable, .closed = on_pty_closed, .context = ports};
+    bus_pty_prepare(&ports->pty);
     line_none(&ports->line);
 }
 
@@ -414,7 +402,7 @@ bool bus_ports_open(struct bus_ports *ports, uv_loop_t *loop, struct line_watch 
     if (!open_line(ports, loop, watch))
         return false;
     if (ports->line.fd >= 0 && ports->unit.baud != line_settings_unit.baud)
-        line_settings_set_baud(ports->line.fd, ports->unit.baud);
+        line_set_baud(&ports->line, ports->unit.baud);
     if (options->tcp && !(ports->tcp = open_net(ports, loop, options->tcp, NET_RAW)))
         return false;
     if (options->rfc2217 && !(ports->rfc2217 = open_net(ports, loop, options->rfc2217, NET_RFC2217)))
@@ -424,17 +412,15 @@ bool bus_ports_open(struct bus_ports *ports, uv_loop_t *loop, struct line_watch 
 
 bool bus_ports_publish(struct bus_ports *ports)
 {
-    if (!ports->options->pty)
-        return true;
-    return link_path_make(&ports->link, ports->line.path) &&
-           (!ports->options->wine || ports->wine.target[0] || wine_link_make(&ports->wine, ports->link.path));
+    return !ports->options->pty || bus_pty_publish(&ports->pty, ports->options, &ports->line);
 }
 
 void bus_ports_close(struct bus_ports *ports)
 {
     ports->ended = true;
-    wine_link_remove(&ports->wine);
-    link_path_release(&ports->link);
+    bus_pty_release(&ports->pty);
+    line_poll_close(&ports->readable);
+    bus_rts_end(&ports->rts);
     if (ports->tcp)
         net_port_close(ports->tcp);
     if (ports->rfc2217)
@@ -446,14 +432,13 @@ void bus_ports_free(struct bus_ports *ports)
     free(ports->tcp);
     free(ports->rfc2217);
     line_close(&ports->line);
-    bus_rts_free(&ports->rts);
 }
 
 /* ---- The adapter ---------------------------------------------------------------------------------------------------- */
 
-static void on_pty_closed(uv_handle_t *handle)
+static void on_pty_closed(void *context)
 {
-    struct bus_ports *ports = handle->data;
+    struct bus_ports *ports = context;
     ports->closing = false;
     if (!ports->retrying)
         follow_adapter(ports);
@@ -471,15 +456,10 @@ static void plug_network(struct bus_ports *ports, bool plugged)
 static void remove_pty(struct bus_ports *ports)
 {
     uint64_t dropped = ports->line.dropped;
-    struct stat found;
-    if (stat(ports->line.path, &found) == 0) {
-        ports->group = found.st_gid;
-        ports->mode = found.st_mode & 0777;
-    }
-    link_path_hide(&ports->link);
+    bus_pty_hide(&ports->pty, &ports->line);
     ports->closing = true;
     ports->reading = false;
-    uv_close((uv_handle_t *)&ports->readable, on_pty_closed);
+    line_poll_close(&ports->readable);
     line_close(&ports->line);
     line_none(&ports->line);
     ports->line.dropped = dropped;
@@ -499,19 +479,6 @@ static void unplug_adapter(struct bus_ports *ports)
     ports->calls->presence(ports->context);
 }
 
-/* The new pty is for whom the old one was for. */
-static void restore_access(const struct bus_ports *ports)
-{
-    const char *path = ports->line.path;
-    struct stat found;
-    if (ports->mode == 0 || stat(path, &found) != 0)
-        return;
-    if (found.st_gid != ports->group && chown(path, (uid_t)-1, ports->group) != 0)
-        log_error("cannot set the group of %s to %u, as before: %s", path, (unsigned)ports->group, strerror(errno));
-    else if ((found.st_mode & 0777) != ports->mode && chmod(path, ports->mode) != 0)
-        log_error("cannot set the mode of %s to %03o, as before: %s", path, (unsigned)ports->mode, strerror(errno));
-}
-
 static bool make_pty(struct bus_ports *ports)
 {
     uint64_t dropped = ports->line.dropped;
@@ -524,7 +491,7 @@ static bool make_pty(struct bus_ports *ports)
         line_close(&ports->line);
         return false;
     }
-    restore_access(ports);
+    bus_pty_restore_access(&ports->pty, &ports->line);
     if (bus_ports_publish(ports))
         return true;
     remove_pty(ports);
@@ -544,7 +511,7 @@ static void plug_in_adapter(struct bus_ports *ports)
     ports->known = ports->net = ports->unit;
     plug_network(ports, true);
     if (ports->options->pty)
-        bus_log(ports->log, "the adapter is plugged in again: %s, link %s", ports->line.path, ports->link.path);
+        bus_log(ports->log, "the adapter is plugged in again: %s, link %s", ports->line.path, ports->pty.link.path);
     else
         bus_log(ports->log, "the adapter is plugged in again");
 }

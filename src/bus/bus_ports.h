@@ -8,6 +8,7 @@
 
 #include "bus_log.h"
 #include "bus_options.h"
+#include "bus_pty.h"
 #include "bus_rts.h"
 #include "line/line.h"
 
@@ -33,9 +34,8 @@ struct bus_ports {
 
     struct line line;           /* the pty or device */
     struct line_watch *watch;
-    struct link_path link;      /* to the pty */
-    struct wine_link wine;      /* to `link` */
-    uv_poll_t readable;
+    struct bus_pty pty;
+    struct line_poll readable;
     bool reading;                   /* it is being polled */
     struct net_port *tcp, *rfc2217; /* NULL: none */
     uint64_t dropped_logged;        /* of line.dropped, those in the log already */
@@ -55,7 +55,6 @@ struct bus_ports {
     bool retrying;              /* there was no new pty to be had: another try when `again` goes off */
     bool retry_logged;
     uv_timer_t retry;           /* follow_adapter() is due */
-    uint32_t group, mode;       /* of the pty that is gone; its successor gets them; mode 0: there was none */
     bool ended;                 /* bus_ports_close() */
 };
 

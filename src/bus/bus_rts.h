@@ -10,18 +10,17 @@
 struct bus_rts {
     struct line *line;
     unsigned baud;       /* of the line */
-    int timer_fd;        /* -1: none */
-    uv_poll_t timer;
+    struct wake_timer timer;
     uint64_t sent_until; /* ns at which the device will have sent all */
 };
 
-/* Make the timer. Returns false if it did not work (reported). bus_rts_free() is due in either case; before that
- * rts->timer_fd is to be -1. */
+/* Make the timer. *rts must be zero. Returns false if it did not work (reported). bus_rts_end() is due in either case. */
 bool bus_rts_begin(struct bus_rts *rts, struct line *line, unsigned baud, uv_loop_t *loop);
 
 /* RTS is on, `length` bytes have been written: switch it off when they are out. */
 void bus_rts_lower_after(struct bus_rts *rts, size_t length);
 
-void bus_rts_free(struct bus_rts *rts);
+/* Close the timer; RTS stays as it is. */
+void bus_rts_end(struct bus_rts *rts);
 
 #endif

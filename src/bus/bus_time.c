@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "bus_time.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/timerfd.h>
-#include <unistd.h>
 
 #include "line/line.h"
 
@@ -211,10 +208,7 @@ static uint64_t next_wake_time(const struct bus_time *time, uint64_t now)
 
 static void set_timer(struct bus_time *time, uint64_t when)
 {
-    struct itimerspec spec = {
-        .it_value = {.tv_sec = (time_t)(when / NS_PER_SECOND), .tv_nsec = (long)(when % NS_PER_SECOND)},
-    };
-    timerfd_settime(time->timer_fd, TFD_TIMER_ABSTIME, &spec, NULL);
+    wake_timer_set(&time->timer, when);
     time->wake = when;
 }
 
@@ -276,11 +270,9 @@ void bus_time_catch_up(struct bus_time *time)
     set_timer(time, wake);
 }
 
-static void on_timer(uv_poll_t *handle, int status, int events)
+static void on_timer(void *context)
 {
-    (void)status;
-    (void)events;
-    bus_time_catch_up(handle->data);
+    bus_time_catch_up(context);
 }
 
 void bus_time_prepare(struct bus_time *time, const struct bus_options *options, bool timed, struct sim *sim,
@@ -298,14 +290,7 @@ void bus_time_prepare(struct bus_time *time, const struct bus_options *options, 
 
 bool bus_time_begin(struct bus_time *time, uv_loop_t *loop)
 {
-    time->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    int error = time->timer_fd < 0 ? -errno : uv_poll_init(loop, &time->timer, time->timer_fd);
-    time->timer.data = time;
-    if (error == 0)
-        error = uv_poll_start(&time->timer, UV_READABLE, on_timer);
-    if (error != 0)
-        log_error("cannot make a timer: %s", uv_strerror(error));
-    return error == 0;
+    return wake_timer_open(&time->timer, loop, on_timer, time);
 }
 
 void bus_time_start(struct bus_time *time)
@@ -315,10 +300,9 @@ void bus_time_start(struct bus_time *time)
     bus_time_catch_up(time);
 }
 
-void bus_time_free(struct bus_time *time)
+void bus_time_end(struct bus_time *time)
 {
-    if (time->timer_fd >= 0)
-        close(time->timer_fd);
+    wake_timer_close(&time->timer);
 }
 
 /* ---- From outside --------------------------------------------------------------------------------------------------- */

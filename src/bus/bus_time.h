@@ -10,6 +10,7 @@
 #include "bus_options.h"
 #include "command/command.h"
 #include "condition/condition.h"
+#include "line/line.h"
 #include "sim/sim.h"
 #include "virtual_clock.h"
 
@@ -51,11 +52,10 @@ struct bus_time {
     uint64_t behind;              /* ns since when bus_time_catch_up() has not got as far as the clock; 0: it has */
     bool behind_logged;           /* of this clock */
     bool over_logged;             /* that virtual time has come to its end */
-    int timer_fd;                 /* -1: none */
-    uv_poll_t timer;
+    struct wake_timer timer;
 };
 
-/* Tell it what it drives and whom it reports to. *time is zero apart from timer_fd = -1. */
+/* Tell it what it drives and whom it reports to. *time is zero. */
 void bus_time_prepare(struct bus_time *time, const struct bus_options *options, bool timed, struct sim *sim,
                       const struct bus_log *log, const struct bus_time_calls *calls, void *context);
 
@@ -64,7 +64,7 @@ bool bus_time_begin(struct bus_time *time, uv_loop_t *loop);
 
 /* Tick 0 is now. */
 void bus_time_start(struct bus_time *time);
-void bus_time_free(struct bus_time *time);
+void bus_time_end(struct bus_time *time);
 
 /* Advance the units to the present as far as that does not take long, send what is due, and set the timer.
  * bus_time_update(): unless that is being done already. bus_time_before_read(): before bytes are read; does nothing with

@@ -2,6 +2,7 @@
 /* line.h: the ways in and out of the process; the face of the room.
  *
  *     line (here)                  the serial end: a pty of its own (line_pty.c) or a device (line_serial.c)
+ *     line_poll, wake_timer        when it can be read, and when it is time, for the event loop
  *     line_settings                what a client has set, and how bytes of another speed are received
  *     net_port, rfc2217            TCP, raw or with the settings of a port
  *     service_port                 TCP for many clients
@@ -15,12 +16,11 @@
 #ifndef RKM04_LINE_H
 #define RKM04_LINE_H
 
-#include <linux/serial.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <sys/types.h>
-#include <termios.h>
+#include <uv.h>
 
 /* What line_pty.c reports about clients. */
 enum line_event {
@@ -61,9 +61,8 @@ struct line {
     uint64_t dropped;         /* bytes without a client, or that a client did not read in time */
     char path[64];            /* of the pty's slave; "" for a device */
     bool is_wire;             /* a device with a real line: bytes take their time there */
-    bool rs485_set;           /* the driver's RS485 mode is ours, `rs485` is what it was */
-    struct serial_rs485 rs485;
-    bool toggles, raised; /* LINE_RTS_TOGGLES, and RTS is on */
+    bool toggles, raised;     /* LINE_RTS_TOGGLES, and RTS is on */
+    struct line_device *device; /* what the system knows of it; NULL: nothing */
     line_notify *notify;
     void *context;
 };
@@ -89,11 +88,14 @@ void line_pty_recount(struct line *line);
 /* Use the serial device or pty `path`: raw, 19200 baud, 8N1 (U7). Failures are reported. Returns false if it did not work. */
 bool line_serial_open(struct line *line, const char *path, enum line_rts rts);
 
+/* Set another speed, if it has one. */
+void line_set_baud(const struct line *line, unsigned baud);
+
 /* RTS is on and everything has gone out by now, as far as the caller knows: turn it off. Returns false if the device is still
  * sending: try again a little later. */
 bool line_serial_lower(struct line *line);
 
-/* Give the driver's own settings back. */
+/* Give the driver's own settings back, and forget the device. */
 void line_serial_restore(struct line *line);
 
 /* Read up to `room` bytes. Returns their number; 0: none now; -1: the line is gone (errno says why; 0: hung up). */
@@ -105,14 +107,34 @@ size_t line_write(struct line *line, const uint8_t *bytes, size_t length);
 
 void line_close(struct line *line);
 
-/* Does the terminal do more than pass bytes: echo, edit lines, translate, obey XON and XOFF? */
-bool line_is_cooked(const struct termios *settings);
+/* ---- The event loop -------------------------------------------------------------------------------------------------- */
 
-/* No longer; all else stays. */
-void line_make_uncooked(struct termios *settings);
+/* Tells the event loop when a line can be read. */
+struct line_poll {
+    void (*readable)(void *context); /* bytes wait, or the line is gone */
+    void (*closed)(void *context);   /* NULL: nobody wants to know */
+    void *context;
 
-/* Settings of a raw line with 8N1. Leaves speed and control characters alone. */
-void line_make_raw(struct termios *settings);
+    /* Inside. */
+    struct line *line;
+    bool open;
+    union {
+        uv_poll_t poll;
+        uv_async_t async;
+    } handle;
+};
+
+/* Prepare for an open line and start. readable(), closed() and context are set. Returns 0, or an error of libuv: then it is not
+ * open. */
+int line_poll_open(struct line_poll *poll, uv_loop_t *loop, struct line *line);
+
+/* Start again, or stop, to call readable() while there is something to read. Returns 0 or an error of libuv; one that is not open
+ * cannot be started. */
+int line_poll_start(struct line_poll *poll);
+void line_poll_stop(struct line_poll *poll);
+
+/* Close it, before the line is closed; closed() is called in a later turn of the loop. One that is not open is left alone. */
+void line_poll_close(struct line_poll *poll);
 
 /* The other parts that rooms above use. */
 #include "delivery.h"
@@ -124,6 +146,7 @@ void line_make_raw(struct termios *settings);
 #include "net_listen.h"
 #include "net_port.h"
 #include "service_port.h"
+#include "wake_timer.h"
 #include "wine_link.h"
 
 #endif

@@ -29,6 +29,7 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
+#include "line_raw.h"
 #include "log.h"
 
 #define COUNT_TRIES 5

@@ -3,12 +3,20 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/serial.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "line_raw.h"
 #include "log.h"
+
+struct line_device {
+    bool rs485_set; /* the driver's RS485 mode is ours, `rs485` is what it was */
+    struct serial_rs485 rs485;
+};
 
 /* Raw, 19200 baud, 8N1; what came before is discarded. */
 static bool set_up(int fd, const char *path)
@@ -32,14 +40,15 @@ static bool set_up(int fd, const char *path)
 /* Let the driver turn the line round. Returns false if it cannot. */
 static bool set_driver(struct line *line)
 {
-    if (ioctl(line->fd, TIOCGRS485, &line->rs485) != 0)
+    struct line_device *device = line->device;
+    if (ioctl(line->fd, TIOCGRS485, &device->rs485) != 0)
         return false;
-    struct serial_rs485 ours = line->rs485;
+    struct serial_rs485 ours = device->rs485;
     ours.flags = (ours.flags & ~(__u32)(SER_RS485_RTS_AFTER_SEND | SER_RS485_RX_DURING_TX)) | SER_RS485_ENABLED |
                  SER_RS485_RTS_ON_SEND;
     ours.delay_rts_before_send = ours.delay_rts_after_send = 0;
-    line->rs485_set = ioctl(line->fd, TIOCSRS485, &ours) == 0;
-    return line->rs485_set;
+    device->rs485_set = ioctl(line->fd, TIOCSRS485, &ours) == 0;
+    return device->rs485_set;
 }
 
 /* Check that the driver of the line is switched. A pty has nothing to turn. */
@@ -71,13 +80,20 @@ bool line_serial_lower(struct line *line)
     return true;
 }
 
+void line_set_baud(const struct line *line, unsigned baud)
+{
+    line_settings_set_baud(line->fd, baud);
+}
+
 void line_serial_restore(struct line *line)
 {
     if (line->raised)
         ioctl(line->fd, TIOCMBIC, &(int){TIOCM_RTS});
-    if (line->rs485_set)
-        ioctl(line->fd, TIOCSRS485, &line->rs485);
-    line->raised = line->rs485_set = false;
+    if (line->device && line->device->rs485_set)
+        ioctl(line->fd, TIOCSRS485, &line->device->rs485);
+    line->raised = false;
+    free(line->device);
+    line->device = NULL;
 }
 
 bool line_serial_open(struct line *line, const char *path, enum line_rts rts)
@@ -102,7 +118,10 @@ bool line_serial_open(struct line *line, const char *path, enum line_rts rts)
         return false;
     }
     line->fd = fd;
-    if (set_rts(line, path, rts))
+    line->device = calloc(1, sizeof *line->device);
+    if (!line->device)
+        log_error("out of memory");
+    if (line->device && set_rts(line, path, rts))
         return true;
     line_close(line);
     return false;

@@ -11,15 +11,12 @@
  * serial port; replies that the client does not read stop the port from reading it, so that none is lost. */
 #include "net_port.h"
 
-#include <errno.h>
-#include <poll.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
 
 #include "log.h"
 #include "net_listen.h"
+#include "net_socket.h"
 #include "text/text.h"
 
 #define LAST_READS 8    /* of NET_IN bytes each: what is still read of a client that gives way */
@@ -66,10 +63,7 @@ static void close_connection(struct net_connection *connection)
 static void detach_client(struct net_port *port)
 {
     struct net_connection *connection = port->client;
-    int fd, more = 0;
-    if (uv_fileno((uv_handle_t *)&connection->tcp, &fd) != 0 || ioctl(fd, FIONREAD, &more) != 0)
-        more = 0;
-    port->unread = port->in_length - port->in_at + (more > 0 ? (size_t)more : 0);
+    port->unread = port->in_length - port->in_at + net_socket_waiting(&connection->tcp);
     port->client = NULL;
     port->attached = port->reading = false;
     port->dropped += port->to_client_count;
@@ -369,14 +363,12 @@ static void refuse_client(struct net_port *port, struct net_connection *connecti
 static void check_for_end(struct net_port *port)
 {
     struct net_connection *connection = port->client;
-    struct pollfd end = {.events = POLLRDHUP};
-    ssize_t length;
-    if (!connection || connection->state != CONNECTION_CLIENT || port->moving ||
-        uv_fileno((uv_handle_t *)&connection->tcp, &end.fd) != 0 || poll(&end, 1, 0) <= 0)
+    if (!connection || connection->state != CONNECTION_CLIENT || port->moving || !net_socket_has_ended(&connection->tcp))
         return;
     for (unsigned i = 0; i < LAST_READS && port->in_at == port->in_length && port->client == connection; i++) {
-        if ((length = recv(end.fd, port->in, NET_IN, MSG_DONTWAIT)) <= 0) {
-            connection->failed = connection->failed || (length < 0 && errno != EAGAIN);
+        ssize_t length = net_socket_read(&connection->tcp, port->in, NET_IN);
+        if (length <= 0) {
+            connection->failed = connection->failed || length < 0;
             break;
         }
         port->in_at = 0;

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* rkm04 serve: lines with their units (bus.c) in one event loop, from the options to the exit status. */
 #include <errno.h>
-#include <fcntl.h>
-#include <inttypes.h>
 #include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <unistd.h>
 #include <uv.h>
 
@@ -20,24 +17,15 @@
 #include "notify.h"
 #include "serve.h"
 #include "serve_options.h"
+#include "serve_process.h"
 #include "serve_report.h"
 #include "serve_sandbox.h"
 #include "serve_window.h"
 #include "text/text.h"
 
 #define PLANT_MAX (1u << 20) /* bytes; a recording may hold as many */
-#define FILES_LOOP 8u     /* descriptors: of the event loop */
-#define FILES_WATCH 3u    /* of the watch for clients of ptys */
-#define FILES_SERIAL 3u   /* of a pty or device, besides the timer of its bus */
-#define FILES_CONTROL 2u  /* of the control socket */
-#define FILES_COVERAGE 2u /* of the reports */
-#define FILES_SPARE 8u   /* descriptors that are still free when all is open: for clients, traces, an adapter plugged in again */
 #define LOG_WAIT_MS 200u /* how long to wait for the reader of the log, at the start and at the end */
 #define NAME_WAIT_MS 30000u /* how long a name server may take: as long as the resolver tries by default */
-#define FILES_BESIDE 64u /* as many more if the system allows: for more clients and traces */
-
-static const int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
-#define END_SIGNALS (sizeof end_signals / sizeof end_signals[0])
 
 struct serve {
     struct bus_options options;
@@ -54,7 +42,7 @@ struct serve {
     uv_loop_t loop;
     uv_poll_t notices;
     uv_timer_t idle;
-    uv_signal_t signals[END_SIGNALS];
+    uv_signal_t signals[SERVE_SIGNALS];
 };
 
 static bool is_coverage_wanted(const struct serve *serve)
@@ -67,7 +55,7 @@ static bool is_coverage_wanted(const struct serve *serve)
 static void on_signal(uv_signal_t *handle, int number)
 {
     struct serve *serve = handle->data;
-    log_at(bus_present(serve->bus[0]), "ended by SIG%s", sigabbrev_np(number));
+    log_at(bus_present(serve->bus[0]), "ended by %s", serve_signal_name(number));
     uv_stop(&serve->loop);
 }
 
@@ -139,60 +127,15 @@ static bool check_uv(const char *what, int error)
 
 static bool start_signals(struct serve *serve)
 {
-    for (size_t i = 0; i < END_SIGNALS; i++) {
-        struct sigaction present;
-        if (sigaction(end_signals[i], NULL, &present) == 0 && present.sa_handler == SIG_IGN && end_signals[i] == SIGHUP)
-            continue; /* nohup */
+    for (size_t i = 0; i < SERVE_SIGNALS; i++) {
+        if (!serve_signal_ends(serve_signals[i]))
+            continue;
         serve->signals[i].data = serve;
         if (!check_uv("handle signals", uv_signal_init(&serve->loop, &serve->signals[i])) ||
-            !check_uv("handle signals", uv_signal_start(&serve->signals[i], on_signal, end_signals[i])))
+            !check_uv("handle signals", uv_signal_start(&serve->signals[i], on_signal, serve_signals[i])))
             return false;
     }
     return true;
-}
-
-static unsigned count_services(const struct bus_options *options)
-{
-    unsigned count = 0;
-    while (count < DEVICE_SERVICES_MAX && options->service[count].name)
-        count++;
-    return count;
-}
-
-/* Descriptors that are open for good when the emulator is ready. */
-static rlim_t count_files(const struct bus_options *options)
-{
-    rlim_t line = 1u + (options->pty || options->port ? FILES_SERIAL : 0) + (options->tcp != NULL) + (options->rfc2217 != NULL) +
-                  count_services(options) + (options->record != NULL) + (options->flash ? options->nodes.count : 0);
-    for (unsigned i = 0; i < BUS_FILES_MAX; i++)
-        line += (rlim_t)(options->trace[i] != NULL) + (options->wire[i] != NULL);
-    return FILES_LOOP + options->lines * line + (options->pty ? FILES_WATCH : 0) + (options->no_control ? 0 : FILES_CONTROL) +
-           (options->coverage ? FILES_COVERAGE : 0) + (options->window != NULL) + (options->control_tcp ? CONTROL_STRANGERS : 0);
-}
-
-/* The lowest `ulimit -n' with so many free numbers: some are in use already by the process that started us. */
-static rlim_t find_limit(rlim_t files)
-{
-    int number = 0;
-    for (rlim_t found = 0; found < files; number++)
-        found += fcntl(number, F_GETFD) < 0;
-    return (rlim_t)number;
-}
-
-/* Many lines need more files than a process gets unasked; and without a free descriptor a connection cannot even be refused, and
- * would wake the loop without end. Nothing has been opened yet. */
-static bool allow_files(const struct bus_options *options)
-{
-    struct rlimit limit;
-    rlim_t least = find_limit(count_files(options) + FILES_SPARE), wanted = least + FILES_BESIDE;
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted)
-        return true;
-    limit.rlim_cur = wanted < limit.rlim_max ? wanted : limit.rlim_max;
-    setrlimit(RLIMIT_NOFILE, &limit);
-    if (limit.rlim_cur >= least)
-        return true;
-    log_error("too few file descriptors: `ulimit -n' is %ju, expected at least %ju", (uintmax_t)limit.rlim_cur, (uintmax_t)least);
-    return false;
 }
 
 static bool start_watch(struct serve *serve)
@@ -261,7 +204,7 @@ static bool default_control(const struct serve *serve, char path[PATH_MAX])
     const char *port = serve->options.port, *slash = port ? strrchr(port, '/') : NULL;
     char name[NAME_MAX];
     if (serve->options.pty) {
-        if (snprintf(path, PATH_MAX, "%s.control", ports->link.path) < PATH_MAX)
+        if (snprintf(path, PATH_MAX, "%s.control", ports->pty.link.path) < PATH_MAX)
             return true;
         log_error("the path of the link is too long for a control socket next to it");
         return false;
@@ -418,7 +361,7 @@ static enum exit_status run_serve(struct serve *serve)
 {
     serve->status = STATUS_FAILURE;
     serve->window = -1;
-    if (!allow_files(&serve->options) || !read_plant(&serve->options) || !find_addresses(serve) ||
+    if (!serve_allow_files(&serve->options) || !read_plant(&serve->options) || !find_addresses(serve) ||
         !check_uv("make an event loop", uv_loop_init(&serve->loop)))
         return STATUS_FAILURE;
     if (start_serve(serve)) {

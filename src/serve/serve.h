@@ -3,6 +3,7 @@
  *
  *     serve            buses and control socket in one event loop, until a signal or a client ends it
  *     serve_options    the command line
+ *     serve_process    signals and descriptors
  *     serve_report     what is logged at the beginning and the end, and the READY line
  *     serve_sandbox, sandbox    what the process may still do once all is open
  *     notify           readiness for systemd

@@ -12,6 +12,7 @@
 #include "line/line.h"
 #include "notify.h"
 #include "options/options.h"
+#include "serve_process.h"
 #include "text/text.h"
 #include "trace/trace.h"
 #include "wire/wire.h"
@@ -358,6 +359,8 @@ static void check_ports(struct bus_options *options, const struct argp_state *st
     options->pty = device->receive && !options->port && (!net || options->link || options->wine);
     if (given && !device->receive)
         argp_error(state, "--%s: the device %s has no bus", given, device->name);
+    if (options->pty && !serve_has_option("link"))
+        argp_error(state, "expected --tcp, --rfc2217 or --port: Windows has no pty (docs/WINDOWS.md)");
 }
 
 /* What does not go together. */
@@ -526,9 +529,18 @@ static void check_device(struct bus_options *options, const struct argp_state *s
         argp_error(state, "--coverage: not known for the device %s", device->name);
 }
 
+/* Refuse an option that the system has nothing for. */
+static void check_option(int key, const struct argp_state *state)
+{
+    for (const struct argp_option *option = table; option->name || option->doc; option++)
+        if (option->name && option->key == key && !serve_has_option(option->name))
+            argp_error(state, "--%s: not in the program for Windows (docs/WINDOWS.md)", option->name);
+}
+
 static error_t read_option(int key, char *text, struct argp_state *state)
 {
     struct bus_options *options = state->input;
+    check_option(key, state);
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &options->device;

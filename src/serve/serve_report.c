@@ -36,9 +36,9 @@ static void log_ports(const struct bus *bus)
     else if (bus->options->port)
         bus_log(&bus->log, "%s on %s", units, bus->options->port);
     else if (bus->options->pty)
-        bus_log(&bus->log, "%s on %s, link %s", units, ports->line.path, ports->link.path);
+        bus_log(&bus->log, "%s on %s, link %s", units, ports->line.path, ports->pty.link.path);
     if (bus->options->wine)
-        bus_log(&bus->log, "%s leads to the link", ports->wine.path);
+        bus_log(&bus->log, "%s leads to the link", ports->pty.wine.path);
     if (ports->tcp)
         bus_log(&bus->log, "%s on tcp:%s", units, ports->tcp->address);
     if (ports->rfc2217)
@@ -113,8 +113,9 @@ static json_t *ports_json(const struct bus *bus)
     for (unsigned at = 0; services && bus_services_address(bus->services, at); at++)
         json_object_set_new(services, bus->options->service[at].name, json_string(bus_services_address(bus->services, at)));
     return json_pack("{s:s?, s:s?, s:s?, s:s?, s:s?, s:o*}", "pty", pty ? ports->line.path : NULL, "link",
-                     pty ? ports->link.path : NULL, "port", bus->options->port, "tcp", ports->tcp ? ports->tcp->address : NULL,
-                     "rfc2217", ports->rfc2217 ? ports->rfc2217->address : NULL, "services", services);
+                     pty ? ports->pty.link.path : NULL, "port", bus->options->port, "tcp",
+                     ports->tcp ? ports->tcp->address : NULL, "rfc2217", ports->rfc2217 ? ports->rfc2217->address : NULL,
+                     "services", services);
 }
 
 /* With several lines the ports at the top are those of line 0, and `lines` has all. */

@@ -65,9 +65,9 @@ void serve_sandbox_files(const struct bus_options *options, struct bus *const *b
     if (control)
         sandbox_allow_beside(&sandbox, control);
     for (unsigned i = 0; options->pty && i < options->lines; i++)
-        sandbox_allow_beside(&sandbox, buses[i]->ports.link.path);
+        sandbox_allow_beside(&sandbox, buses[i]->ports.pty.link.path);
     if (options->wine)
-        sandbox_allow_beside(&sandbox, buses[0]->ports.wine.path);
+        sandbox_allow_beside(&sandbox, buses[0]->ports.pty.wine.path);
     for (unsigned i = 0; i < BUS_FOLDERS_MAX && options->folder[i]; i++)
         sandbox_allow(&sandbox, options->folder[i]);
     allow_working_directory(&sandbox);

@@ -17,6 +17,7 @@
 
 #include "fuzz.h"
 #include "line/line.h"
+#include "line/line_raw.h"
 #include "line/log.h"
 
 #define CLIENTS 3u
