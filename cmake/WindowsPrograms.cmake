@@ -3,10 +3,14 @@
 # (docs/WINDOWS.md).
 find_library(JANSSON jansson REQUIRED)
 find_library(YAML yaml REQUIRED)
+find_library(UV uv_a REQUIRED)
 enable_language(RC)
 
 # What POSIX has of these rooms, src/windows has for Windows.
-set(posix_only device/device_kinds_added.c options/host_address.c options/process.c options/socket_address.c plot/raster.c program_tools/text_diff.c)
+set(posix_only device/device_kinds_added.c options/process.c options/socket_address.c plot/raster.c program_tools/text_diff.c
+  line/line.c line/line_poll.c line/line_pty.c line/line_raw.c line/line_serial.c line/line_speed.c line/link_path.c
+  line/net_socket.c line/wake_timer.c line/wine_link.c bus/bus_pty.c
+  serve/notify.c serve/sandbox.c serve/sandbox_calls.c serve/serve_process.c serve/serve_sandbox.c serve/serve_window.c)
 set(posix ${CMAKE_CURRENT_SOURCE_DIR}/windows/posix)
 
 function(use_windows target)
@@ -18,14 +22,15 @@ function(use_windows target)
   target_compile_options(${target} PRIVATE -include ${posix}/posix.h -Wno-format -Wno-format-extra-args -Wno-conversion)
 endfunction()
 
-add_rooms(rkm04-sim ${SIM_ROOMS} plot run windows)
+add_rooms(rkm04-sim ${SIM_ROOMS} plot run line bus serve windows)
 get_target_property(sources rkm04-sim SOURCES)
 foreach(source ${posix_only} windows/client.c windows/port.c)
   list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${source})
 endforeach()
 set_target_properties(rkm04-sim PROPERTIES SOURCES "${sources};${page_js}")
 use_windows(rkm04-sim)
-target_link_libraries(rkm04-sim PUBLIC rkm04-core ${JANSSON} ${YAML} ws2_32)
+set_source_files_properties(line/net_address.c options/host_address.c PROPERTIES COMPILE_OPTIONS "-include;${posix}/sockets.h")
+target_link_libraries(rkm04-sim PUBLIC rkm04-core ${JANSSON} ${YAML} ${UV} psapi user32 advapi32 iphlpapi userenv ws2_32)
 
 add_executable(rkm04 main/main.c windows/rkm04.rc)
 use_windows(rkm04)

@@ -54,14 +54,10 @@ static void *find(void *context)
 static struct search *make_search(const char *host, const char *port, const struct addrinfo *hints)
 {
     struct search *search = calloc(1, sizeof *search);
-    pthread_condattr_t steady;
     if (!search)
         return NULL;
     pthread_mutex_init(&search->mutex, NULL);
-    pthread_condattr_init(&steady);
-    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC);
-    pthread_cond_init(&search->over, &steady);
-    pthread_condattr_destroy(&steady);
+    pthread_cond_init(&search->over, NULL);
     search->hints = *hints;
     search->host = strdup(host);
     search->port = strdup(port);
@@ -99,7 +95,7 @@ static bool wait_for(struct search *search, unsigned limit_ms)
     }
     pthread_mutex_lock(&search->mutex);
     while (!search->done && error == 0)
-        error = pthread_cond_timedwait(&search->over, &search->mutex, &end);
+        error = pthread_cond_clockwait(&search->over, &search->mutex, CLOCK_MONOTONIC, &end);
     bool done = search->done;
     search->abandoned = !done;
     pthread_mutex_unlock(&search->mutex);

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdarg.h>
 #include <stdbool.h>
+#include <sys/file.h>
 #include <windows.h>
 
 #undef stat
@@ -96,6 +97,7 @@ static int stat_handle(HANDLE file, struct windows_stat *status)
     status->st_dev = found.dwVolumeSerialNumber;
     status->st_ino = (uint64_t)found.nFileIndexHigh << 32 | found.nFileIndexLow;
     status->st_mode = (folder ? S_IFDIR : S_IFREG) | 0644;
+    status->st_nlink = found.nNumberOfLinks;
     status->st_size = (int64_t)((uint64_t)found.nFileSizeHigh << 32 | found.nFileSizeLow);
     return 0;
 }
@@ -177,11 +179,44 @@ ssize_t pread(int fd, void *bytes, size_t length, int64_t offset)
     return got;
 }
 
+static OVERLAPPED at(int64_t offset)
+{
+    return (OVERLAPPED){.Offset = (DWORD)offset, .OffsetHigh = (DWORD)((uint64_t)offset >> 32)};
+}
+
+ssize_t pwrite(int fd, const void *bytes, size_t length, int64_t offset)
+{
+    OVERLAPPED place = at(offset);
+    DWORD written;
+    if (!WriteFile((HANDLE)_get_osfhandle(fd), bytes, (DWORD)length, &written, &place))
+        return fail();
+    return (ssize_t)written;
+}
+
+#define LOCK_PLACE (INT64_C(1) << 62) /* far behind the end: others may read and copy the file */
+
+int flock(int fd, int how)
+{
+    OVERLAPPED place = at(LOCK_PLACE);
+    (void)how;
+    if (LockFileEx((HANDLE)_get_osfhandle(fd), LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, 1, 0, &place))
+        return 0;
+    if (GetLastError() != ERROR_LOCK_VIOLATION && GetLastError() != ERROR_IO_PENDING)
+        return fail();
+    errno = EWOULDBLOCK;
+    return -1;
+}
+
 /* Windows has no modes: who may read a file is inherited from its folder. */
 int fchmod(int fd, unsigned mode)
 {
     (void)fd;
     (void)mode;
+    return 0;
+}
+
+unsigned geteuid(void)
+{
     return 0;
 }
 

@@ -10,6 +10,7 @@
 
 #include "client/client_port.h"
 #include "client/client_report.h"
+#include "com.h"
 #include "text/text.h"
 
 #define TCP "tcp:"
@@ -30,49 +31,16 @@ uint64_t client_now(void)
 
 /* ---- COM ports ------------------------------------------------------------------------------------------------------ */
 
-static const char *open_reason(DWORD error)
-{
-    switch (error) {
-    case ERROR_FILE_NOT_FOUND:
-    case ERROR_PATH_NOT_FOUND:
-        return "there is no such port; is the adapter plugged in?";
-    case ERROR_ACCESS_DENIED:
-    case ERROR_SHARING_VIOLATION:
-        return "another program has it open";
-    default:
-        return "Windows cannot open it";
-    }
-}
-
-/* 19200 baud, 8N1, no flow control; a read returns what is there. */
-static bool set_up_com(void)
-{
-    DCB dcb = {.DCBlength = sizeof dcb};
-    COMMTIMEOUTS timeouts = {MAXDWORD, 0, 0, 0, WRITE_MS};
-    if (!GetCommState(com, &dcb))
-        return false;
-    dcb.BaudRate = CBR_19200;
-    dcb.ByteSize = 8;
-    dcb.Parity = NOPARITY;
-    dcb.StopBits = ONESTOPBIT;
-    dcb.fBinary = TRUE;
-    dcb.fParity = dcb.fOutX = dcb.fInX = dcb.fOutxCtsFlow = dcb.fOutxDsrFlow = dcb.fDsrSensitivity = dcb.fNull = FALSE;
-    dcb.fDtrControl = DTR_CONTROL_ENABLE;
-    dcb.fRtsControl = RTS_CONTROL_ENABLE;
-    return SetCommState(com, &dcb) && SetCommTimeouts(com, &timeouts) && PurgeComm(com, PURGE_RXCLEAR | PURGE_TXCLEAR);
-}
-
 static int open_com(const char *name)
 {
-    char path[64];
-    bool whole = strncmp(name, "\\\\.\\", 4) == 0 || strncmp(name, "//./", 4) == 0;
-    snprintf(path, sizeof path, "%s%.50s", whole ? "" : "\\\\.\\", name);
-    com = CreateFileA(path, GENERIC_READ | GENERIC_WRITE, 0, NULL, OPEN_EXISTING, 0, NULL);
+    COMMTIMEOUTS timeouts = {MAXDWORD, 0, 0, 0, WRITE_MS}; /* a read returns what is there */
+    const char *why;
+    com = com_open(name, 0, &why);
     if (com == INVALID_HANDLE_VALUE) {
-        client_report("cannot open %s: %s", name, open_reason(GetLastError()));
+        client_report("cannot open %s: %s", name, why);
         return -1;
     }
-    if (set_up_com())
+    if (com_set_up(com, CBR_19200) && SetCommTimeouts(com, &timeouts))
         return PORT_FD;
     client_report("%s is not a serial device that takes 19200 baud, 8N1: expected one like COM3, or tcp:HOST:PORT", name);
     windows_port_close(PORT_FD);

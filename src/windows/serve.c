@@ -1,14 +1,82 @@
 /* SPDX-License-Identifier: MIT */
-#include "serve/serve.h"
+/* serve.c: what `rkm04 serve' has of the process on Windows, and what it does not have. */
+#include <signal.h>
+#include <string.h>
 
-#include <stdio.h>
+#include "serve/notify.h"
+#include "serve/serve_process.h"
+#include "serve/serve_sandbox.h"
+#include "serve/serve_window.h"
 
-#include "text/text.h"
+/* Ctrl-C, Ctrl-Break, and the console that is closed. */
+const int serve_signals[SERVE_SIGNALS] = {SIGINT, SIGBREAK, SIGHUP};
 
-int serve_main(int argc, char **argv)
+bool serve_signal_ends(int number)
 {
-    (void)argc;
-    (void)argv;
-    fputs("rkm04 serve: not in the program for Windows: run it on Linux, in WSL or in a container (docs/WINDOWS.md)\n", stderr);
-    return STATUS_USAGE;
+    (void)number;
+    return true;
+}
+
+const char *serve_signal_name(int number)
+{
+    return number == SIGINT ? "Ctrl-C" : number == SIGBREAK ? "Ctrl-Break" : "the end of its console";
+}
+
+bool serve_has_option(const char *name)
+{
+    static const char *const missing[] = {"link", "wine", "ready-fd", "window", "allow-folder", "no-sandbox", "control"};
+    for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++)
+        if (strcmp(name, missing[i]) == 0)
+            return false;
+    return true;
+}
+
+/* Handles are as many as there is memory. */
+bool serve_allow_files(const struct bus_options *options)
+{
+    (void)options;
+    return true;
+}
+
+/* A process of Windows keeps the rights of its user. */
+void serve_sandbox_files(const struct bus_options *options, struct bus *const *buses, const char *control)
+{
+    (void)options;
+    (void)buses;
+    (void)control;
+}
+
+void serve_sandbox_calls(const struct bus_options *options)
+{
+    (void)options;
+}
+
+int notify_fd_read(const char *text)
+{
+    (void)text;
+    return -1;
+}
+
+bool notify_ready(int fd, const char *text, const char *status)
+{
+    (void)fd;
+    (void)text;
+    (void)status;
+    return true;
+}
+
+void notify_stopping(void)
+{
+}
+
+int serve_window_start(const char *control, const char *address)
+{
+    (void)control;
+    (void)address;
+    return -1;
+}
+
+void serve_window_show(int descriptor)
+{
+    (void)descriptor;
 }

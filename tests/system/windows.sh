@@ -146,11 +146,4 @@ test_rkmctl_reports_a_port_that_is_not_there_and_what_it_does_not_have() {
     holds "$(<ctl.err)" "docs/WINDOWS.md" "the message"
 }
 
-test_serve_says_where_it_is_to_be_had() {
-    local said
-    exe serve 2>"$folder/there.err"
-    same 2 $? "exit status"
-    holds "$(<"$folder/there.err")" "docs/WINDOWS.md" "the message"
-}
-
 run_cases "$@"

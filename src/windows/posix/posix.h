@@ -24,6 +24,7 @@
 #define O_NOCTTY 0
 #define O_NONBLOCK 0
 #define O_NOFOLLOW 0
+#define O_DIRECTORY 0 /* a folder cannot be opened, which is no failure where this stands */
 
 typedef uint64_t windows_ino_t;
 
@@ -32,8 +33,14 @@ struct windows_stat {
     uint32_t st_dev;
     windows_ino_t st_ino;
     uint32_t st_mode;
+    uint32_t st_uid, st_nlink;
     int64_t st_size;
 };
+
+#ifndef NAME_MAX
+#define NAME_MAX 255
+#endif
+#define PIPE_BUF 4096 /* bytes that a pipe takes in one piece */
 
 int windows_open(const char *path, int flags, ...);
 FILE *windows_fopen(const char *path, const char *mode);
@@ -45,8 +52,10 @@ FILE *windows_tmpfile(void);
 char *realpath(const char *path, char *found);
 int mkostemp(char *path, int flags);
 ssize_t pread(int fd, void *bytes, size_t length, int64_t offset);
+ssize_t pwrite(int fd, const void *bytes, size_t length, int64_t offset);
 int fchmod(int fd, unsigned mode);
 int fsync(int fd);
+unsigned geteuid(void); /* the one to whom all files belong (files.c) */
 ssize_t getline(char **line, size_t *room, FILE *in);
 
 #define ino_t windows_ino_t
@@ -60,6 +69,7 @@ ssize_t getline(char **line, size_t *room, FILE *in);
 #define fopen windows_fopen
 #define rename windows_rename
 #define unlink windows_unlink
+#define fdatasync fsync
 #define tmpfile windows_tmpfile
 #define mkstemp(path) mkostemp(path, 0)
 #define getc_unlocked getc

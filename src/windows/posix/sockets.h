@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* sockets.h: included before the files that read and find addresses; the others do without the headers of Windows. */
+#ifndef RKM04_WINDOWS_SOCKETS_H
+#define RKM04_WINDOWS_SOCKETS_H
+
+#include <posix.h>
+#include <ws2tcpip.h>
+
+#define EAI_SYSTEM 0x7fffffff /* never comes */
+
+/* As getaddrinfo(), which needs the library begun. */
+int windows_getaddrinfo(const char *host, const char *port, const struct addrinfo *hints, struct addrinfo **found);
+
+#define getaddrinfo windows_getaddrinfo
+
+#endif
