@@ -46,7 +46,8 @@ set_target_properties(rkm04 rkmctl PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT
 
 # A zip with the program, the documents and a prompt (cpack --preset windows).
 install(TARGETS rkm04 rkmctl RUNTIME DESTINATION .)
-install(PROGRAMS ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-prompt.cmd DESTINATION .)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-prompt.cmd ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-serve.cmd
+  DESTINATION .)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD-PARTY.md
   ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION .)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION . PATTERN man EXCLUDE)

@@ -26,11 +26,11 @@ bool wake_timer_open(struct wake_timer *timer, uv_loop_t *loop, void (*expired)(
     timer->expired = expired;
     timer->context = context;
     timer->system = fd;
-    timer->handle.poll.data = timer;
-    int error = fd < 0 ? -errno : uv_poll_init(loop, &timer->handle.poll, fd);
+    timer->poll.data = timer;
+    int error = fd < 0 ? -errno : uv_poll_init(loop, &timer->poll, fd);
     timer->open = error == 0;
     if (error == 0)
-        error = uv_poll_start(&timer->handle.poll, UV_READABLE, on_poll);
+        error = uv_poll_start(&timer->poll, UV_READABLE, on_poll);
     if (error == 0)
         return true;
     log_error("cannot make a timer: %s", uv_strerror(error));
@@ -54,6 +54,6 @@ void wake_timer_close(struct wake_timer *timer)
     if (!timer->open)
         return;
     timer->open = false;
-    uv_close((uv_handle_t *)&timer->handle.poll, NULL);
+    uv_close((uv_handle_t *)&timer->poll, NULL);
     close((int)timer->system);
 }

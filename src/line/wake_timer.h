@@ -13,11 +13,8 @@ struct wake_timer {
 
     /* Inside. */
     bool open;
-    union {
-        uv_poll_t poll;
-        uv_async_t async;
-    } handle;
-    intptr_t system, wait; /* the system's */
+    uv_poll_t poll;
+    intptr_t system; /* the system's */
 };
 
 /* Make a timer, which is not set. *timer must be zero. Failures are reported. Returns false if it did not work. */

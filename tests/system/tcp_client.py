@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Clients over TCP that come again at once, as tcp.sh runs them: tcp_client.py WHAT PORT. An exception is a failed test."""
+"""Clients over TCP that come again at once, as tcp.sh runs them: tcp_client.py WHAT PORT [TIMES]. An exception is a failed test."""
 import socket
 import sys
 
@@ -21,7 +21,7 @@ def session(sent, wanted):
 
 def again():
     """What has gone does not keep out what comes: a broadcast, and more than the units can hear in half a minute."""
-    for _ in range(100):
+    for _ in range(int(sys.argv[3]) if len(sys.argv) > 3 else 100):
         session(BROADCAST, b"")
         session(REQUEST, ANSWER)
     session(bytes(60000), b"")

@@ -11,6 +11,11 @@
 /* As getaddrinfo(), which needs the library begun. */
 int windows_getaddrinfo(const char *host, const char *port, const struct addrinfo *hints, struct addrinfo **found);
 
+/* Why, in the words of other systems. */
+const char *windows_gai_strerror(int error);
+
 #define getaddrinfo windows_getaddrinfo
+#undef gai_strerror
+#define gai_strerror windows_gai_strerror
 
 #endif
