@@ -112,7 +112,7 @@ void line_close(struct line *line);
 /* Tells the event loop when a line can be read. */
 struct line_poll {
     void (*readable)(void *context); /* bytes wait, or the line is gone */
-    void (*closed)(void *context);   /* NULL: nobody wants to know */
+    void (*closed)(void *context);   /* NULL: not to be called */
     void *context;
 
     /* Inside. */

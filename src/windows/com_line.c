@@ -22,7 +22,7 @@ struct transfer {
 struct line_device {
     HANDLE com;
     struct transfer read, write;
-    struct line_poll *poll;    /* NULL: nobody waits */
+    struct line_poll *poll;    /* NULL: none */
     bool started;              /* readable() is wanted */
     bool failed;
     size_t at, length;         /* of what has been read, in `in` */
@@ -269,7 +269,7 @@ bool line_serial_open(struct line *line, const char *path, enum line_rts rts)
         return false;
     }
     line->device->com = com;
-    line->fd = 0; /* it is open; nobody reads from that number */
+    line->fd = 0; /* it is open; the number stands for nothing */
     line->clients = 1;
     if (set_up(line->device, path) && set_rts(line, path, rts))
         return true;

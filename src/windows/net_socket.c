@@ -65,7 +65,7 @@ static DWORD find_state6(const struct sockaddr_in6 *own, const struct sockaddr_i
     return state;
 }
 
-/* Not all systems tell of an end behind bytes that wait; the table of connections has it. */
+/* Not all systems report an end behind bytes that wait; the table of connections has it. */
 bool net_socket_has_ended(const uv_tcp_t *tcp)
 {
     WSAPOLLFD end = {.fd = socket_of(tcp), .events = POLLRDNORM};

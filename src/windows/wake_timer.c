@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* wake_timer.c: one waitable timer for all of the process; a thread of the system's pool waits for it and wakes the event loop.
- * It is set for the first time that any of them waits for, or an earlier one that nobody waits for any more. */
+ * It is set for the first time that any of them waits for, or an earlier one that none waits for any more. */
 #include <uv.h>
 
 #include "line/line.h"
