@@ -10,7 +10,7 @@ enable_language(RC)
 set(posix_only device/device_kinds_added.c options/process.c options/socket_address.c plot/raster.c program_tools/text_diff.c
   line/line.c line/line_poll.c line/line_pty.c line/line_raw.c line/line_serial.c line/line_speed.c line/link_path.c
   line/net_socket.c line/wake_timer.c line/wine_link.c bus/bus_pty.c
-  serve/notify.c serve/sandbox.c serve/sandbox_calls.c serve/serve_process.c serve/serve_sandbox.c serve/serve_window.c)
+  control/control_system.c serve/notify.c serve/sandbox.c serve/sandbox_calls.c serve/serve_process.c serve/serve_sandbox.c serve/serve_window.c)
 set(posix ${CMAKE_CURRENT_SOURCE_DIR}/windows/posix)
 
 function(use_windows target)
@@ -22,7 +22,7 @@ function(use_windows target)
   target_compile_options(${target} PRIVATE -include ${posix}/posix.h -Wno-format -Wno-format-extra-args -Wno-conversion)
 endfunction()
 
-add_rooms(rkm04-sim ${SIM_ROOMS} plot run line bus serve windows)
+add_rooms(rkm04-sim ${SIM_ROOMS} plot run line bus control serve windows)
 get_target_property(sources rkm04-sim SOURCES)
 foreach(source ${posix_only} windows/client.c windows/port.c)
   list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${source})

@@ -589,7 +589,6 @@ void serve_options_read(struct bus_options *options, int argc, char **argv)
         .min_coverage = -1,
         .seed = 1,
         .ready_fd = -1,
-        .no_control = !serve_has_option("control"),
     };
     virtual_clock_read(&options->clock, "real");
     const struct argp_child children[] = {{.argp = device_arguments_argp(&options->device)}, {0}};

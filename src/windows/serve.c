@@ -24,7 +24,7 @@ const char *serve_signal_name(int number)
 
 bool serve_has_option(const char *name)
 {
-    static const char *const missing[] = {"link", "wine", "ready-fd", "window", "allow-folder", "no-sandbox", "control"};
+    static const char *const missing[] = {"link", "wine", "ready-fd", "window", "allow-folder", "no-sandbox"};
     for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++)
         if (strcmp(name, missing[i]) == 0)
             return false;

@@ -139,7 +139,7 @@ void wake_timer_set(struct wake_timer *timer, uint64_t when)
         return;
     uint64_t now = uv_hrtime();
     if (when != 0 && when < now)
-        when = now; /* the next turn of the loop comes after this one, whoever is called in it */
+        when = now; /* in the next turn of the loop, not once more in this one */
     waiting_of(timer)->when = when;
     if (when != 0 && (alarm_clock->when == 0 || when < alarm_clock->when))
         set_clock(alarm_clock, when);

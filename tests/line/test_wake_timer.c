@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_wake_timer.c: the timer of the event loop, on the machine's own clock. One test alone: CK_RUN_CASE=timer ./test_wake_timer */
+/* test_wake_timer.c: the timer of the event loop. One test alone: CK_RUN_CASE=timer ./test_wake_timer */
 #include <check.h>
 #include <stdlib.h>
 

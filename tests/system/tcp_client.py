@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Clients over TCP that come again at once, as tcp.sh runs them: tcp_client.py WHAT PORT [TIMES]. An exception is a failed test."""
+"""Clients over TCP that come again at once: tcp_client.py WHAT PORT [TIMES]. An exception is a failed test."""
 import socket
 import sys
 
