@@ -82,12 +82,12 @@ int cnc_find_axis(const char *text, size_t length)
     return -1;
 }
 
-/* A number of one or two digits, without zeros before it; -1: it is none. */
+/* A number of one or two digits, without zeros before it; -1: it is none. length: at least 1. */
 static int read_index(const char *text, size_t length)
 {
     int value = 0;
 
-    if (length < 1 || length > 2 || (length == 2 && text[0] == '0'))
+    if (length > 2 || (length == 2 && text[0] == '0'))
         return -1;
     for (; length > 0; text++, length--) {
         if (*text < '0' || *text > '9')

@@ -47,7 +47,7 @@ START_TEST(numbers_have_type_offset_element_and_field)
     check_number("DIFCIT_X[15]", CNC_CELL_DIFCIT_X, 60, CNC_DWRD);
     check_number("WORD.DIFCIT_X[1]+2", CNC_CELL_DIFCIT_X, 6, CNC_WORD);
     check_number("WORD.LIMIT_FEED+2", CNC_CELL_LIMIT_FEED, 2, CNC_WORD);
-    check_number(" word . ( limit_feed + 2h ) ", CNC_CELL_LIMIT_FEED, 2, CNC_WORD);
+    check_number(" \tword\t. ( limit_feed + 2h )\t", CNC_CELL_LIMIT_FEED, 2, CNC_WORD);
     check_number("WORD.BZH09", CNC_CELL_BZH09, 0, CNC_WORD);
     check_number("BZH10", CNC_CELL_BZH09, 1, CNC_BYTE);
     check_number("DWRD.PB07", CNC_CELL_PB07, 0, CNC_DWRD);
@@ -81,6 +81,11 @@ START_TEST(bits_and_names_of_the_program_are_found)
     ck_assert_uint_eq(operand.place, CNC_SYSTEM_MEMORY + 10);
     ck_assert(operand.writable);
     ck_assert(!cnc_parse_operand("LIMIT_Y", 7, NULL, &operand, &fault));
+    ck_assert(cnc_parse_operand("CNST.5", 6, NULL, &operand, &fault));
+    ck_assert(!cnc_parse_operand("CNST.FULL", 9, NULL, &operand, &fault));
+    ck_assert_uint_eq(cnc_name_length("A_1-", 4), 3);
+    ck_assert_uint_eq(cnc_name_length("1A", 2), 0);
+    ck_assert_uint_eq(cnc_name_length("", 0), 0);
 }
 END_TEST
 
@@ -183,6 +188,11 @@ static const struct {
     {"BLK[0]T", "expected `].' and a field of the block", ""},
     {"BLK[0", "expected `].' and a field of the block", ""},
     {"BLK.T", "there is no cell", "BLK"},
+    {"BLK", "there is no cell", "BLK"},
+    {"CNST.'\x01'", "expected a number or a constant", ""},
+    {"CNST.'\x7F'", "expected a number or a constant", ""},
+    {"CNST.\xE2\x80", "expected a number or a constant", ""},
+    {"CNST.9223372036854775810", "expected a number or a constant", "9223372036854775810"},
     {"STRUCTURE.T", "there is no cell", "STRUCTURE"},
     {"BIT.STOPPI", "there is no cell", "BIT"},
 };

@@ -97,6 +97,8 @@ START_TEST(tex0_has_four_words)
     } cases[] = {
         {"TEX0 K,1,L", "7:1: expected counter, time, label and code behind `TEX0'\n"},
         {"TEX0 K,1,L,2,3", "7:1: expected counter, time, label and code behind `TEX0'\n"},
+        {"TEX0 K,1,L,2,", "7:1: expected counter, time, label and code behind `TEX0'\n"},
+        {"TEX0 K,1,L,2,3,", "7:1: expected counter, time, label and code behind `TEX0'\n"},
         {"TEX0 K,1,L,2,3,4", "7:1: expected counter, time, label and code behind `TEX0'\n"},
         {"TEX0 B,1,L,2", "7:6: expected a number; this is a bit `B'\n"},
         {"TEX0 CNST.1,1,L,2", "7:6: expected a cell; this is a constant `CNST.1'\n"},
@@ -129,6 +131,8 @@ START_TEST(sections_are_closed_in_order)
     check_errors("MODULE_INIT 1\nMODULE_INIT_END", "1:1: expected nothing behind `MODULE_INIT'\n");
     check_errors("DATA\nA BIT 0\nMODULE_INIT\nMODULE_INIT_END", "3:1: expected DATA_END before `MODULE_INIT'\n");
     check_errors("DATA\nA BIT 0\n", "1:1: expected DATA_END to close DATA\n");
+    check_errors("DATA\nDATA\nSTOP\nDATA_END", "2:1: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `DATA'\n"
+                                                  "3:1: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `STOP'\n");
     check_errors("DATA\nDATA_END\nDATA_END", "3:1: unknown instruction `DATA_END'\n");
     check_errors("PROC_BEGIN\nPROC_END _ON_EVENT", "1:1: expected a name behind `PROC_BEGIN'\n");
     check_errors("PROC_BEGIN _ON_START\nPROC_END _ON_EVENT", "1:12: expected _ON_EVENT; there is no procedure `_ON_START'\n");
@@ -208,7 +212,7 @@ START_TEST(data_has_a_name_a_kind_and_a_number)
         check_errors(text, errors);
     }
     rig_load("DATA\nA234567890123456789012345678901 db 0FFh\n"
-             "_?@\tDW  ';'\nN EQU 12\nE DD N\nF DQ 7FFFFFFFFFFFFFFFh\nG BIT 1\nDATA_END");
+             "_?@\tDW  ';'\nN EQU 12\nE DD\tN\nF DQ 7FFFFFFFFFFFFFFFh\nG BIT 1\nDATA_END");
     ck_assert_int_eq(rig_value("A234567890123456789012345678901"), 255);
     ck_assert_int_eq(rig_value("_?@"), ';');
     ck_assert_int_eq(rig_value("E"), 12);
