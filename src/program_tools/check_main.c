@@ -5,12 +5,13 @@
 #include <string.h>
 
 #include "check.h"
+#include "check_cnc.h"
 #include "check_print.h"
 #include "options/options.h"
 #include "program_tools.h"
 #include "tool_files.h"
 
-enum option_key { KEY_NO_WARN = 256, KEY_WERROR, KEY_FORMAT, KEY_READINGS, KEY_LIST, KEY_PLANT };
+enum option_key { KEY_NO_WARN = 256, KEY_WERROR, KEY_FORMAT, KEY_READINGS, KEY_LIST, KEY_PLANT, KEY_CONFIG };
 
 struct options {
     struct tool_files files;
@@ -18,6 +19,8 @@ struct options {
     readings_set named;
     enum check_format format;
     const char *plant;
+    struct tool_file config;   /* path NULL: none */
+    struct cnc_config machine; /* of NC programs */
     bool werror, list;
 };
 
@@ -27,6 +30,7 @@ static const struct argp_option option_table[] = {
     {"format", KEY_FORMAT, "FORMAT", 0, "Print as " CHECK_FORMAT_NAMES, 0},
     {"json", 'j', NULL, 0, "The same as --format json", 0},
     {"plant", KEY_PLANT, "FILE", 0, "Simulated mechanics (docs/PLANT.md): also check waits for inputs that they drive", 0},
+    {"config", KEY_CONFIG, "FILE", 0, "Machine of a CNC872 (docs/CNC872.md) for which NC programs are; default axes X, Y, Z", 0},
     {"list", KEY_LIST, NULL, 0, "List the warnings with a description of each", 0},
     {"readings", KEY_READINGS, "NAME=VALUE,...", 0, READINGS_OPTION_HELP, 0},
     {0},
@@ -36,7 +40,8 @@ static const char doc[] =
     "Check programs of the RKM04: report everything that a unit would refuse, and warn about commands that it accepts but that "
     "are probably wrong. FILE is a program text (.rks), - standard input. Files given as M=FILE are the programs of one unit, M "
     "is the motor, 1 to 4 or 0 for all; a warning is then also given if motors wait for each other. Each other file is checked "
-    "by itself."
+    "by itself.\n"
+    "FILE may also be a text of a CNC872: a configuration (.xml), an NC program (.nc) or a PLC program (.plc)."
     "\v"
     "The comment {nolint NAME NAME} switches warnings off for its line, or for the next line if it is alone on its line; "
     "{nolint-file NAME} switches one off for the whole text. docs/CHECK.md describes each warning.\n"
@@ -46,6 +51,7 @@ static const char doc[] =
     "  rkm04 check 1=x.rks 2=y.rks\n"
     "  rkm04 check --werror --no-warn speed-not-reached *.rks\n"
     "  rkm04 check --format sarif *.rks >check.sarif\n"
+    "  rkm04 check --config mill.xml mill.plc part.nc\n"
     "\n"
     "Exit status: 0 no error; 1 an error, with --werror also a warning, or a file could not be read; 2 wrong usage.";
 
@@ -90,6 +96,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case KEY_PLANT:
         options->plant = text;
         return 0;
+    case KEY_CONFIG:
+        options->config = (struct tool_file){.path = text, .source.name = text};
+        return 0;
     case KEY_LIST:
         options->list = true;
         return 0;
@@ -129,6 +138,39 @@ static bool check_some(struct check_printer *printer, const struct options *opti
     return ok && !bad_plant;
 }
 
+/* Check a text of a CNC872. */
+static bool check_cnc_file(struct check_printer *printer, const struct program_source *source, struct cnc_config *machine)
+{
+    struct diagnostics found;
+    const bool ok = check_cnc(source, machine, &found);
+    check_print(printer, source, &found);
+    diagnostics_free(&found);
+    if (!ok)
+        fputs("rkm04 check: out of memory\n", stderr);
+    return ok;
+}
+
+/* The machine of NC programs: that of --config, whose errors are reported, or X, Y, Z. */
+static bool read_machine(struct check_printer *printer, struct options *options)
+{
+    cnc_config_clear(&options->machine);
+    if (options->config.path == NULL)
+        return true;
+    const bool ok = tool_file_read(&options->config, "rkm04 check") &&
+                    check_cnc_file(printer, &options->config.source, &options->machine);
+    tool_file_free(&options->config);
+    return ok;
+}
+
+/* Check a file without a motor by itself. */
+static bool check_file(struct check_printer *printer, const struct options *options, const struct program_source *source)
+{
+    if (!check_cnc_takes(source->name))
+        return check_some(printer, options, source, 1);
+    struct cnc_config machine = options->machine;
+    return check_cnc_file(printer, source, &machine);
+}
+
 /* Check each file without a motor by itself, then those with one together. Returns false if something could not be done. */
 static bool check_files(struct check_printer *printer, struct options *options)
 {
@@ -144,7 +186,7 @@ static bool check_files(struct check_printer *printer, struct options *options)
             together[count++] = file->source;
             continue;
         } else {
-            ok = check_some(printer, options, &file->source, 1) && ok;
+            ok = check_file(printer, options, &file->source) && ok;
         }
         tool_file_free(file);
     }
@@ -183,7 +225,7 @@ int check_main(int argc, char **argv)
         return print_list();
     }
     check_print_begin(&printer, options.format, stdout);
-    bool ok = read_plant(&options, &plant) && check_files(&printer, &options);
+    bool ok = read_plant(&options, &plant) && read_machine(&printer, &options) && check_files(&printer, &options);
     ok = check_print_end(&printer) && ok;
     program_text_free(&plant);
     tool_files_end(&options.files);

@@ -153,6 +153,9 @@ static json_t *sarif_rules(void)
         {"bad-value", "a number is missing, out of range or too long"},
         {"unknown-command", "no command"},
         {"open-comment", "a comment that is never closed"},
+        {"config-error", "an error in the configuration of a CNC872"},
+        {"nc-error", "an error in an NC program"},
+        {"plc-error", "an error in a PLC program"},
     };
     json_t *rules = json_array();
     for (size_t i = 0; i < sizeof errors / sizeof errors[0]; i++)

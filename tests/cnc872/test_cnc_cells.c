@@ -39,6 +39,10 @@ START_TEST(bits_of_axes_have_the_axis_in_the_name)
     ck_assert_uint_eq(bit_place("MPXPI"), CNC_BIT_MPxPI);
     ck_assert_uint_eq(bit_place("MP4PI"), CNC_BIT_MPxPI + 3);
     ck_assert_uint_eq(bit_place("mp16pi"), CNC_BIT_MPxPI + 15);
+    ck_assert_uint_eq(bit_place("mpzpi"), CNC_BIT_MPxPI + 2);
+    ck_assert_int_eq(cnc_find_axis("16", 2), 15);
+    ck_assert_int_eq(cnc_find_axis("1", 1), -1);
+    ck_assert_int_eq(cnc_find_axis("17", 2), -1);
     ck_assert_uint_eq(bit_place("KH100"), CNC_BIT_KHx0 + 9);
     ck_assert_uint_eq(bit_place("KHX1"), CNC_BIT_KHx1);
     ck_assert_uint_eq(bit_place("KRRY"), CNC_BIT_KRRx + 1);
@@ -54,7 +58,7 @@ START_TEST(what_is_not_in_the_table_is_not_found)
 {
     static const char *const absent[] = {"MP7",    "PO_OS7", "MP1PI", "MPPI",   "MP17PI", "MP04PI", "ZMM0PI", "ZMM15PI",
                                          "ZMMPI",  "KH10",   "BZH08PI", "PB20PI", "",     "M0",     "x",      "B_POLX",
-                                         "ZMM01PI", "ZMM1aPI", "ZMM111PI", "ZMM1 PI"};
+                                         "ZMM01PI", "ZMM1aPI", "ZMM111PI", "ZMM001PI", "ZMM1 PI"};
     unsigned index;
 
     for (size_t i = 0; i < sizeof absent / sizeof *absent; i++)

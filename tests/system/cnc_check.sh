@@ -1,0 +1,51 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# rkm04 check on texts of a CNC872: configuration, NC program, PLC program.
+. "${0%/*}/lib.sh"
+
+texts() {
+    cd "$folder" || exit 1
+    printf '<ChannelConfig>\n <Axis Name="X"/>\n <Axis Name="4"/>\n</ChannelConfig>\n' >mill.xml
+    printf 'G1 X10 A4=5 F1000\n' >part.nc
+    printf 'MODULE_MAIN\n LDR STOPPI\nMODULE_MAIN_END\n' >MILL.PLC
+}
+
+test_texts_without_errors_say_nothing() {
+    texts
+    exits 0 "$RKM04" check --config mill.xml mill.xml part.nc MILL.PLC
+    same "" "$said$complained" "output"
+}
+
+test_errors_have_their_line_and_column() {
+    texts
+    printf '; c\n\nMODULE_MAIN\n  LDR  STOPPY ;\n TIM 3\nMODULE_MAIN_END' >bad.plc
+    exits 1 "$RKM04" check bad.plc
+    same "bad.plc:4:8: error: there is no cell \`STOPPY' [plc-error]
+    LDR  STOPPY ;
+         ^
+bad.plc:5:2: error: unknown instruction \`TIM' [plc-error]
+   TIM 3
+   ^" "$said" "bad.plc"
+    exits 1 "$RKM04" check part.nc
+    holds "$said" "part.nc:1:8: error: " "an axis that X, Y, Z do not have"
+    printf 'G1 Y1 F100\n' >y.nc
+    exits 1 "$RKM04" check --config mill.xml y.nc
+    holds "$said" "[nc-error]" "an axis that the machine does not have"
+    printf '<ChannelConfig><Axis/></ChannelConfig>' >bad.xml
+    exits 1 "$RKM04" check --config bad.xml y.nc
+    holds "$said" "bad.xml:1:" "the configuration"
+    holds "$said" "[config-error]" "the configuration"
+    exits 1 "$RKM04" check --config none.xml y.nc
+    holds "$complained" "cannot read none.xml" "stderr"
+}
+
+test_errors_as_json() {
+    texts
+    printf 'LDR A\n' >a.plc
+    exits 1 "$RKM04" check --json a.plc mill.xml
+    same "1 a.plc 1 1 plc-error" "$(python3 -c 'import json, sys
+all = json.load(sys.stdin); one = all["diagnostics"][0]
+print(all["errors"], one["file"], one["line"], one["column"], one["name"])' <<<"$said")" "json"
+}
+
+run_cases "$@"
