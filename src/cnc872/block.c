@@ -16,6 +16,7 @@ int64_t cnc_block_line(const struct cnc *cnc)
 void cnc_begin_phase(struct cnc *cnc, enum cnc_phase phase)
 {
     cnc->machine.phase = (uint8_t)phase;
+    cnc_rewind_plc(cnc, phase == CNC_INIT ? CNC_PLC_BLOCK_INIT : CNC_PLC_BLOCK_DONE);
     cnc->machine.text_passed = cnc->machine.outside_passed = cnc->machine.is_passed = false;
 }
 
@@ -233,7 +234,7 @@ static void advance_block(struct cnc *cnc)
 static void begin_annulment(struct cnc *cnc)
 {
     struct cnc_machine *machine = &cnc->machine;
-    const bool is_passing = machine->phase == CNC_INIT && !machine->is_passed;
+    const bool is_passing = (machine->phase == CNC_INIT || machine->phase == CNC_DONE) && !machine->is_passed;
     machine->annulment = CNC_ANNULMENT_PASSES;
     cnc_set(cnc, CNC_BIT_CAPI, true);
     cnc_set(cnc, CNC_BIT_AUTPI, false);

@@ -68,24 +68,15 @@ void cnc_begin(struct cnc *cnc, const struct cnc_setup *setup)
     cnc_clear_cells(&cnc->cells);
     if (setup->backup != NULL)
         memcpy(cnc->cells.memory + cnc_cell_place(CNC_CELL_PLC_MEM_BACKUP), setup->backup, CNC_BACKUP_SIZE);
+    cnc->plc_program = setup->plc;
+    cnc->plc.no_license = setup->config->no_license;
+    if (cnc->plc_program != NULL)
+        cnc_begin_plc(&cnc->plc, cnc->plc_program, &cnc->cells);
     take_program(cnc, setup->program);
     cnc_put_configuration(cnc);
     cnc_put_time(cnc);
+    cnc_call_plc(cnc, CNC_PLC_INIT);
     cnc_put_status(cnc);
-}
-
-/* NB4: the PLC text and, while EXT_PLC is 1, the program outside. */
-void cnc_run_pass(struct cnc *cnc)
-{
-    struct cnc_machine *machine = &cnc->machine;
-    if ((machine->phase != CNC_INIT && machine->phase != CNC_DONE) || machine->is_passed)
-        return;
-    machine->text_passed = true;
-    if (cnc_is_set(cnc, CNC_BIT_EXT_PLC) && cnc_is_set(cnc, CNC_BIT_PLC_PASS_DONE)) {
-        cnc_set(cnc, CNC_BIT_PLC_PASS_DONE, false);
-        machine->outside_passed = true;
-    }
-    machine->is_passed = machine->text_passed && (machine->outside_passed || !cnc_is_set(cnc, CNC_BIT_EXT_PLC));
 }
 
 void cnc_tick(struct cnc *cnc)
@@ -96,8 +87,10 @@ void cnc_tick(struct cnc *cnc)
     cnc_drive_switches(cnc);
     cnc_put_time(cnc);
     /* PLC */
+    cnc->reported = 0;
     cnc_begin_start(cnc);
     cnc_run_pass(cnc);
+    cnc_call_plc(cnc, CNC_PLC_MAIN);
     /* requests and block machine */
     cnc_take_displays(cnc);
     cnc_take_backup(cnc);

@@ -69,6 +69,9 @@ enum cnc_event {
     CNC_EVENT_BLOCK_END,     /* value: the same */
     CNC_EVENT_SHORT_STOPPI,  /* value: T's that STOPPI was 1, fewer than 200 (NB3) */
     CNC_EVENT_BEYOND_QUEUE,  /* a BLK beyond the queue has been read; value: n (NQ1) */
+    CNC_EVENT_PLC_ERROR,     /* ESET; value: PLC_ERROR (NP7) */
+    CNC_EVENT_PLC_DIVISION,  /* division by 0; value: line of the PLC text */
+    CNC_EVENT_PLC_FAULT,     /* the PLC program has halted; value: line of the PLC text (NP8) */
     CNC_EVENT_CRITICAL,      /* BZH13 has become this value (NS5) */
     CNC_EVENT_BLOCK_REFUSED, /* S is outside of the limits of the gear (NF5); value: line of the block */
     CNC_EVENT_REFERENCE_DONE,   /* value: the axis (NH2) */
@@ -174,12 +177,16 @@ struct cnc_display {
 struct cnc {
     const struct cnc_config *config;
     const struct cnc_nc_program *program;
+    const struct cnc_plc_program *plc_program;
     const struct cnc_port *port;
     void *context;
     uint64_t tick;          /* us since power-up */
     uint64_t turn;          /* the last T that has been done; 0: none yet */
     uint16_t program_axes;  /* that the NC program names */
+    uint64_t beyond_queue;  /* how often a BLK beyond the queue has been read (NQ1) */
+    uint32_t reported;      /* bits of the events that come once a T at most, of this T */
     struct cnc_cells cells;
+    struct cnc_plc plc;
     struct cnc_panel panel;
     struct cnc_axis axis[CNC_AXES];
     struct cnc_machine machine;
@@ -197,6 +204,7 @@ struct cnc {
 struct cnc_setup {
     const struct cnc_config *config;
     const struct cnc_nc_program *program; /* NULL: none */
+    const struct cnc_plc_program *plc;    /* NULL: none */
     const struct cnc_port *port;          /* NULL: none */
     const struct cnc_switch *switches;    /* of the machine */
     uint16_t switch_count;

@@ -29,9 +29,8 @@ static inline void cnc_report_event(struct cnc *cnc, enum cnc_event event, int64
 
 /* ---- The block machine: block.c, start.c --------------------------------------------------------------------------- */
 
-/* Step 2: the passes of MODULE_BLOCK_INIT and MODULE_BLOCK_DONE; the event of a start. */
+/* Step 2: a start that has been asked for, with its event (NE4). */
 void cnc_begin_start(struct cnc *cnc);
-void cnc_run_pass(struct cnc *cnc);
 
 /* Step 3: STOPPI, STOP_REQ, STOP_EMERGENCY_REQ and the panel's STOP. Returns whether there was one. */
 bool cnc_take_stop(struct cnc *cnc);
@@ -72,6 +71,20 @@ const struct cnc_nc_block *cnc_present_block(const struct cnc *cnc);
 
 /* Stop as STOP_EMERGENCY_REQ does. */
 void cnc_stop_emergency(struct cnc *cnc);
+
+/* ---- PLC program: program.c -------------------------------------------------------------------------------------------- */
+
+/* Step 2: the pass under way, of the PLC text and, while EXT_PLC is 1, of the program outside (NB4). */
+void cnc_run_pass(struct cnc *cnc);
+
+/* A call of a section (NP6). Returns whether it has ended; true without PLC program. */
+bool cnc_call_plc(struct cnc *cnc, enum cnc_plc_section section);
+
+/* The next call of the section begins at its beginning. */
+void cnc_rewind_plc(struct cnc *cnc, enum cnc_plc_section section);
+
+/* _ON_EVENT with PLCEVENT_START_REQ. */
+void cnc_call_start_event(struct cnc *cnc);
 
 /* ---- Motion: motion.c, hold.c, feed.c -------------------------------------------------------------------------------- */
 

@@ -55,6 +55,7 @@ void cnc_begin_start(struct cnc *cnc)
     }
     cnc->machine.start = CNC_START_WAITS;
     cnc_set(cnc, CNC_BIT_START_SUSPEND, false);
+    cnc_call_start_event(cnc);
 }
 
 /* The stopped block from its INIT pass on, or the rest of its DONE pass (NB7). */

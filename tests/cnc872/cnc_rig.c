@@ -12,7 +12,9 @@ struct rig_event rig_event[RIG_EVENTS_MAX];
 unsigned rig_events;
 void (*rig_script)(uint64_t turn);
 
+static struct cnc_plc_program plc_program;
 static struct rig_turn history[RIG_TURNS_MAX + 1];
+static bool has_plc;
 
 static void on_event(void *context, enum cnc_event event, int64_t value)
 {
@@ -46,9 +48,9 @@ static void read_nc(const char *nc)
     ck_assert(cnc_nc_read(nc, strlen(nc), &config, &program, on_error, name));
 }
 
-void rig_power(const char *xml, const char *nc)
+void rig_power_plc(const char *xml, const char *nc, const char *plc)
 {
-    static char name[] = "xml";
+    static char name[] = "xml", plc_name[] = "plc";
     static const struct cnc_port port = {.event = on_event};
     rig_events = 0;
     rig_script = NULL;
@@ -57,7 +59,24 @@ void rig_power(const char *xml, const char *nc)
         ck_assert(cnc_config_read(xml, strlen(xml), &config, on_error, name));
     if (nc != NULL)
         read_nc(nc);
-    cnc_begin(&cnc, &(struct cnc_setup){.config = &config, .program = nc != NULL ? &program : NULL, .port = &port});
+    if (plc != NULL)
+        ck_assert(cnc_translate_plc(plc, strlen(plc), &plc_program, on_error, plc_name));
+    has_plc = plc != NULL;
+    cnc_begin(&cnc, &(struct cnc_setup){.config = &config,
+                                        .program = nc != NULL ? &program : NULL,
+                                        .plc = has_plc ? &plc_program : NULL,
+                                        .port = &port});
+}
+
+void rig_begin_plc(const char *xml, const char *nc, const char *plc)
+{
+    rig_power_plc(xml, nc, plc);
+    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
+}
+
+void rig_power(const char *xml, const char *nc)
+{
+    rig_power_plc(xml, nc, NULL);
 }
 
 void rig_begin_with(const char *xml, const char *nc)
@@ -80,7 +99,8 @@ void rig_load_nc(const char *nc)
 
 void run_to(uint64_t turn)
 {
-    ck_assert_uint_le(turn, RIG_TURNS_MAX);
+    if (turn > RIG_TURNS_MAX)
+        ck_abort_msg("the rig ends with T %u", RIG_TURNS_MAX);
     while (cnc.turn < turn) {
         if (rig_script != NULL)
             rig_script(cnc.turn + 1);
@@ -145,48 +165,41 @@ int64_t top_speed(void)
     return top;
 }
 
-/* The row of a name. */
-static const struct cnc_row *find_row(const char *name, bool is_bit, unsigned *index)
+/* What a name stands for. */
+static struct cnc_operand find_operand(const char *name)
 {
-    for (const struct cnc_row *row = cnc_rows; row < cnc_rows + cnc_row_count; row++)
-        if ((row->type == CNC_BIT) == is_bit && cnc_name_matches(row, name, strlen(name), index))
-            return row;
-    ck_abort_msg("no cell %s", name);
-}
-
-static unsigned find_bit(const char *name)
-{
-    unsigned index;
-    const struct cnc_row *row = find_row(name, true, &index);
-    return row->place + index;
+    struct cnc_operand operand;
+    struct cnc_text_fault fault;
+    ck_assert_msg(cnc_parse_operand(name, strlen(name), has_plc ? &plc_program.names : NULL, &operand, &fault), "%s: %s", name,
+                  fault.reason);
+    return operand;
 }
 
 bool bit(const char *name)
 {
-    return cnc_bit(&cnc.cells, find_bit(name));
+    return cnc_bit(&cnc.cells, find_operand(name).place);
 }
 
 void set_bit(const char *name, bool value)
 {
-    cnc_put_bit(&cnc.cells, find_bit(name), value);
+    cnc_put_bit(&cnc.cells, find_operand(name).place, value);
 }
 
-static enum cnc_cell find_cell(const char *name, unsigned index)
+static unsigned find_element(const struct cnc_operand *operand, unsigned index)
 {
-    unsigned none;
-    const struct cnc_row *row = find_row(name, false, &none);
-    ck_assert_uint_lt(index, row->count);
-    return (enum cnc_cell)(row - cnc_rows);
+    return operand->place + index * cnc_type_size[operand->type];
 }
 
 int64_t cell(const char *name, unsigned index)
 {
-    return cnc_number(&cnc.cells, find_cell(name, index), index);
+    const struct cnc_operand operand = find_operand(name);
+    return cnc_read_number(&cnc.cells, find_element(&operand, index), (enum cnc_type)operand.type);
 }
 
 void set_cell(const char *name, unsigned index, int64_t value)
 {
-    cnc_put_number(&cnc.cells, find_cell(name, index), index, value);
+    const struct cnc_operand operand = find_operand(name);
+    cnc_write_number(&cnc.cells, find_element(&operand, index), (enum cnc_type)operand.type, value);
 }
 
 unsigned count_events(enum cnc_event event)

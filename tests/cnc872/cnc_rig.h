@@ -46,6 +46,10 @@ void rig_power(const char *xml, const char *nc);
 void rig_begin(const char *nc);
 void rig_begin_with(const char *xml, const char *nc);
 
+/* The same with a PLC program. */
+void rig_power_plc(const char *xml, const char *nc, const char *plc);
+void rig_begin_plc(const char *xml, const char *nc, const char *plc);
+
 /* Another NC program. */
 void rig_load_nc(const char *nc);
 
@@ -60,7 +64,7 @@ uint64_t first_stop(uint64_t from); /* PO_STOP 1 */
 uint64_t first_speed(uint64_t from, int64_t v);
 int64_t top_speed(void);            /* of all T's */
 
-/* Cells by name: "PO_F", "BZH09", "DIFCIT_X" with an index. */
+/* Cells by name: "PO_F", "BZH09", "DIFCIT_X" with an index; bits and variables of the PLC program, too. */
 bool bit(const char *name);
 void set_bit(const char *name, bool value);
 int64_t cell(const char *name, unsigned index);
