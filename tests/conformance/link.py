@@ -11,7 +11,16 @@ class Unreachable(Exception):
     """The line cannot be opened, or is gone."""
 
 
-class SerialPort:
+class Port:
+    """Time is ours, and goes on by itself."""
+    now = staticmethod(time.monotonic)
+
+    def wait(self, seconds):
+        """Until there is something to read, or for so many seconds. Is there?"""
+        return bool(select.select([self], [], [], seconds)[0])
+
+
+class SerialPort(Port):
     """A device or a pty, 19200 8N1."""
 
     def __init__(self, path):
@@ -43,7 +52,7 @@ class SerialPort:
             raise Unreachable(f"the line is gone: {error}") from None
 
 
-class TcpPort:
+class TcpPort(Port):
     """tcp:HOST:PORT, bytes as they are (rkm04 serve --tcp, ser2net raw)."""
 
     def __init__(self, address):
@@ -159,7 +168,7 @@ class Line:
 
     def drain(self):
         """Forget what has come in."""
-        while select.select([self.port], [], [], 0)[0] and self.port.read():
+        while self.port.wait(0) and self.port.read():
             pass
 
     def say(self, data):
@@ -171,7 +180,7 @@ class Line:
         """Bytes until whole(bytes) is true or none has come for `timeout` seconds."""
         heard = b""
         while not whole(heard) and len(heard) < ANSWER_MAX * 2:
-            if not select.select([self.port], [], [], timeout)[0]:
+            if not self.port.wait(timeout):
                 break
             heard += self.port.read()
         self.note("<--", heard)
@@ -198,9 +207,9 @@ class Line:
 
     def silent(self, seconds):
         """What comes within so many seconds, b"" if nothing does."""
-        end = time.monotonic() + seconds
+        end = self.port.now() + seconds
         heard = b""
-        while (left := end - time.monotonic()) > 0 and select.select([self.port], [], [], left)[0]:
+        while (left := end - self.port.now()) > 0 and self.port.wait(left):
             heard += self.port.read()
         self.note("<--", heard)
         return heard

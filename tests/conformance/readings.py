@@ -4,7 +4,6 @@ and looks at positions, flags and tables: over the wire alone, and where time is
 seen.
 
 A time that was not measured to the ms has limits; the roundest number between them is taken, and said."""
-import time
 
 from case import Mismatch
 
@@ -207,14 +206,13 @@ class Probes:
             return self.exact_store_time()
         quick = []
         for _ in range(5):
-            begin = time.monotonic()
+            begin = self.target.now_us()
             self.run.progress(1)
-            quick.append(time.monotonic() - begin)
-        begin = time.monotonic()
+            quick.append(self.target.now_us() - begin)
+        begin = self.target.now_us()
         self.line.ask(b"\x031")
-        took = (time.monotonic() - begin) * 1000 * self.target.speed
-        scale = 1000 * self.target.speed
-        return roundest(round(took - max(quick) * scale - 5), round(took - min(quick) * scale + 5))
+        took = self.target.now_us() - begin
+        return roundest(round((took - max(quick)) / 1000 - 5), round((took - min(quick)) / 1000 + 5))
 
     def exact_store_time(self):
         """The slot under way is not counted."""

@@ -2,12 +2,13 @@
 """target.py: what stands around the unit under test: its time, its inputs, its power; with a control socket or a hand."""
 import json
 import os
+import shlex
 import socket
 import subprocess
 import sys
 import time
 
-from link import Unreachable
+from link import Port, Unreachable
 
 
 class Control:
@@ -45,7 +46,7 @@ class Control:
 class Real:
     """Time as it is, `speed` times as fast; inputs and power are in the hands of whoever sits there. A host may see things late
     by `latency` seconds: adapters, drivers, a busy machine."""
-    exact = False
+    exact = sees_outputs = False
     silence = 0.3  # seconds after which a unit that has to be silent has been
 
     def __init__(self, has, speed, latency):
@@ -73,7 +74,7 @@ class Real:
             if over:
                 return None
             over = self.now_us() > end  # one more look: we may have been stopped for a while
-            time.sleep(0.005)
+            self.pass_us(5000 * self.speed)
         return self.since_start()
 
     def latency_us(self):
@@ -114,7 +115,7 @@ class Real:
 
 class Stepped:
     """rkm04 serve with its control socket: time stands but when it is told to pass, bytes take none."""
-    exact = True
+    exact = sees_outputs = True
     silence = 0.05
     has = {"inputs", "outputs", "time", "flash", "power"}
 
@@ -188,19 +189,15 @@ class Stepped:
             self.control.call("clock", clock=self.clock)
 
 
-class InProcess:
-    """A program with a unit in it and nothing around (in_process.c): its line, time, inputs and power in one. DNode 1."""
-    exact = True
-    silence = 0
-    has = Stepped.has
+class Process:
+    """A program that takes a request a line on its standard input, and answers with a line that begins with `='."""
 
-    def __init__(self, program, framing):
-        self.heard, self.line = os.pipe()  # what the unit says, so that one can wait for it as for a port
-        self.start_us, self.now, self.mask, self.seen = 0, 0, 0, []
+    def __init__(self, words):
+        self.mask, self.seen = 0, []
         try:
-            self.process = subprocess.Popen([program, framing], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        except OSError as error:
-            raise Unreachable(f"cannot run {program}: {error}") from None
+            self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        except (OSError, IndexError) as error:
+            raise Unreachable(f"cannot run {shlex.join(words)}: {error}") from None
 
     def call(self, request):
         """The words of the answer."""
@@ -216,6 +213,91 @@ class InProcess:
         except (OSError, ValueError) as error:
             raise Unreachable(f"the program is gone: {error}") from None
         raise Unreachable("the program has ended")
+
+    def inputs(self, levels):
+        for number, level in levels.items():
+            bit = 1 << int(number) - 1
+            self.mask = self.mask & ~bit | (bit if level else 0)
+        self.call(f"inputs {self.mask}")
+
+    def rest(self):
+        self.mask = 0
+        self.call("inputs 0")
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
+
+
+class Board(Process, Real):
+    """A program that is a board with its firmware, in time of its own, which stands but when it is told to pass: however busy
+    the machine is, nothing comes late. Requests: `bytes HEX`, they go to the bus; `wait TICKS`, until the board sends something;
+    `advance TICKS`; `inputs MASK`; `outputs`; `reset`, power off and on. Each is answered by `= TICK`, after `wait` with what was
+    sent in hexadecimal, if anything was, after `outputs` with their mask."""
+    sees_outputs = True
+    ahead = 20_000  # us after which whatever happens in the unit has happened at the pins
+
+    def __init__(self, command, latency):
+        Process.__init__(self, shlex.split(command))
+        self.tick, self.heard = 0, b""
+        Real.__init__(self, {"inputs", "outputs", "power", "flash"}, 1, latency)
+        self.pass_us(self.ahead)
+
+    def call(self, request):
+        tick, *words = super().call(request)
+        self.tick = int(tick)
+        return words
+
+    # As a port
+
+    def now(self):
+        return self.tick / 1e6
+
+    def wait(self, seconds):
+        if not self.heard:
+            self.heard = bytes.fromhex("".join(self.call(f"wait {int(seconds * 1e6)}")))
+        return bool(self.heard)
+
+    def write(self, data):
+        self.call("bytes " + data.hex())
+
+    def read(self):
+        heard, self.heard = self.heard, b""
+        return heard
+
+    # As a target
+
+    def now_us(self):
+        return self.tick
+
+    def pass_us(self, ticks):
+        if ticks > 0:
+            self.call(f"advance {int(ticks)}")
+
+    def power(self):
+        self.call("reset")
+        self.pass_us(self.ahead)
+
+    def outputs(self):
+        self.pass_us(self.ahead)
+        return int(self.call("outputs")[0])
+
+    def close(self):
+        super().close()
+        if self.process.returncode != 0:
+            raise Unreachable(f"the program ended with status {self.process.returncode}")
+
+
+class InProcess(Process, Port):
+    """A program with a unit in it and nothing around (in_process.c): its line, time, inputs and power in one. DNode 1."""
+    exact = sees_outputs = True
+    silence = 0
+    has = Stepped.has
+
+    def __init__(self, program, framing):
+        super().__init__([program, framing])
+        self.heard, self.line = os.pipe()  # what the unit says, so that one can wait for it as for a port
+        self.start_us, self.tick = 0, 0
 
     # As a port
 
@@ -233,38 +315,28 @@ class InProcess:
     # As a target
 
     def start(self):
-        self.pass_us(-(self.now - 1) % 1000)
-        self.start_us = self.now - 1
+        self.pass_us(-(self.tick - 1) % 1000)
+        self.start_us = self.tick - 1
         self.seen.clear()
 
     def since_start(self):
-        return self.now - self.start_us
+        return self.tick - self.start_us
 
     def pass_us(self, ticks):
         if ticks > 0:
-            self.now = int(self.call(f"advance {int(ticks)}")[0])
+            self.tick = int(self.call(f"advance {int(ticks)}")[0])
 
     def until_idle(self, motor, limit_us, _is_idle):
         now, holds = self.call(f"idle {motor} {int(limit_us)}")
-        self.now = int(now)
-        return self.now - 1 - self.start_us if holds == "1" else None
+        self.tick = int(now)
+        return self.tick - 1 - self.start_us if holds == "1" else None
 
     @staticmethod
     def latency_us():
         return 0
 
-    def inputs(self, levels):
-        for number, level in levels.items():
-            bit = 1 << int(number) - 1
-            self.mask = self.mask & ~bit | (bit if level else 0)
-        self.call(f"inputs {self.mask}")
-
-    def rest(self):
-        self.mask = 0
-        self.call("inputs 0")
-
     def power(self):
-        self.now = int(self.call("reset")[0])
+        self.tick = int(self.call("reset")[0])
 
     def outputs(self):
         return int(self.call("outputs")[0])
@@ -275,7 +347,3 @@ class InProcess:
 
     def events(self, kind, motor=0):
         return [(tick - self.start_us, value) for name, number, tick, value in self.seen if (name, number) == (kind, motor)]
-
-    def close(self):
-        self.process.stdin.close()
-        self.process.wait()

@@ -72,15 +72,17 @@ void board_clock_start(void)
 static void timer_interrupt(void)
 {
     uint32_t next, now;
+    int32_t left;
     TIM2->sr = ~(uint32_t)TIM_COMPARE1;
     do {
         now = TIM2->cnt;
         wake_check(now);
         next = pulses_play(&board_pulses, &pins, now, wake_tick(now + PULSES_FAR));
         TIM2->ccr1 = next;
-    } while ((int32_t)(next - TIM2->cnt) <= 0);
+        left = (int32_t)(next - TIM2->cnt);
+    } while (left <= 0);
     if (emulated)
-        systick_start(next - now, CLOCK_CPU);
+        systick_start((uint32_t)left, CLOCK_CPU);
 }
 
 /* QEMU's TIM2 compares nothing: this stands in for it. */

@@ -15,13 +15,9 @@ struct stm32_flash {
 #define FLASH ((struct stm32_flash *)0x40023c00)
 #define FLASH_KEY1 0x45670123u
 #define FLASH_KEY2 0xcdef89abu
-#define FLASH_WRONG 0xf2u /* sr: write protected, alignment, parallelism, sequence, operation; write 1 to clear */
-#define FLASH_BUSY (1u << 16)
-#define FLASH_PROGRAM 1u /* cr */
-#define FLASH_ERASE 2u
+enum { FLASH_WRONG = 0xf2, FLASH_BUSY = 1 << 16 }; /* sr; WRONG: all errors, write 1 to clear */
+enum { FLASH_PROGRAM = 1, FLASH_ERASE = 2, FLASH_WORDS = 2 << 8, FLASH_START = 1 << 16 }; /* cr; WORDS: from 2.7 V on, 3.6.2 */
 #define FLASH_SECTOR(number) ((uint32_t)(number) << 3)
-#define FLASH_WORDS (2u << 8) /* 32 bits at a time: 2.7 V or more, 3.6.2 */
-#define FLASH_START (1u << 16)
 #define FLASH_LOCK (1u << 31)
 
 /* 7.3: clocks and resets. */
