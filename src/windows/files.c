@@ -6,6 +6,8 @@
 #include <sys/file.h>
 #include <windows.h>
 
+#include <sddl.h>
+
 #undef stat
 #undef fstat
 #undef open
@@ -49,12 +51,43 @@ static const char *native(const char *path)
     return strcmp(path, "/dev/null") == 0 ? "NUL" : path;
 }
 
+/* Of a file for this user alone: nothing is inherited from its folder. NULL: the system does not say who the user is. */
+static SECURITY_ATTRIBUTES *private_attributes(void)
+{
+    static SECURITY_ATTRIBUTES attributes = {.nLength = sizeof attributes};
+    HANDLE token;
+    union {
+        TOKEN_USER user;
+        char bytes[sizeof(TOKEN_USER) + SECURITY_MAX_SID_SIZE];
+    } own;
+    char text[256], *sid;
+    DWORD length;
+    if (attributes.lpSecurityDescriptor || !OpenProcessToken(GetCurrentProcess(), TOKEN_QUERY, &token))
+        return attributes.lpSecurityDescriptor ? &attributes : NULL;
+    bool known = GetTokenInformation(token, TokenUser, &own, sizeof own, &length) && ConvertSidToStringSidA(own.user.User.Sid, &sid);
+    CloseHandle(token);
+    if (!known)
+        return NULL;
+    snprintf(text, sizeof text, "D:P(A;;FA;;;%.200s)", sid); /* all access to files, for this one */
+    LocalFree(sid);
+    known = ConvertStringSecurityDescriptorToSecurityDescriptorA(text, SDDL_REVISION_1, &attributes.lpSecurityDescriptor, NULL);
+    return known ? &attributes : NULL;
+}
+
 int windows_open(const char *path, int flags, ...)
 {
     static const DWORD accesses[] = {GENERIC_READ, GENERIC_WRITE, GENERIC_READ | GENERIC_WRITE};
+    unsigned mode = 0666;
+    if (flags & O_CREAT) {
+        va_list values;
+        va_start(values, flags);
+        mode = va_arg(values, unsigned);
+        va_end(values);
+    }
     DWORD how = flags & O_EXCL ? CREATE_NEW : flags & O_CREAT ? OPEN_ALWAYS : OPEN_EXISTING;
     HANDLE file = CreateFileA(native(path), accesses[flags & (O_WRONLY | O_RDWR)],
-                              FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, NULL, how, FILE_ATTRIBUTE_NORMAL, NULL);
+                              FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
+                              (mode & 077) == 0 ? private_attributes() : NULL, how, FILE_ATTRIBUTE_NORMAL, NULL);
     if (file == INVALID_HANDLE_VALUE) {
         DWORD found = GetFileAttributesA(path);
         if (found != INVALID_FILE_ATTRIBUTES && (found & FILE_ATTRIBUTE_DIRECTORY)) {
@@ -75,7 +108,7 @@ FILE *windows_fopen(const char *path, const char *mode)
 {
     bool reads = mode[0] == 'r', both = strchr(mode, '+') != NULL;
     int flags = both ? O_RDWR : reads ? O_RDONLY : O_WRONLY;
-    int fd = windows_open(path, flags | (reads ? 0 : O_CREAT) | (mode[0] == 'w' ? O_TRUNC : 0) | O_CLOEXEC);
+    int fd = windows_open(path, flags | (reads ? 0 : O_CREAT) | (mode[0] == 'w' ? O_TRUNC : 0) | O_CLOEXEC, 0666);
     FILE *file = fd >= 0 ? _fdopen(fd, both ? "r+b" : reads ? "rb" : "wb") : NULL;
     if (!file && fd >= 0)
         _close(fd);
@@ -149,7 +182,7 @@ int mkostemp(char *path, int flags)
         uint64_t number = (uint64_t)GetCurrentProcessId() * 1000003u + GetTickCount() + count++ * 7919u;
         for (size_t i = 1; i <= 6; i++, number /= 36)
             path[end - i] = digits[number % 36];
-        int fd = windows_open(path, flags | O_RDWR | O_CREAT | O_EXCL);
+        int fd = windows_open(path, flags | O_RDWR | O_CREAT | O_EXCL, 0666);
         if (fd >= 0 || errno != EEXIST)
             return fd;
     }
@@ -207,7 +240,7 @@ int flock(int fd, int how)
     return -1;
 }
 
-/* Windows has no modes: who may read a file is inherited from its folder. */
+/* Windows has no modes: a file that is there keeps its access. */
 int fchmod(int fd, unsigned mode)
 {
     (void)fd;

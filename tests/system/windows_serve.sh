@@ -170,6 +170,45 @@ test_an_image_that_was_begun_is_finished_and_another_file_is_left_alone() {
     holds "$complained" "cannot open the flash image none/unit.flash" "the message without a folder"
 }
 
+# ---- The control socket ------------------------------------------------------------------------------------------------
+
+test_the_control_socket_is_a_TCP_port_with_a_file_for_the_user_alone() {
+    local file
+    serve_exe bus --tcp 0 --clock stepped
+    file=$(part bus control)
+    holds "$file" "C:/users/" "the folder of the file"
+    file=$prefix/drive_c/${file#C:/}
+    same "tcp:$(part bus control_tcp)" "$(cut -d' ' -f1 "$file")" "the address in the file"
+    [[ $(stat -c %A "$file") == *--- ]] || fail "others may read the file" # Wine gives the group what the user has
+    exits 0 at "tcp:$(part bus tcp)" set '\ C100 F500 R'
+    exits 0 "$RKMCTL" --control "$file" advance 10s
+    exits 0 "$RKMCTL" --control "$file" state --json
+    holds "$said" '"position":500' "the state"
+    sed 's/ ./ x/' "$file" >wrong.control
+    chmod 600 wrong.control
+    exits 1 "$RKMCTL" --control wrong.control state
+    exits 0 "$RKMCTL" --control "$file" shutdown
+    status_of "$started"
+    same 0 "$status" "exit status"
+    [[ ! -e $file ]] || fail "the file is still there"
+}
+
+test_a_control_file_of_a_killed_unit_is_replaced_and_that_of_another_one_is_not() {
+    cd "$folder" || fail "cd"
+    serve_exe one --tcp 0 --control tcp:0 --control-file bus.control
+    exits 0 "$RKMCTL" --control bus.control state
+    exits 1 exe serve --tcp 0 --control tcp:0 --control-file bus.control
+    holds "$complained" "another emulator" "the message"
+    kill_exe
+    serve_exe two --tcp 0 --control tcp:0 --control-file bus.control
+    exits 0 "$RKMCTL" --control bus.control state
+    end_exe two
+    [[ ! -e bus.control ]] || fail "the file is still there"
+    echo precious >mine.control
+    exits 1 exe serve --tcp 0 --control tcp:0 --control-file mine.control
+    same precious "$(<mine.control)" "a file of another kind"
+}
+
 # ---- A COM port --------------------------------------------------------------------------------------------------------
 
 # begin_pair: COM$1 leads to one end of a pair of ptys; the other one is $folder/end.
