@@ -71,7 +71,8 @@ static const struct argp_option table[] = {
      "directory. %l in it stands for the number of the bus", 0},
     {"wine", KEY_WINE, "PREFIX:COMn", 0,
      "Let the COM port of this Wine prefix lead to the link, as in ~/.wine:COM5; further buses have the next ports", 0},
-    {"port", KEY_PORT, "DEVICE", 0, "Use this serial device or pty instead of creating a pty", 0},
+    {"port", KEY_PORT, "DEVICE", 0,
+     "Use this serial device or pty instead of creating a pty; on Windows a COM port, as in COM3", 0},
     {"rts", KEY_RTS, "WHO", 0,
      "What switches the driver of an RS485 device on while units send: driver (default), the kernel's driver if it can, else the "
      "adapter; toggles: the emulator, which switches RTS on while it sends", 0},

@@ -64,7 +64,8 @@ static SECURITY_ATTRIBUTES *private_attributes(void)
     DWORD length;
     if (attributes.lpSecurityDescriptor || !OpenProcessToken(GetCurrentProcess(), TOKEN_QUERY, &token))
         return attributes.lpSecurityDescriptor ? &attributes : NULL;
-    bool known = GetTokenInformation(token, TokenUser, &own, sizeof own, &length) && ConvertSidToStringSidA(own.user.User.Sid, &sid);
+    bool known = GetTokenInformation(token, TokenUser, &own, sizeof own, &length) &&
+                 ConvertSidToStringSidA(own.user.User.Sid, &sid);
     CloseHandle(token);
     if (!known)
         return NULL;

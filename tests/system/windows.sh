@@ -110,7 +110,9 @@ test_the_zip_has_the_program_documents_and_a_prompt() {
     cmake -E chdir "$folder" cmake -E tar xf "$folder"/zip/rkm04-*-windows.zip || fail "the zip"
     cd "$folder"/rkm04-*-windows || fail "the folder in it"
     [[ -f README.md && -f LICENSE && -f docs/WINDOWS.md && -f examples/linear-axis.yaml ]] || fail "documents"
-    same "$("$RKM04" --version)" "$(wine_in "$prefix" cmd /c rkm04-prompt.cmd --version 2>/dev/null | tr -d '\r')" "the prompt"
+    for script in rkm04-prompt.cmd rkm04-serve.cmd; do
+        same "$("$RKM04" --version)" "$(wine_in "$prefix" cmd /c "$script" --version 2>/dev/null | tr -d '\r')" "$script"
+    done
 }
 
 # rkmctl.exe at $port of the unit $folder/bus.
