@@ -104,7 +104,7 @@ static bool has_work(const struct rkm04_motor *motor)
     }
 }
 
-/* Will the motor stand still, with new commands as one way out? */
+/* Will the motor wait, until new commands come or longer? */
 static bool is_started_by_new(const struct rkm04_unit *unit, const struct rkm04_motor *motor)
 {
     bool moving = motor->state == RKM04_MOVING;

@@ -14,7 +14,7 @@ enum { FLAG = 0x7E, ESCAPE = 0x7D, FLIP = 0x20 };
 /* What the next unstuffed byte is. Of the states between flags the number grows with the bytes seen. */
 enum phase {
     HUNT,  /* nothing: passed over until a flag comes */
-    DNODE, /* behind a flag */
+    DNODE, /* after a flag */
     SNODE,
     KEPT_NONE, /* nothing is kept back yet */
     KEPT_ONE,

@@ -107,7 +107,7 @@ static void start_outputs(struct rkm04_unit *unit, struct rkm04_motor *motor)
     motor->after = RKM04_AFTER_GO_ON;
     motor->state = RKM04_MOVING;
     if (READING(unit, guard_start))
-        unit->touched = true; /* the next slot looks at M and N */
+        unit->touched = true; /* the next slot checks M and N */
 }
 
 /* Prepare a motion of one segment with the present parameters. Returns false if a guard ends it before its first step. */

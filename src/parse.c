@@ -272,7 +272,7 @@ static const struct form {
 
 /* ---- Calls -------------------------------------------------------------------------------------------------------- */
 
-/* Leave what is wrong behind: the character that did not fit, unless it begins something itself, and the number that
+/* Leave what is wrong to the caller: the character that did not fit, unless it begins something itself, and the number that
  * follows directly. So one slip is one error when the rest is read. */
 static void pass_over_error(struct rkm04_reader *reader)
 {

@@ -476,7 +476,7 @@ bool profile_stop(struct rkm04_motion *motion, uint64_t tick)
 
 /* ---- Any goal from any state ------------------------------------------------------------------------------------------ */
 
-/* The way ends `early` steps before the place, and a second segment at the start speed leads there; or it ends behind the
+/* The way ends `early` steps before the place, and a second segment at the start speed leads there; or it ends after the
  * place. */
 static void set_early(struct rkm04_motion *motion, int8_t early)
 {

@@ -29,7 +29,7 @@ struct profile_goal {
     uint16_t start_speed; /* of a motion from rest, and of a stop; RKM04_SPEED_MAX: no ramps */
     uint16_t acceleration, deceleration; /* steps/s^2 */
     int8_t early; /* TO_PLACE: the braking ends that many steps before the place, and the rest is done at start_speed, or at the
-                   * speed if that is lower; < 0: it is planned to end behind the place, where the caller cuts it. What can be
+                   * speed if that is lower; < 0: it is planned to end after the place, where the caller cuts it. What can be
                    * reached is asked of the place itself. Takes two segments: RKM04_SEGMENTS_MAX of 2 at least */
 };
 
@@ -42,7 +42,7 @@ enum profile_answer {
 /* Plan to a goal at `tick`: from rest (motion->moving is false), or from the present place, speed and direction. A place ahead
  * that can be reached without a turn is; otherwise, and for a speed the other way, the axis stops first. Places and
  * motion->done count from the pulse sent last. rate: of ticks, as in ramp_begin(). Sets motion->moving; the caller clears it at
- * the last pulse (motion->ramp.next is RKM04_NEVER). Ticks may be one off behind a plan on the way (R2), steps are exact. */
+ * the last pulse (motion->ramp.next is RKM04_NEVER). Ticks may be one off after a plan on the way (R2), steps are exact. */
 enum profile_answer profile_go(struct rkm04_motion *motion, uint64_t tick, uint32_t rate, const struct profile_goal *goal);
 
 /* ---- What the host sees ---- */

@@ -6,7 +6,7 @@
 
 /* ---- 64.64 numbers ------------------------------------------------------------------------------------------------ */
 
-/* factor * places / 2^128 for a whole factor, cut off behind 64 places. */
+/* factor * places / 2^128 for a whole factor, cut off after 64 places. */
 static struct rkm04_fixed scaled(uint64_t factor, struct wide places)
 {
     struct wide product = wide_sum(wide_product(factor, places.high), (struct wide){0, wide_high(factor, places.low)});
@@ -274,7 +274,7 @@ static bool is_leg_open(const struct rkm04_profile *profile)
     return profile->endless && profile->leg + 1 == profile->count;
 }
 
-/* No pulse is left behind the present leg. */
+/* No pulse is left after the present leg. */
 static bool is_last_leg(const struct rkm04_profile *profile)
 {
     return !profile->endless &&

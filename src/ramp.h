@@ -37,13 +37,13 @@ struct ramp_leg {
     struct rkm04_fixed w, w_end;  /* 2 * rate * speed there; above 0 */
     int32_t slope;                /* steps/s^2 from -600 000 000 to 600 000 000 */
     bool open;                    /* it has no end; slope 0 */
-    bool last;                    /* no pulse is left behind it */
+    bool last;                    /* no pulse is left after it */
 };
 
 /* rate: ticks a second, a million to 16 millions; pulses come at most once a tick. */
 void ramp_set_rate(struct rkm04_ramp *ramp, uint32_t rate);
 
-/* Begin a leg at `start`. Pulses count from the next whole step behind leg->from. */
+/* Begin a leg at `start`. Pulses count from the next whole step after leg->from. */
 void ramp_begin_leg(struct rkm04_ramp *ramp, const struct ramp_leg *leg, struct rkm04_instant start);
 
 /* Is the leg over by `limit`? Then the next one begins at ramp->end. */
@@ -53,7 +53,7 @@ static inline bool ramp_leg_is_over(const struct rkm04_ramp *ramp, uint64_t limi
 }
 
 /* Put the ticks of pulses of the present leg, which is not over, due up to and including `limit` into `tick`, at most `room`.
- * Returns their number; there are more while ramp->next <= limit. Behind the last pulse of a motion ramp->next is RKM04_NEVER. */
+ * Returns their number; there are more while ramp->next <= limit. After the last pulse of a motion ramp->next is RKM04_NEVER. */
 size_t ramp_leg_ticks(struct rkm04_ramp *ramp, uint64_t limit, uint64_t *tick, size_t room);
 
 /* ---- Along a profile ---- */

@@ -208,7 +208,7 @@ static inline uint64_t quotient(uint64_t a, uint64_t inverse)
     return product.high << 33 | product.low >> 31;
 }
 
-/* The pulses after the present one, at which y and w stand, computed from `middle` ticks on: the cubic's value at the first,
+/* The pulses after the present one, which y and w are of, computed from `middle` ticks on: the cubic's value at the first,
  * RAMP_NEAR too late, and its differences. */
 static void set_cubic(struct rkm04_ramp *ramp, int64_t middle)
 {

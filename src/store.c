@@ -224,7 +224,7 @@ static int write_commands(const struct slot *slot, unsigned block, const struct 
     return 0;
 }
 
-/* Erase a block and write a record there. Returns 0, or 1 if it does not stand there as it should; then no record does, as
+/* Erase a block and write a record there. Returns 0, or 1 if it is not there as it should be; then no record is, as
  * far as the flash works. */
 static int write_record(const struct slot *slot, unsigned block, uint32_t generation, const struct rkm04_program *program)
 {

@@ -124,7 +124,7 @@ class Host:
 
     def write(self, data: bytes, baudrate: Optional[int] = None, bytesize: Optional[int] = None, parity: Optional[str] = None,
               stopbits: Optional[float] = None, wait: bool = True) -> int:
-        """Send bytes from now on, behind those under way. Returns their number.
+        """Send bytes from now on, after those under way. Returns their number.
 
         With `wait`, time passes until the last one has passed; without, they are under way. Settings that are given stay.
         """

@@ -26,7 +26,7 @@ REAL_MONOTONIC = time.monotonic
 
 _LONG_US = 60_000_000  # a step without a limit, as long as the bus is not idle
 _LONG_STEPS = 100_000  # of these, at most
-_FREE_LOOKS = 100  # looks at the port or the time, without a wait between them, that take no time
+_FREE_LOOKS = 100  # calls that ask the port or the time, without a wait between them, that take no time
 _LOOK_US = 100  # what each further one takes
 _NAP = 0.0003  # real seconds after which a thread that has done nothing counts as blocked
 PATIENCE = 2.0  # real seconds in which a thread that is blocked elsewhere must go on, when all others wait without limit
@@ -121,7 +121,7 @@ class Clock:
         return self._gate
 
     def look(self) -> None:
-        """Note that the program looks at the port or the time. Programs that look again and again without waiting would never
+        """Note that the program asks the port or the time. Programs that ask again and again without waiting would never
         end if that took no time."""
         self._looks += 1
         if self._looks > _FREE_LOOKS:

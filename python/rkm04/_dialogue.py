@@ -81,7 +81,7 @@ class Count(int):
     """A number of exchanges, which knows what was counted, for assertions that fail."""
 
     what: str
-    """What was looked for, in words."""
+    """What was sought, in words."""
     found: "Dialogue"
     """The exchanges that were found."""
     dialogue: "Dialogue"

@@ -313,7 +313,7 @@ class Faults:
         """Inject one: `bus.faults.inject("drop", direction="to_units", skip=3, count=1)`.
 
         kind and parameters: those of `fault.inject` in docs/CONTROL.md; times as in Bus.advance(). What is a word of Python has
-        an underscore behind it: for_="1s".
+        an underscore after it: for_="1s".
         """
         given = {name.rstrip("_"): value for name, value in params.items()}
         return Fault(self._bus, int(self._bus.call("fault.inject", kind=kind, **given)["id"]))
@@ -431,7 +431,7 @@ class Events:
 
     def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
                  trace: Optional[TracebackType]) -> None:
-        # What was gathered in the block can be read behind it.
+        # What was gathered in the block can be read after it.
         rest = self.take()
         self.close()
         self.take = lambda: [rest.pop(0) for _ in range(len(rest))]  # type: ignore[method-assign]

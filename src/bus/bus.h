@@ -82,7 +82,7 @@ void bus_free(struct bus *bus);
 /* The line, brought up to the present as far as that does not take long. */
 struct sim *bus_sim(struct bus *bus);
 
-/* Something was changed by a command: look at once what follows. */
+/* A command has changed something: do at once what follows. */
 void bus_changed(struct bus *bus);
 
 /* Wait for something. done() may be called before this returns. The waiter must stay until then, or until it is taken off. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* bus_ports.h: the ways in for clients of a line: a pty of its own or a serial device, TCP, RFC 2217; and what they have set
- * their ports to. All who are there stand at the same two wires: each gets what the units say. */
+ * their ports to. All clients are connected to the same two wires: each receives what the units send. */
 #ifndef RKM04_BUS_PORTS_H
 #define RKM04_BUS_PORTS_H
 
@@ -20,7 +20,7 @@ struct bus_ports_calls {
     void (*take)(void *context, const uint8_t *bytes, size_t length, uint64_t tick);
     void (*line_break)(void *context, bool on);
     void (*purge)(void *context);      /* drop what has not set out yet */
-    void (*changed)(void *context);    /* bytes were taken: look at once what follows */
+    void (*changed)(void *context);    /* bytes were taken: do at once what follows */
     uint64_t (*reached)(void *context); /* returns the tick that the units have reached */
     void (*failed)(void *context);     /* the line is lost (reported) */
     void (*presence)(void *context);   /* a client has come or gone, or bytes came */

@@ -14,7 +14,7 @@
 #define LATE (500u * NS_PER_MS)          /* so much behind, and the process was stopped */
 #define LONG_BEHIND NS_PER_SECOND        /* without having caught up once, after which it is logged */
 #define HEARTBEAT (250u * NS_PER_MS)     /* --late skip: longest sleep, so that it is noticed when the process was stopped */
-#define STINT (5u * NS_PER_MS)           /* longest time without a look at the line and at signals */
+#define STINT (5u * NS_PER_MS)           /* longest time without checking the line and signals */
 #define STEP 100000u                     /* ticks that the units are advanced at once while they are at work */
 #define LEAP 10000u                      /* ticks: shortest leap of --clock max; less would cost more than it shows */
 #define CUTS_TOLD 100u                   /* units that were cut off from answering one another, in the log */

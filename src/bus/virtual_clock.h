@@ -27,7 +27,7 @@ void virtual_clock_start(struct virtual_clock *clock, uint64_t now, uint64_t tic
 /* The tick at `now` (ns, not before the start). */
 uint64_t virtual_clock_tick(const struct virtual_clock *clock, uint64_t now);
 
-/* The first ns at which virtual_clock_tick() is at least `tick`; DEVICE_NEVER: it stands. */
+/* The first ns at which virtual_clock_tick() is at least `tick`; DEVICE_NEVER: the clock is stopped. */
 uint64_t virtual_clock_when(const struct virtual_clock *clock, uint64_t tick);
 
 /* From `now` (ns) on, count from `tick`; must not be before virtual_clock_tick(). */

@@ -5,7 +5,7 @@
  * BU, BK, BT, BP, BC, BM, BW, BL are clauses of docs/CIB.md.
  *
  * A tick is 1 us. What a host delivers acts at cib_now(), in the order of the calls, in front of what else happens in that tick
- * (BK2), but behind inputs that have become old enough to show. */
+ * (BK2), but after inputs that have become old enough to show. */
 #ifndef RKM04_CIB_CIB_H
 #define RKM04_CIB_CIB_H
 
@@ -95,7 +95,7 @@ enum cib_event {
  * long as `outputs` or `edges` is set; without both, what concerns one axis does. Any may be NULL. None may call back into the
  * unit. */
 struct cib_port {
-    /* `count` >= 1 pulses of a drive, at tick[0] to tick[count - 1]; position: behind the first, each further one counts it up
+    /* `count` >= 1 pulses of a drive, at tick[0] to tick[count - 1]; position: after the first, each further one counts it up
      * (forward) or down. */
     void (*steps)(void *context, unsigned axis, const uint64_t *tick, size_t count, int32_t position, bool forward);
     void (*direction)(void *context, uint64_t tick, unsigned axis, bool forward);
@@ -131,7 +131,7 @@ struct cib_drive {
         int32_t speed;       /* for ever: with sign */
         uint16_t start_speed, acceleration, deceleration; /* pulses/s, pulses/s^2 */
         uint8_t kind;        /* enum profile_goal_kind */
-    } goal;              /* of the motion under way, or of the one behind its turn (BP3) */
+    } goal;              /* of the motion under way, or of the one after its turn (BP3) */
     uint8_t after;       /* of drive.c: what the last pulse leads to */
     uint8_t status;      /* MCSTAT (BC4) */
     uint8_t row;         /* pulses +, less pulses -, modulo the rows of the table */
@@ -252,7 +252,7 @@ struct cib_drive_state {
     uint16_t row;       /* 1-8; 0: before the first pulse */
     uint16_t start_speed, acceleration, deceleration, stop_deceleration; /* operating values: s, a, d, d! */
     bool moving;        /* a motion is under way: pulses come */
-    bool stopping;      /* and it brakes: to stand, or to turn */
+    bool stopping;      /* and it brakes: to stop, or to turn */
     bool turning;       /* it brakes to turn */
     bool waiting;       /* a motion command waits for its slot */
     bool forward;       /* DIR is 0 */

@@ -17,7 +17,7 @@ void drive_do_slot(struct cib_unit *unit, struct cib_drive *drive, uint64_t tick
 /* The first slot at or after a tick (BK2). */
 uint64_t drive_slot_from(uint64_t tick);
 
-/* Does it brake to stand, or to turn? It has to move. */
+/* Does it brake to stop, or to turn? It has to move. */
 bool drive_is_stopping(const struct cib_drive *drive);
 bool drive_is_turning(const struct cib_drive *drive);
 

@@ -55,7 +55,7 @@ uint8_t pwm_levels(const struct cib_unit *unit, uint64_t tick)
     return (uint8_t)(levels ^ ~(unsigned)unit->setup.active);
 }
 
-/* The same of one output. An edge is where a period or its pulse begins or ends; behind the period in which a new duty counts
+/* The same of one output. An edge is where a period or its pulse begins or ends; after the period in which a new duty counts
  * first each is like the other. */
 static uint64_t next_edge(const struct cib_unit *unit, unsigned output, uint64_t tick)
 {

@@ -7,7 +7,7 @@
 #include "variables.h"
 
 #define CIB_LINE_MAX 1024u          /* bytes of a line */
-#define CIB_LINES_PERIOD 100000u    /* ticks between two looks at what has changed (BN5) */
+#define CIB_LINES_PERIOD 100000u    /* ticks between two checks of what has changed (BN5) */
 
 /* Gets what goes to the client. */
 struct cib_lines_out {

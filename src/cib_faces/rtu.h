@@ -25,7 +25,7 @@ struct cib_rtu {
     uint8_t address;        /* 1..247 */
     uint32_t silence;       /* us */
     uint64_t last;          /* tick of the last byte */
-    uint16_t check;         /* of the bytes of the frame; 0 behind a correct one */
+    uint16_t check;         /* of the bytes of the frame; 0 after a correct one */
     uint16_t length;        /* bytes of the frame */
     bool skipping;          /* nothing counts up to the next silence; the frame keeps its length until then */
     bool untimed;           /* bytes of the frame came faster than they can on the wires */

@@ -13,10 +13,10 @@ enum place {
 };
 
 struct row {
-    const char *name; /* behind CIBn., or behind CIBn.MCA. */
+    const char *name; /* after CIBn. or CIBn.MCA. */
     uint8_t zone;     /* enum cib_zone */
     uint8_t place;    /* enum place */
-    uint8_t address;  /* of the register; of drives: behind SEQ */
+    uint8_t address;  /* of the register; of drives: after SEQ */
     uint8_t bit;
 };
 

@@ -24,7 +24,7 @@ struct cib_modules {
 /* How many variables there are: 0 is __PLC_RUN, then those of the first module, of the second, … */
 unsigned cib_variables(const struct cib_modules *modules);
 
-/* Writes the name of a variable, 0..cib_variables()-1, with a zero behind it. Returns its length. */
+/* Writes the name of a variable, 0..cib_variables()-1, with a zero after it. Returns its length. */
 size_t cib_variable_name(const struct cib_modules *modules, unsigned variable, char name[CIB_VARIABLE_NAME_SIZE]);
 
 /* "BOOL", "UINT", "INT" or "DINT". */

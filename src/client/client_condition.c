@@ -304,7 +304,7 @@ static json_t *unit_term(const struct reader *reader, const struct term *term, c
     return report_expected(reader, EXPECTED_NAME ", found '%s'", term->name);
 }
 
-/* The name of the unit in front of a name, "u3." or "u3-2."; returns what is behind it, or the whole if there is none. */
+/* The name of the unit in front of a name, "u3." or "u3-2."; returns what follows it, or the whole if there is none. */
 static const char *unit_of(const char *name, char unit[NAME_MAX_LENGTH])
 {
     unit[0] = '\0';

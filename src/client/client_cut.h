@@ -35,7 +35,7 @@ struct client_cut {
 
 enum client_cut_result {
     CLIENT_CUT_DONE,
-    CLIENT_CUT_INVALID,      /* at `wrong` stands what the unit would refuse */
+    CLIENT_CUT_INVALID,      /* the unit would refuse what is at `wrong` */
     CLIENT_CUT_TOO_MANY,     /* `program` commands and the brackets around them do not fit into memory */
     CLIENT_CUT_LONG_COMMAND, /* the command at `wrong` alone is longer than a message */
     CLIENT_CUT_OPEN_BLOCK,   /* after the `[` at `wrong`, which is never closed, is more than one message */

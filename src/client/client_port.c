@@ -132,7 +132,7 @@ static int connect_to(const struct addrinfo *address, unsigned timeout_ms)
     return -1;
 }
 
-/* Where the last colon of tcp:HOST:PORT stands; NULL: not of that form. */
+/* Where the last colon of tcp:HOST:PORT is; NULL: not of that form. */
 static const char *find_service(const char *port)
 {
     const char *host = port + strlen(TCP);

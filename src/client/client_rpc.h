@@ -15,7 +15,7 @@ struct client_rpc {
     char path[PATH_MAX];
     int fd;
     json_int_t id;           /* of the last request */
-    char *buffer;            /* what has come and was not yet looked at: `length` bytes from `begin` on */
+    char *buffer;            /* what has come and was not yet read: `length` bytes from `begin` on */
     size_t begin, length, room;
     void (*notified)(void *context, const char *method, const json_t *params); /* an event has come; NULL: not wanted */
     void *context;

@@ -14,7 +14,7 @@ bool control_file_token(char token[CONTROL_TOKEN_LENGTH + 1]);
 bool control_file_is_token(const char token[CONTROL_TOKEN_LENGTH + 1], const char *text, size_t length);
 
 /* Write the file `path`, readable by its owner alone, at a place that is not claimed. Failures are reported with advice. Returns
- * false if it did not work: then nothing is left behind. control_place_release() removes it. */
+ * false if it did not work: then nothing is left. control_place_release() removes it. */
 bool control_file_write(struct control_place *place, const char *path, const char *address,
                         const char token[CONTROL_TOKEN_LENGTH + 1]);
 

@@ -21,7 +21,7 @@ struct control_place {
 };
 
 /* Claim the path, and remove what a killed emulator has left there. Failures are reported with advice. Returns false if it did
- * not work: then nothing is left behind. */
+ * not work: then nothing is left. */
 bool control_place_claim(struct control_place *place, const char *path);
 
 /* Note that what lies there now is ours. Returns false if that did not work (errno). */

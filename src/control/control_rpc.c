@@ -6,7 +6,7 @@
 
 /* ---- Requests ------------------------------------------------------------------------------------------------------- */
 
-/* How deep are nested lists and objects? Looked at beforehand: reading them takes stack. */
+/* How deep are nested lists and objects? Checked beforehand: reading them takes stack. */
 static unsigned depth_of(const char *line, size_t length)
 {
     unsigned depth = 0, deepest = 0;

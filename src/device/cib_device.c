@@ -258,7 +258,7 @@ static uint32_t inputs_of(const struct device_unit *unit)
     return cib_inputs(core) | (uint32_t)core->buttons << BUTTONS_SHIFT;
 }
 
-/* BT4: coil a is DO1 - DO3, b is DO2 - DO4 with 1 or + = 1. A rotor at rest stands as if the last row had been there (BT3). */
+/* BT4: coil a is DO1 - DO3, b is DO2 - DO4 with 1 or + = 1. A rotor at rest is where the last row would have left it (BT3). */
 static bool coils(const struct device_unit *unit, unsigned axis, struct device_coils *driven)
 {
     const struct cib_unit *core = &cib_device_read(unit)->unit;

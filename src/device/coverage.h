@@ -23,7 +23,7 @@ enum coverage_group {
     COVERAGE_GROUPS
 };
 
-/* How a command has to stand for an item to count. */
+/* Where a command has to be for an item to count. */
 enum coverage_place { COVERAGE_ANYWHERE, COVERAGE_ALONE, COVERAGE_INSIDE };
 
 struct coverage_item {

@@ -220,7 +220,7 @@ struct device_words {
 struct device_coils {
     uint8_t output[4]; /* of lead 1 to 4, from 1; an output that is 1 makes its lead positive */
     uint8_t eighths;   /* of a turn of the field that are a step of the counter: 1 (half steps) or 2 */
-    uint8_t rest;      /* levels of the four outputs at which a rotor stands that was never driven: output[0] in bit 0 */
+    uint8_t rest;      /* levels of the four outputs that a rotor rests at which was never driven: output[0] in bit 0 */
 };
 
 /* Why a method was refused. */
@@ -298,7 +298,7 @@ struct device_kind {
     int32_t (*value)(const struct device_unit *unit, unsigned number);
     unsigned addresses;      /* 1..addresses are addresses; at most 247 */
     unsigned ticks_per_us;
-    unsigned slot;           /* us of the period in which it looks at inputs and executes commands */
+    unsigned slot;           /* us of the period in which it reads inputs and executes commands */
     unsigned pulse;          /* us of a step pulse; see pulse_ticks */
     unsigned speed_max;      /* steps/s that an axis can reach, so that plants can follow; 0: at most 128 000 */
     /* Speed of the bus with these settings, 9600..115200 baud, a divisor of 115200. NULL: DEVICE_BAUD. */

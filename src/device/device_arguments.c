@@ -171,7 +171,7 @@ void device_arguments_add(struct device_arguments *arguments, const char *name, 
     arguments->value[arguments->count++] = value;
 }
 
-/* NAME=VALUE is cut in two where it stands. */
+/* NAME=VALUE is cut in two in place. */
 static void add_pair(struct device_arguments *arguments, char *text, struct argp_state *state)
 {
     char *equals = strchr(text, '=');

@@ -178,7 +178,7 @@ static bool has_check_value(const struct device_config *config)
     return rkm04_settings_framing(config)->link == &rkm04_hdlc;
 }
 
-/* In the low byte of the check value, or what stands for it. The answer is the one that a copy of the unit sends. */
+/* In the low byte of the check value, or in what is sent in its place. The answer is the one that a copy of the unit sends. */
 static void find_check_value(const struct device_unit *unit, uint32_t *at, uint8_t *mask)
 {
     static const struct rkm04_port nothing;

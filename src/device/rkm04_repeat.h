@@ -19,8 +19,8 @@ struct rkm04_repeat {
     struct rkm04_unit copy, present;
 };
 
-/* Look at a unit, again and again. *repeat must be zero at first. Returns after how many ticks its state has repeated; 0: it has
- * not. */
+/* Call it for a unit again and again. *repeat must be zero at first. Returns after how many ticks its state has repeated; 0: it
+ * has not. */
 uint64_t rkm04_repeat_check(struct rkm04_repeat *repeat, const struct rkm04_unit *unit);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* serve_names.h: which units stand on a line, and how they, their files and links are named. Pure. */
+/* serve_names.h: which units are on a line, and how they, their files and links are named. Pure. */
 #ifndef RKM04_DEVICE_SERVE_NAMES_H
 #define RKM04_DEVICE_SERVE_NAMES_H
 
@@ -16,7 +16,7 @@
 #define NODE_NAME_SIZE 8u
 
 /* The addresses of the units of a line, in the order given. An address may occur more than once, as on a bus on which two
- * switches stand alike. */
+ * switches are set alike. */
 struct node_list {
     unsigned count;
     uint8_t node[NODE_LIST_MAX];

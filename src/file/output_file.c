@@ -152,7 +152,7 @@ static int make_output(const char *path, int how, const struct output_kind *kind
     return fd;
 }
 
-/* Regular files are opened for reading, too, to look at their kind; a pipe must not be, or it would need no reader. */
+/* Regular files are opened for reading, too, to check their kind; a pipe must not be, or it would need no reader. */
 static int open_output(const char *path, const struct output_kind *kind, unsigned flags, bool *made)
 {
     struct stat there;

@@ -37,7 +37,7 @@ int output_file_close(FILE *file);
 
 /* Replace the regular file `path`, or make it: what `write` writes takes its place in one step, and only if `write` returned true
  * (else errno says why not). It is written to a file of its own next to it, of a name that was free; if the process is killed
- * meanwhile that may stay behind. A file that was read may be replaced. Returns false if it did not work: then nothing is
+ * meanwhile that may be left. A file that was read may be replaced. Returns false if it did not work: then nothing is
  * changed; *why as above. */
 bool output_file_replace(const char *path, const struct output_kind *kind, unsigned flags,
                          bool (*write)(void *context, FILE *out), void *context, char **why);

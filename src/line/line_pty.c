@@ -35,7 +35,7 @@
 #define COUNT_TRIES 5
 #define NOTICE_READS 16 /* at once, of 4 KiB each; the rest is read in the next turn */
 #define UNREAD_READS 64 /* KiB; a pty holds less */
-#define LOOK_MS 100 /* between two looks at a line that inotify does not watch, or that a client is closing */
+#define LOOK_MS 100 /* between two checks of a line that inotify does not watch, or that a client is closing */
 #define LOOKS 10    /* until a client counts as one that stays: the system may take its time over closing */
 
 /* Only to be read: then the notice of its end is another one than a client's, which is never merged with it. */
@@ -297,7 +297,7 @@ static int check_other_clients(struct line *line)
     return -1;
 }
 
-/* Was the look at the line undisturbed? Our own close and open give a notice each; if there are more, a client came or went
+/* Was the check of the line undisturbed? Our own close and open give a notice each; if there are more, a client came or went
  * meanwhile. A client that keeps us out came, at most. `closed`: times that we have closed our slave. */
 static bool is_undisturbed(const struct line *line, const struct notices *notices, unsigned closed)
 {

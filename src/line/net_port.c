@@ -316,7 +316,7 @@ static void transfer(struct net_port *port)
         return;
     port->moving = true;
     do {
-        deliver_input(port); /* before there is another look at what is in: it may be all that there was no room for */
+        deliver_input(port); /* before the input is read again: it may be all that there was no room for */
         write_output(port);
     } while (process_input(port));
     port->moving = false;

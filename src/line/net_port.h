@@ -42,7 +42,7 @@ struct net_port_calls {
     /* Who else has the line (by another way than this port), so that a client has to be refused; NULL: none. */
     const char *(*owner)(void *context);
     /* RFC 2217: the client has changed its port. A client that attaches has 19200 8N1 and sets one thing after the other: what
-     * counts is what stands when bytes come. parity: N O E M S; stop_bits: 1, 2, or 3 for 1.5. */
+     * counts is what is set when bytes come. parity: N O E M S; stop_bits: 1, 2, or 3 for 1.5. */
     void (*settings)(void *context, uint32_t baud, unsigned data_bits, char parity, unsigned stop_bits);
     /* RFC 2217: a break begins or ends; a telnet break is both at once. It ends with the client at the latest. */
     void (*line_break)(void *context, bool on);

@@ -2,7 +2,7 @@
 /* rfc2217.h: a serial port over telnet (RFC 2217, 854), the access server's side: what the bytes of a client mean, and what is
  * answered. Pure: bytes in, bytes out.
  *
- * There is no port behind it: every setting that has a name is taken and acknowledged, so that a client gets what it asks for,
+ * It has no real port: every setting that has a name is taken and acknowledged, so that a client gets what it asks for,
  * and CTS, DSR and carrier are always there, so that none waits for them. */
 #ifndef RKM04_LINE_RFC2217_H
 #define RKM04_LINE_RFC2217_H

@@ -76,7 +76,7 @@ void analysis_clear(struct analysis *analysis)
 
 const struct analysis_command *analysis_at(const struct analysis *analysis, size_t offset)
 {
-    size_t low = 0, high = analysis->count; /* the first command behind the offset */
+    size_t low = 0, high = analysis->count; /* the first command after the offset */
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
         if (analysis->commands[middle].offset <= offset)

@@ -38,7 +38,7 @@ const struct analysis_command *analysis_at(const struct analysis *analysis, size
 /* The label that a command has or goes to, 1..80; 0: none. */
 unsigned analysis_label(struct rkm04_command command);
 
-/* Where the digits of its label stand. */
+/* Where the digits of its label are. */
 void analysis_label_place(const struct analysis *analysis, const struct analysis_command *command, size_t *offset,
                           size_t *length);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* complete.c: what may stand at a place: commands with their ranges, numbers that mean something, labels that the program has,
- * names of warnings in a nolint comment. */
+/* complete.c: what may be written at a place: commands with their ranges, numbers that mean something, labels that the program
+ * has, names of warnings in a nolint comment. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -164,7 +164,7 @@ static bool is_level(const char *text, size_t at)
     return (text[at] == 'H' || text[at] == 'L') && begin < end && op > 0 && text[op - 1] == 'I';
 }
 
-/* H and L behind the number of an I. */
+/* H and L after the number of an I. */
 static void add_levels(struct completion *completion)
 {
     completion->begin = completion->at;
@@ -191,7 +191,7 @@ static void complete_program(struct completion *completion)
         add_commands(completion);
     }
     if (has_digits && json_array_size(completion->list) == 0) {
-        completion->begin = completion->at; /* behind a number */
+        completion->begin = completion->at; /* after a number */
         add_commands(completion);
     }
 }

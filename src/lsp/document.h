@@ -34,7 +34,7 @@ bool document_replace(struct document *document, size_t begin, size_t end, const
 /* The text is unknown from now on. */
 void document_forget(struct document *document);
 
-/* The offset of a position: behind the end of its line that end, behind the last line the end of the text. */
+/* The offset of a position: after the end of its line that end, after the last line the end of the text. */
 size_t document_offset(const struct document *document, struct document_position position);
 
 /* The position of an offset, at most the end of the text. */

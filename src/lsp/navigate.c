@@ -166,7 +166,7 @@ static bool *find_called(const struct analysis *analysis)
     return called;
 }
 
-/* Where the commands of a label end: before the next label, of a subroutine behind its last `.` before the next one. */
+/* Where the commands of a label end: before the next label, of a subroutine after its last `.` before the next one. */
 static size_t end_of(const struct analysis *analysis, size_t from, bool is_subroutine)
 {
     size_t end = from, back = from;

@@ -8,7 +8,7 @@
 
 #include "document.h"
 
-#define SESSION_DOCUMENTS_MAX 200u /* open at a time; further ones are not looked at */
+#define SESSION_DOCUMENTS_MAX 200u /* open at a time; further ones are not checked */
 #define SESSION_EDITS_MAX 10000u   /* of one message */
 
 enum refusal_code {

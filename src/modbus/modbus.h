@@ -70,7 +70,7 @@ size_t modbus_put_exception(uint8_t *bytes, uint8_t function, enum modbus_except
  */
 
 #define MODBUS_TCP_HEAD 7u
-#define MODBUS_TCP_UNIT 6u /* where the unit stands in the head */
+#define MODBUS_TCP_UNIT 6u /* where the unit is in the head */
 #define MODBUS_PDU_MAX 253u /* bytes of function and data */
 #define MODBUS_TCP_MAX (MODBUS_TCP_HEAD + MODBUS_PDU_MAX) /* bytes of a request or answer */
 
@@ -82,14 +82,14 @@ struct modbus_tcp {
 
 enum modbus_tcp_result {
     MODBUS_TCP_MORE,  /* the request is not whole yet */
-    MODBUS_TCP_WHOLE, /* function and data are `length - MODBUS_TCP_HEAD` bytes, one at least, behind the head */
+    MODBUS_TCP_WHOLE, /* function and data are `length - MODBUS_TCP_HEAD` bytes, one at least, after the head */
     MODBUS_TCP_WRONG  /* it is not Modbus TCP: the connection is to be closed, and nothing more taken */
 };
 
 /* Take a byte of a client. A whole request must be ended by modbus_tcp_answer(). */
 enum modbus_tcp_result modbus_tcp_take(struct modbus_tcp *tcp, uint8_t byte);
 
-/* Write the head of an answer whose function and data, `length` bytes, lie behind it already, and end the request. Returns the
+/* Write the head of an answer whose function and data, `length` bytes, are after it already, and end the request. Returns the
  * length of the whole answer. */
 size_t modbus_tcp_answer(struct modbus_tcp *tcp, uint8_t answer[MODBUS_TCP_MAX], size_t length);
 

@@ -108,7 +108,7 @@ static int64_t modulo(int64_t number, int64_t turn)
     return (number % turn + turn) % turn;
 }
 
-/* Does the motor stand from low - wider to high + wider? */
+/* Is the motor between low - wider and high + wider? */
 static bool within(const struct plant_motor *motor, const struct plant_switch *contact, int64_t wider)
 {
     if (motor->turn > 0)

@@ -2,7 +2,7 @@
 /* plant_coils.c: a rotor that follows the field of its two coils.
  *
  * The rotor turns to where the field points, if that is less than half a turn away. Opposite to it there is no torque, and it
- * stands. So a motor with swapped leads turns back or stands, and one with a missing lead goes to and fro. */
+ * stands. So a motor with swapped leads turns back or stops, and one with a missing lead moves to and fro. */
 #include "plant_model.h"
 
 /* The field of coil currents -1, 0, 1 in eighths of a turn. */

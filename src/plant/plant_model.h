@@ -45,7 +45,7 @@ struct plant_stall {
 struct plant_motor {
     bool present;
     int64_t low, high; /* end stops; INT64_MIN, INT64_MAX: none */
-    int64_t turn;      /* steps of a turn, switches look at the angle; 0: no turntable */
+    int64_t turn;      /* steps of a turn, switches depend on the angle; 0: no turntable */
     unsigned jams;
     struct plant_window jam[PLANT_JAMS];
     bool held, no_lead; /* by hand, or configured */
@@ -95,7 +95,7 @@ struct plant {
     struct plant_motor motor[]; /* one for each axis of the device */
 };
 
-/* Set a switch to where its motor stands, without bouncing. */
+/* Set a switch as the position of its motor demands, without bouncing. */
 void plant_switch_begin(const struct plant *plant, struct plant_switch *contact);
 
 /* A new plant for a device with so many axes, without motors. NULL: out of memory. */
@@ -113,7 +113,7 @@ void plant_queue(struct plant *plant, uint64_t tick, unsigned number, unsigned w
 /* plant_coils.c: put the rotor of a motor to where these outputs, or rest, hold it. */
 void coils_begin(struct plant_motor *motor, const struct device_coils *coils, uint32_t outputs);
 
-/* Eighths by which the field turns the rotor, -3..3; 0: it stands. *opposite: the field points away from it. */
+/* Eighths by which the field turns the rotor, -3..3; 0: it does not. *opposite: the field points away from it. */
 int coils_turn(const struct plant_motor *motor, unsigned field, bool *opposite);
 
 /* A pulse comes: can the rotor follow it? */

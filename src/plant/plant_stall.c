@@ -2,7 +2,7 @@
 /* plant_stall.c: which pulses a rotor can follow.
  *
  * Up to the speed `start` it follows anything. Above it, its speed may change only as fast as the motor has torque for; if it is
- * asked for more, it falls out of step and stands until pulses come at no more than `start` again. Speeds are measured from
+ * asked for more, it falls out of step and stops until pulses come at no more than `start` again. Speeds are measured from
  * the pulses, whose ticks are rounded up: a motion is given the benefit of that, so one exactly at the limit never stalls. */
 #include "plant_model.h"
 
@@ -36,7 +36,7 @@ static void begin_span(struct plant_stall *stall, uint64_t tick)
     stall->steps = 0;
 }
 
-/* It stands, or goes so slowly that it follows anything. The interval before it may have been up to a tick shorter. */
+/* It is at rest, or so slow that it follows anything. The interval before it may have been up to a tick shorter. */
 static void restart_from_rest(struct plant_stall *stall, uint64_t tick, uint64_t interval)
 {
     stall->base = larger(stall->start, interval > 1 ? (int64_t)(MICRO / (interval - 1)) + 1 : (int64_t)MICRO);

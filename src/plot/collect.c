@@ -36,7 +36,7 @@ static struct plot_point point_before(const struct leg *leg, double us)
     return (struct plot_point){us, speed, leg->position - (leg->speed + speed) / 2 * past * 1e-6};
 }
 
-/* The motion began at `us`, a moment before the plan was looked at. */
+/* The motion began at `us`, a moment before the plan was read. */
 static void add_begin(struct collector *collector, struct plot_motor *motor, double us, const struct leg *leg)
 {
     struct plot_point first = point_before(leg, us), rest = {us, 0, first.position};
@@ -174,7 +174,7 @@ static void on_event(void *context, const struct watch_event *event)
         keep_event(collector, event);
 }
 
-/* The same for who cannot look after each advance: pulses are wanted so that events come with the slot they happen in. */
+/* The same for a caller that cannot read after each advance: pulses are wanted so that events come with their slot. */
 static void on_event_and_update(void *context, const struct watch_event *event)
 {
     struct collector *collector = context;

@@ -16,7 +16,7 @@ struct collector {
     double truth_every;           /* us between two true positions */
 };
 
-/* Begin to watch unit 1.. of `sim`; it must stay until collector_end(). `follow`: look at each slot in which something happens,
+/* Begin to watch unit 1.. of `sim`; it must stay until collector_end(). `follow`: read each slot in which something happens,
  * for who cannot call collector_update() after each advance. */
 void collector_begin(struct collector *collector, struct plot_curves *curves, struct sim *sim, unsigned unit, bool follow);
 

@@ -37,7 +37,7 @@ void check_warn_at(struct check *check, struct diagnostic place, enum check_warn
 /* check_text.c: read the source; errors with their hints, and K and C75 inside a program. */
 bool check_read(struct check *check, struct check_motor *motor, size_t source);
 
-/* Each looks for warnings in the program of one motor. */
+/* Each finds warnings in the program of one motor. */
 void check_labels(struct check *check, const struct check_motor *motor);
 void check_flow(struct check *check, struct check_motor *motor);
 void check_motions(struct check *check, const struct check_motor *motor);

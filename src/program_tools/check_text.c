@@ -149,7 +149,7 @@ static bool find_hint(const struct rkm04_reader *reader, enum rkm04_read found, 
 
 struct reading {
     struct check *check;
-    size_t requests, request_offset; /* K and C75 of this source; where the first one stands */
+    size_t requests, request_offset; /* K and C75 of this source; where the first one is */
 };
 
 /* The bytes an error is about: from the command to what does not fit. */

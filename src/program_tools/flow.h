@@ -75,7 +75,7 @@ struct flow {
 bool flow_begin(struct flow *flow, const struct code *code, uint16_t settable);
 void flow_end(struct flow *flow);
 
-/* The next node that may follow `node` in time: of a call the subroutine, of a return what is behind the calls. `*cursor`: 0 at
+/* The next node that may follow `node` in time: of a call the subroutine, of a return what follows the calls. `*cursor`: 0 at
  * first. Returns FLOW_NO_NODE after the last one. */
 uint32_t flow_follower(const struct flow *flow, uint32_t node, uint32_t *cursor);
 

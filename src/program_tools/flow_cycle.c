@@ -29,7 +29,7 @@ uint32_t flow_follower(const struct flow *flow, uint32_t node, uint32_t *cursor)
 
 struct search {
     uint32_t *index, *low, *cursor; /* of each node; index 0: not met */
-    uint32_t *stack, *path;         /* nodes without a component; nodes being looked at, each a follower of the one before */
+    uint32_t *stack, *path;         /* nodes without a component; nodes being visited, each a follower of the one before */
     size_t stacked, deep;
     uint32_t met, components;
 };

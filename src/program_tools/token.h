@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* token.h: a program text as commands, comments and errors in their order. Commands are read by the core's reader; the comments
- * are what stands between them. */
+ * are what is between them. */
 #ifndef RKM04_PROGRAM_TOOLS_TOKEN_H
 #define RKM04_PROGRAM_TOOLS_TOKEN_H
 

@@ -36,7 +36,7 @@ bool handle_advance(struct handle *handle, uint64_t tick)
     return true;
 }
 
-/* Has the host `count` bytes, or `stop` among those from *seen on? *seen becomes the number of those looked at. */
+/* Has the host `count` bytes, or `stop` among those from *seen on? *seen becomes the number of those examined. */
 static bool has_bytes(const struct handle_host *host, size_t count, size_t *seen, int stop)
 {
     for (; stop >= 0 && *seen < host->count; (*seen)++)

@@ -4,7 +4,7 @@
  *     record, record_line          a recording: the configuration, what comes in with its tick, what goes out
  *     tally                        what goes out, as bytes and running digests
  *     replay                       a recording done again; names the first difference; replay_state.h has its parts
- *     snapshot, snapshot_store     a bus as it stands, to come back to; those with names
+ *     snapshot, snapshot_store     the present state of a bus, to come back to; those with names
  *     snapshot_command, restore    the commands `snapshot` and `restore`
  *     journal                      what has come in, in memory, for snapshots to files
  *
@@ -65,7 +65,7 @@ struct sim *replay_sim(struct replay *replay);
 /* Last tick to be done; DEVICE_NEVER, without this: to the end of the record. */
 void replay_until(struct replay *replay, uint64_t tick);
 
-/* Do it all. Traces may have joined the sim before. `interrupted`: NULL, or looked at before each line, and after each tenth of a
+/* Do it all. Traces may have joined the sim before. `interrupted`: NULL, or asked before each line, and after each tenth of a
  * second or less of virtual time in which something happens: true makes the replay pause (REPLAY_INTERRUPTED); it continues with
  * the next call. No file is read or written on behalf of a recording. */
 enum replay_end replay_run(struct replay *replay, bool (*interrupted)(void *context), void *context);

@@ -45,7 +45,7 @@ bool replay_wrong(struct replay *replay, const char *key, const char *format, ..
 /* Memory is short. Always returns false. */
 bool replay_no_memory(struct replay *replay);
 
-/* Values of the present line. Returns false: wrong. `missing`: what stands for one that is not there; DEVICE_NEVER: it must
+/* Values of the present line. Returns false: wrong. `missing`: the value of one that is not there; DEVICE_NEVER: it must
  * be. */
 bool replay_number(struct replay *replay, const char *key, uint64_t low, uint64_t high, uint64_t missing, uint64_t *value);
 bool replay_flag(struct replay *replay, const char *key, bool missing, bool *value);

@@ -134,7 +134,7 @@ static uint64_t real_time(void)
     return (uint64_t)now.tv_sec * SECOND + (uint64_t)now.tv_nsec / 1000u;
 }
 
-/* Open a regular file. What it is is looked at when it is open: a pipe put there in between would wait for its
+/* Open a regular file. Its kind is checked when it is open: a pipe put there in between would wait for its
  * writer. Returns NULL: refused. */
 static FILE *open_regular(const char *path, struct refusal *refusal)
 {

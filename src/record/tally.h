@@ -27,7 +27,7 @@ struct tally_byte {
 struct tally_calls {
     /* A byte has reached the host. */
     void (*byte)(void *context, const struct tally_byte *byte);
-    /* A span is over at `tick`: look at the streams that have changed. */
+    /* A span is over at `tick`: take in the streams that have changed. */
     void (*span)(void *context, uint64_t tick);
 };
 
@@ -45,7 +45,7 @@ struct tally {
     struct sim_config config; /* of the sim, before we listened */
 };
 
-/* Begin to look at a sim at its present tick: as a watcher, and between it and its config.out. *tally must be zero. */
+/* Begin to count what a sim does at its present tick: as a watcher, and between it and its config.out. *tally must be zero. */
 void tally_begin(struct tally *tally, struct sim *sim, const struct tally_calls *calls, void *context);
 
 /* Tell everything before the present tick of the sim. */

@@ -10,7 +10,7 @@
 #define PLACE_SIZE 512u     /* bytes of a file's name, a line and a column */
 #define PROGRESS_AFTER 2.0   /* s of real time */
 #define PROGRESS_EVERY 0.5   /* s */
-#define LEAPS_A_LOOK 4096    /* leaps between two looks at the real clock */
+#define LEAPS_A_LOOK 4096    /* leaps between two readings of the real clock */
 
 struct progress {
     struct timespec start;

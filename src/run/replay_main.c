@@ -21,7 +21,7 @@
 #define FILES_MAX 16u
 #define PROGRESS_AFTER 2.0 /* s of real time */
 #define PROGRESS_EVERY 0.5 /* s */
-#define STEPS_A_LOOK 64u   /* steps between two looks at the real clock */
+#define STEPS_A_LOOK 64u   /* steps between two readings of the real clock */
 
 struct options {
     const char *path;

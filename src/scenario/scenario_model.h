@@ -46,7 +46,7 @@ struct scenario_pulses {
 };
 
 struct scenario_step {
-    const struct config_node *node; /* where it stands */
+    const struct config_node *node; /* where it is in the file */
     const char *label;              /* NULL: none */
     uint8_t action;                 /* enum scenario_action */
     uint8_t unit;                   /* its number; 0: all */

@@ -54,7 +54,7 @@ void sandbox_begin(struct sandbox *sandbox)
         sandbox->ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof attributes, 0);
     if (sandbox->ruleset < 0)
         return;
-    allow_path(sandbox, "/dev/pts", ACCESS_FILE); /* ptys that are made, and looked at */
+    allow_path(sandbox, "/dev/pts", ACCESS_FILE); /* ptys that are made, and examined */
     allow_path(sandbox, "/dev/ptmx", ACCESS_FILE);
     allow_path(sandbox, "/dev/null", ACCESS_FILE);
     allow_path(sandbox, "/", LANDLOCK_ACCESS_FS_READ_DIR); /* libuv keeps it open to refuse clients without a descriptor */

@@ -6,7 +6,7 @@
 #include "bus/bus.h"
 #include "control/control.h"
 
-/* What stands where, and what was found in flash, for the log. */
+/* Which unit has which address, and what was found in flash, for the log. */
 void serve_report_start(const struct bus_options *options, struct bus *const *buses);
 
 /* What READY says, as it is now. Returns a new reference; NULL: out of memory. */

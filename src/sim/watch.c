@@ -128,7 +128,7 @@ static void sum_kinds(struct watch *watch)
         watch->kinds |= watcher->kinds;
 }
 
-/* Behind those who are there: they see everything first who came first. */
+/* After those that are there: who came first sees everything first. */
 void watch_add_watcher(struct watch *watch, struct watcher *watcher)
 {
     struct watcher **at = &watch->watchers;

@@ -149,7 +149,7 @@ static bool grow(struct config_node *node)
     return true;
 }
 
-/* Put a node where the text stands. */
+/* Put a node at the present place of the text. */
 static bool put(struct reader *reader, struct config_node *node)
 {
     if (reader->depth == 0) {

@@ -60,7 +60,7 @@ static bool is_digit(char character)
     return '0' <= character && character <= '9';
 }
 
-/* "99999", "'x'", "the end of the text": what stands where something else was expected. */
+/* "99999", "'x'", "the end of the text": what was found where something else was expected. */
 static void print_found(const struct rkm04_reader *reader, FILE *out)
 {
     const char *text = (const char *)reader->text;

@@ -4,7 +4,7 @@
 #include "text/text.h"
 #include "trace_writer.h"
 
-#define ROW_MAX 80u /* a tick, names of a unit and of a value, and a number are 66 with what stands between */
+#define ROW_MAX 80u /* a tick, names of a unit and of a value, and a number are 66 with the separators */
 
 static const char *const names[WATCH_KINDS] = {
     [WATCH_STEP] = ",step,",  [WATCH_DIRECTION] = ",dir,", [WATCH_MOTION] = ",motion,",   [WATCH_COMMAND] = ",command,",

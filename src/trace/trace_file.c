@@ -76,7 +76,7 @@ bool trace_file_named(const char *path)
     return trace_file_format(path) != TRACE_FORMATS;
 }
 
-/* What has happened before, also in the present tick, is behind all who watch. */
+/* Watchers that come now do not see what has happened before, also in the present tick. */
 static void deliver_past_events(struct sim *sim)
 {
     watch_deliver(&sim->watch, sim_now(sim) + 1u);

@@ -222,7 +222,7 @@ static void start_speed_gate(struct vcd_motor *state, uint64_t tick)
     state->pulses = 0;
 }
 
-/* Behind those that are not later: pulses of one device may differ in length. */
+/* After those that are not later: pulses of one device may differ in length. */
 static void add_fall(struct vcd *vcd, const struct watch_event *event, uint64_t time)
 {
     unsigned at = vcd->falls++;

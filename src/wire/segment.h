@@ -69,7 +69,7 @@ struct segment_hooks {
     bool (*is_receiving)(void *context, unsigned station, uint32_t senders);
     /* Does the host receive this byte, which it has sent itself? */
     bool (*has_echo)(void *context, uint8_t byte);
-    /* Unit `number` has looked at a byte, or fetched one to send: it may have executed a request. This one may switch the unit
+    /* Unit `number` has processed a byte, or fetched one to send: it may have executed a request. This one may switch the unit
      * off or on (segment_power()). */
     void (*processed)(void *context, unsigned number);
 };
@@ -250,7 +250,7 @@ uint64_t segment_silence_end(const struct segment *segment);
  * is none. */
 unsigned segment_pass_silence(struct segment *segment);
 
-/* The unit has looked at what it has received: has a frame ended with it? */
+/* The unit has processed what it has received: has a frame ended with it? */
 void segment_note_frames(const struct segment *segment, struct segment_unit *unit);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* wire.h: the two wires of a bus in virtual time; the face of the room.
  *
- *     levels        one wire: a 0 wins over a 1, and a receiver looks at the middle of each bit
+ *     levels        one wire: a 0 wins over a 1, and a receiver samples the middle of each bit
  *     segment       host and units on two wires: bytes, turnaround, collisions
  *     wire_monitor  finds the messages in the bytes
  *     wire_message  one message that has passed
