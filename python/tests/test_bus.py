@@ -297,7 +297,7 @@ def test_host_of_another_speed_is_not_understood(bus):
     assert bus.host.wait_byte("1s")
 
 
-def test_host_hears_another_speed_as_other_bytes(bus):
+def test_host_receives_another_speed_as_other_bytes(bus):
     frame = bus._transport.sim.frame(1, b"\x01")
     bus.host.write(frame)
     bus.host.configure(baudrate=38400)

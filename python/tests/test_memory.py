@@ -28,7 +28,7 @@ def resident():
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-def test_ten_thousand_buses_leave_nothing_behind():
+def test_ten_thousand_buses_leave_no_memory():
     buses = BUSES // 20 if SANITIZED else BUSES
     for _ in range(WARM):
         use_bus()

@@ -125,7 +125,7 @@ def test_answers_at_another_speed_are_garbage_for_the_port(bus, port):
     assert heard and VERSION_ANSWER not in heard
 
 
-def test_parity_is_heard_as_it_would_be(bus, port):
+def test_parity_is_received_as_it_would_be(bus, port):
     port.parity = serial.PARITY_EVEN
     port.write(VERSION)
     assert port.read(24) == b""
@@ -159,7 +159,7 @@ def test_what_has_not_set_out_can_be_dropped(bus, port):
     assert port.read(24) == b""
 
 
-def test_a_break_is_heard_by_the_units(bus, port):
+def test_a_break_is_received_by_the_units(bus, port):
     framing_errors = bus.unit(1).state["line"]["framing_errors"]
     port.send_break(0.01)
     assert bus.now == 10_000
@@ -354,7 +354,7 @@ def test_two_readers_without_anything_to_come_are_told_so(port):
     assert len(errors) == 2
 
 
-def test_a_loop_that_looks_without_waiting_comes_to_an_end(bus, port):
+def test_a_loop_that_asks_without_waiting_comes_to_an_end(bus, port):
     port.write(VERSION)
     while port.in_waiting < 24:
         pass

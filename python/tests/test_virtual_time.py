@@ -69,7 +69,7 @@ def test_everything_is_put_back():
     assert threading.Condition.wait.__module__ == "threading"
 
 
-def test_a_motor_stands_after_minutes_that_take_no_time(bus, now):
+def test_a_motor_stops_after_minutes_that_take_no_time(bus, now):
     begin = real_seconds()
     bus.unit(1).motor(1).set("S100 V100 F30000 R")
     waited = time.monotonic()
@@ -201,7 +201,7 @@ def test_two_threads_that_wait_for_each_other_are_told_so(now):
     assert len(errors) == 2
 
 
-def test_a_loop_that_looks_at_the_time_comes_to_an_end(now):
+def test_a_loop_that_asks_the_time_comes_to_an_end(now):
     end = time.monotonic() + 1
     while time.monotonic() < end:
         pass

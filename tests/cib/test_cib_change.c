@@ -349,7 +349,7 @@ START_TEST(X27_a_distance_of_nothing_on_the_way)
 }
 END_TEST
 
-START_TEST(X32_a_turn_behind_a_wrap_goes_back_its_few_pulses)
+START_TEST(X32_a_turn_after_a_wrap_goes_back_its_few_pulses)
 {
     cib_advance_to(10);
     command(A, 100, 2147483600, 0);
@@ -475,7 +475,7 @@ static Suite *cib_change_suite(void)
     tcase_add_test(tests, X26_a_turn_revoked);
     tcase_add_test(tests, X27_a_distance_of_nothing_on_the_way);
     tcase_add_test(tests, X30_a_refused_command_changes_nothing);
-    tcase_add_test(tests, X32_a_turn_behind_a_wrap_goes_back_its_few_pulses);
+    tcase_add_test(tests, X32_a_turn_after_a_wrap_goes_back_its_few_pulses);
     suite_add_tcase(suite, tests);
     return suite;
 }

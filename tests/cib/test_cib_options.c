@@ -111,7 +111,7 @@ START_TEST(BC9_the_stop_comes_in_the_slot)
 }
 END_TEST
 
-START_TEST(BC9_a_command_behind_it_acts_instead)
+START_TEST(BC9_a_command_after_it_acts_instead)
 {
     power_up_with_timeout(1000);
     at(0);
@@ -128,7 +128,7 @@ START_TEST(BC9_a_command_behind_it_acts_instead)
 }
 END_TEST
 
-START_TEST(BC9_another_request_behind_it_does_not_revoke_it)
+START_TEST(BC9_another_request_after_it_does_not_revoke_it)
 {
     power_up_with_timeout(1000);
     at(0);
@@ -408,8 +408,8 @@ static Suite *cib_options_suite(void)
     tcase_add_test(tests, BC9_it_counts_from_power_up_once_until_the_next_request);
     tcase_add_test(tests, BC9_what_is_cleared_and_what_stays);
     tcase_add_test(tests, BC9_the_stop_comes_in_the_slot);
-    tcase_add_test(tests, BC9_a_command_behind_it_acts_instead);
-    tcase_add_test(tests, BC9_another_request_behind_it_does_not_revoke_it);
+    tcase_add_test(tests, BC9_a_command_after_it_acts_instead);
+    tcase_add_test(tests, BC9_another_request_after_it_does_not_revoke_it);
     tcase_add_test(tests, BC9_a_turn_is_given_up);
     tcase_add_test(tests, BU8_apply_keeps_the_time_of_BC9);
     tcase_add_loop_test(tests, BP2_the_unit_of_accelerations, 0, 2);

@@ -72,7 +72,7 @@ static void power_up_at_70(void)
     cib_power_up(&config);
 }
 
-START_TEST(X29_a_stop_behind_the_last_pulse)
+START_TEST(X29_a_stop_after_the_last_pulse)
 {
     power_up_at_70();
     at(0);
@@ -396,7 +396,7 @@ START_TEST(X36_a_proposal_is_checked_whole)
 }
 END_TEST
 
-START_TEST(BU8_apply_acts_behind_the_rest_of_its_request)
+START_TEST(BU8_apply_acts_after_the_rest_of_its_request)
 {
     const uint16_t words[] = {1, 2, 2, 0};
     ck_assert_int_eq(cib_write(&cib, 0x100, words, 4), CIB_DONE);
@@ -549,7 +549,7 @@ static Suite *cib_unit_suite(void)
     tcase_add_test(tests, X28_only_the_last_command_before_a_slot_acts);
     tcase_add_test(tests, X28_a_stop_before_the_slot);
     tcase_add_test(tests, X29_what_the_motion_before_reaches_does_not_show);
-    tcase_add_test(tests, X29_a_stop_behind_the_last_pulse);
+    tcase_add_test(tests, X29_a_stop_after_the_last_pulse);
     tcase_add_test(tests, X29_a_turn_before_the_slot);
     tcase_add_test(tests, BC2_a_command_is_taken_when_seq_changes);
     tcase_add_loop_test(tests, BC3_what_is_refused, 0, sizeof commands / sizeof *commands);
@@ -562,7 +562,7 @@ static Suite *cib_unit_suite(void)
     tcase_add_test(tests, X35_a_button_inverts_its_output);
     tcase_add_test(tests, BU7_other_outputs_ignore_their_buttons);
     tcase_add_loop_test(tests, X36_a_proposal_is_checked_whole, 0, sizeof proposals / sizeof *proposals);
-    tcase_add_test(tests, BU8_apply_acts_behind_the_rest_of_its_request);
+    tcase_add_test(tests, BU8_apply_acts_after_the_rest_of_its_request);
     tcase_add_test(tests, BU8_apply_is_as_after_power_up);
     tcase_add_test(tests, BU8_a_pulse_of_the_tick_of_apply_does_not_come);
     tcase_add_test(tests, BU8_a_wrong_proposal_changes_nothing);

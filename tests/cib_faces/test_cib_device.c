@@ -296,7 +296,7 @@ START_TEST(a_configuration_that_is_put_is_a_proposal)
 }
 END_TEST
 
-START_TEST(settings_are_the_same_behind_a_recording)
+START_TEST(settings_are_the_same_after_a_recording)
 {
     struct device_config config = {.node = 1}, again = {.node = 1};
     char error[DEVICE_ERROR_SIZE];
@@ -333,7 +333,7 @@ static Suite *device_suite(void)
     tcase_add_test(one, a_snapshot_brings_everything_back);
     tcase_add_test(one, wrong_parameters_of_methods_are_refused);
     tcase_add_test(one, a_configuration_that_is_put_is_a_proposal);
-    tcase_add_test(one, settings_are_the_same_behind_a_recording);
+    tcase_add_test(one, settings_are_the_same_after_a_recording);
     suite_add_tcase(suite, one);
     return suite;
 }

@@ -220,7 +220,7 @@ START_TEST(bn2_the_list_has_every_variable_with_its_type)
 END_TEST
 
 /* Every name, in the order in which lists have them, and the register that it is. */
-START_TEST(bn2_names_stand_in_their_order)
+START_TEST(bn2_names_are_in_their_order)
 {
     static const char *const plain[] = {"DI", "DO", "DRIVEN"}, *const of_drive[] = {
         "SEQ", "CMD", "P2", "P1", "ACK", "MCSTAT", "MCERR", "ROW", "MOVE", "DIR", "INVEL", "TRG", "ERR", "POS", "VEL"};
@@ -433,7 +433,7 @@ static Suite *lines_suite(void)
     tcase_add_test(lines, bn1_a_line_has_1024_bytes_at_most);
     tcase_add_test(lines, bn1_a_longer_line_is_refused_whole);
     tcase_add_test(lines, bn2_the_list_has_every_variable_with_its_type);
-    tcase_add_test(lines, bn2_names_stand_in_their_order);
+    tcase_add_test(lines, bn2_names_are_in_their_order);
     tcase_add_test(lines, bn2_drives_have_their_own_registers);
     tcase_add_test(lines, bn2_names_of_several_modules_have_their_addresses);
     tcase_add_test(lines, bn3_patterns);

@@ -49,7 +49,7 @@ static size_t sent(uint8_t answer[MODBUS_FRAME_MAX])
 
 /* ---- Frames ------------------------------------------------------------------------------------------------------------- */
 
-START_TEST(bl4_a_byte_behind_a_request_that_waits_is_lost)
+START_TEST(bl4_a_byte_after_a_request_that_waits_is_lost)
 {
     uint8_t answer[MODBUS_FRAME_MAX];
     ck_assert(!cib_rtu_send(&rtu, &unit, answer));
@@ -142,7 +142,7 @@ static Suite *cib_rtu_suite(void)
     Suite *suite = suite_create("cib_rtu");
     TCase *all = tcase_create("all");
     tcase_add_checked_fixture(all, begin, NULL);
-    tcase_add_test(all, bl4_a_byte_behind_a_request_that_waits_is_lost);
+    tcase_add_test(all, bl4_a_byte_after_a_request_that_waits_is_lost);
     tcase_add_test(all, bl3_silence_drops_what_is_no_request);
     tcase_add_test(all, bl2_a_frame_for_another_module_is_counted);
     tcase_add_test(all, bl5_functions_with_a_wrong_length_or_address_are_refused);

@@ -110,7 +110,7 @@ START_TEST(times_have_a_unit_or_are_us)
 }
 END_TEST
 
-START_TEST(a_unit_can_stand_in_front_or_be_the_same_for_all)
+START_TEST(a_unit_can_be_in_front_or_the_same_for_all)
 {
     assert_means("u3.m1.idle", NULL, "{\"unit\": \"3\", \"motor\": 1, \"idle\": true}");
     assert_means("u3-2.do1=1", "5", "{\"unit\": \"3-2\", \"do\": {\"01\": 1}}");
@@ -179,7 +179,7 @@ static Suite *client_condition_suite(void)
     tcase_add_test(terms, inputs_outputs_and_variables_are_0_or_1);
     tcase_add_test(terms, messages_are_chosen_by_number_and_sender);
     tcase_add_test(terms, times_have_a_unit_or_are_us);
-    tcase_add_test(terms, a_unit_can_stand_in_front_or_be_the_same_for_all);
+    tcase_add_test(terms, a_unit_can_be_in_front_or_the_same_for_all);
     tcase_add_test(terms, what_is_no_condition_is_refused_with_what_is_one);
     tcase_add_test(several, terms_beside_one_another_hold_together);
     tcase_add_test(several, or_binds_less_than_and);

@@ -109,7 +109,7 @@ START_TEST(C9_a_block_that_stays_open_stays_open)
 }
 END_TEST
 
-START_TEST(C9_an_open_block_longer_than_a_message_behind_other_commands_is_an_error)
+START_TEST(C9_an_open_block_longer_than_a_message_after_other_commands_is_an_error)
 {
     ck_assert_int_eq(cut_text("F1 [ F300 R F400 R W500", 16), CLIENT_CUT_OPEN_BLOCK);
     ck_assert_uint_eq(cut.wrong, 3);
@@ -126,7 +126,7 @@ START_TEST(C3_C4_a_command_that_would_act_at_once_is_never_alone_in_a_piece)
 }
 END_TEST
 
-START_TEST(C3_a_single_command_still_acts_at_once_whatever_comments_stand_around_it)
+START_TEST(C3_a_single_command_still_acts_at_once_whatever_comments_are_around_it)
 {
     ASSERT_CUT("{ stop it now } K", 16, "{ stop it now }", " K");
     ASSERT_CUT("{ a comment alone }", 16, "{ a comment al}", "{one }");
@@ -306,9 +306,9 @@ static Suite *client_cut_suite(void)
     tcase_add_test(holding, C1_a_reset_does_not_drop_the_bracket_that_holds_the_pieces);
     tcase_add_test(holding, C9_a_block_of_the_program_does_not_let_go_before_the_last_piece);
     tcase_add_test(holding, C9_a_block_that_stays_open_stays_open);
-    tcase_add_test(holding, C9_an_open_block_longer_than_a_message_behind_other_commands_is_an_error);
+    tcase_add_test(holding, C9_an_open_block_longer_than_a_message_after_other_commands_is_an_error);
     tcase_add_test(holding, C3_C4_a_command_that_would_act_at_once_is_never_alone_in_a_piece);
-    tcase_add_test(holding, C3_a_single_command_still_acts_at_once_whatever_comments_stand_around_it);
+    tcase_add_test(holding, C3_a_single_command_still_acts_at_once_whatever_comments_are_around_it);
     suite_add_tcase(suite, holding);
 
     TCase *memory = tcase_create("memory");

@@ -46,7 +46,7 @@ static void assert_shown(const char *part)
     ck_assert_msg(strstr(text, part) != NULL, "'%s' is not shown:\n%s", part, text);
 }
 
-START_TEST(what_a_motor_does_stands_in_its_row)
+START_TEST(what_a_motor_does_is_in_its_row)
 {
     draw(state(json_pack("{s:s, s:i, s:i, s:i, s:i, s:s, s:b, s:b}", "state", "moving", "position", -1234, "true_position", -1200,
                          "speed", 2500, "index", 7, "command", "R", "lit", 1, "forward", 0),
@@ -61,7 +61,7 @@ START_TEST(what_a_motor_does_stands_in_its_row)
 }
 END_TEST
 
-START_TEST(lamps_stand_under_their_numbers)
+START_TEST(lamps_are_under_their_numbers)
 {
     draw(state(NULL, NULL), 24, 80);
     assert_shown("      01 02 03 04 05 06 07 08\n DI    *  .  .  .  .  .  .  *\n DO    .  *  .  .  .  .  .  .\n");
@@ -161,8 +161,8 @@ static Suite *client_panel_suite(void)
 {
     Suite *suite = suite_create("client_panel");
     TCase *values = tcase_create("values"), *sizes = tcase_create("sizes");
-    tcase_add_test(values, what_a_motor_does_stands_in_its_row);
-    tcase_add_test(values, lamps_stand_under_their_numbers);
+    tcase_add_test(values, what_a_motor_does_is_in_its_row);
+    tcase_add_test(values, lamps_are_under_their_numbers);
     tcase_add_test(values, true_positions_are_shown_where_there_is_a_plant);
     tcase_add_test(values, a_fault_is_named_and_a_unit_without_power_is_called_so);
     tcase_add_test(values, what_the_state_lacks_is_a_dash);

@@ -207,7 +207,7 @@ START_TEST(a_step_never_leaps_past_what_was_waited_for)
 }
 END_TEST
 
-START_TEST(power_is_looked_at)
+START_TEST(power_is_checked)
 {
     wait_for("{\"unit\": 5, \"powered\": false}");
     ck_assert(!condition_holds(condition));
@@ -358,7 +358,7 @@ static Suite *condition_suite(void)
 
     TCase *units = tcase_create("units");
     tcase_add_checked_fixture(units, setup_two, teardown);
-    tcase_add_test(units, power_is_looked_at);
+    tcase_add_test(units, power_is_checked);
     tcase_add_test(units, a_message_can_be_waited_for_when_its_last_byte_has_passed);
     tcase_add_test(units, with_several_units_the_text_names_them);
     tcase_add_test(units, with_several_units_one_has_to_be_named);

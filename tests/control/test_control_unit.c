@@ -168,7 +168,7 @@ START_TEST(P7_the_state_shows_the_profile_of_the_manuals_figure)
 }
 END_TEST
 
-START_TEST(P7_a_request_that_waits_is_not_obeyed_by_looking)
+START_TEST(P7_a_request_that_waits_is_not_obeyed_by_reading_the_state)
 {
     static const uint8_t get_and_reset[] = {1, 0, 2, 5, '1', 1, 0, 3, 2, '1', '\\'};
     struct sim_config config = {.unit = rkm04_device_config(&(struct rkm04_config){.framing = &rkm04_plain})};
@@ -369,7 +369,7 @@ int main(void)
     tcase_add_test(seen, C7_the_state_shows_loops_and_calls);
     tcase_add_test(seen, C11_the_state_shows_functions_and_simulation_mode);
     tcase_add_test(seen, P7_the_state_shows_the_profile_of_the_manuals_figure);
-    tcase_add_test(seen, P7_a_request_that_waits_is_not_obeyed_by_looking);
+    tcase_add_test(seen, P7_a_request_that_waits_is_not_obeyed_by_reading_the_state);
     tcase_add_test(seen, the_state_shows_counter_and_true_position_side_by_side);
     tcase_add_test(seen, U5_the_state_shows_what_is_in_flash);
     tcase_add_test(seen, C2_the_program_of_a_motor_is_told_with_the_place_of_its_first_command);

@@ -74,7 +74,7 @@ START_TEST(K4_a_wait_that_has_passed_is_followed_one_slot_later)
 }
 END_TEST
 
-START_TEST(K4_a_wait_is_looked_at_anew_in_each_slot)
+START_TEST(K4_a_wait_is_checked_anew_in_each_slot)
 {
     rig_accept(&rig, '1', "O03 T01");
     rig_input_at(&rig, 5001, 3, true);
@@ -85,7 +85,7 @@ START_TEST(K4_a_wait_is_looked_at_anew_in_each_slot)
 }
 END_TEST
 
-START_TEST(K4_the_command_behind_a_dwell_of_n_is_executed_n_slots_later)
+START_TEST(K4_the_command_after_a_dwell_of_n_is_executed_n_slots_later)
 {
     rig_accept(&rig, '1', "W1 T01 W2 C01 W16000000 T02");
     rig_to(&rig, 6 * MS + 16000 * SECOND + 1);
@@ -96,7 +96,7 @@ START_TEST(K4_the_command_behind_a_dwell_of_n_is_executed_n_slots_later)
 END_TEST
 
 /* With V <= S step k comes after ceil(10^6 k / V) ticks. */
-START_TEST(K4_the_command_behind_a_motion_comes_at_the_first_slot_10_us_after_the_last_pulse)
+START_TEST(K4_the_command_after_a_motion_comes_at_the_first_slot_10_us_after_the_last_pulse)
 {
     static const struct {
         unsigned v, steps;
@@ -233,7 +233,7 @@ START_TEST(C7_a_loop_body_runs_n_times)
 }
 END_TEST
 
-START_TEST(C7_the_end_of_a_loop_goes_on_behind_its_L)
+START_TEST(C7_the_end_of_a_loop_goes_on_after_its_L)
 {
     rig_accept(&rig, '1', "L2 U E T01");
     rig_to(&rig, 100 * MS);
@@ -319,7 +319,7 @@ START_TEST(C7_the_same_L_in_a_subroutine_is_another_loop)
 END_TEST
 
 
-START_TEST(C8_a_return_goes_behind_the_call)
+START_TEST(C8_a_return_goes_after_the_call)
 {
     expect_steps("S2000 F1 '1 '1 R J2 @1 R R . @2", 5);
 }
@@ -441,7 +441,7 @@ START_TEST(C9_a_block_with_its_end_runs_at_once)
 }
 END_TEST
 
-START_TEST(C9_an_open_block_waits_for_its_end_and_goes_on_behind_its_beginning)
+START_TEST(C9_an_open_block_waits_for_its_end_and_goes_on_after_its_beginning)
 {
     rig_accept(&rig, '1', "[ T01");
     rig_accept_at(&rig, 50 * MS, "T02");
@@ -512,9 +512,9 @@ static Suite *interp_flow_suite(void)
     tcase_add_test(time, K4_a_text_at_the_tick_of_a_slot_begins_in_it);
     tcase_add_test(time, K4_every_command_costs_one_slot);
     tcase_add_test(time, K4_a_wait_that_has_passed_is_followed_one_slot_later);
-    tcase_add_test(time, K4_a_wait_is_looked_at_anew_in_each_slot);
-    tcase_add_test(time, K4_the_command_behind_a_dwell_of_n_is_executed_n_slots_later);
-    tcase_add_test(time, K4_the_command_behind_a_motion_comes_at_the_first_slot_10_us_after_the_last_pulse);
+    tcase_add_test(time, K4_a_wait_is_checked_anew_in_each_slot);
+    tcase_add_test(time, K4_the_command_after_a_dwell_of_n_is_executed_n_slots_later);
+    tcase_add_test(time, K4_the_command_after_a_motion_comes_at_the_first_slot_10_us_after_the_last_pulse);
     tcase_add_test(time, K4_a_motion_without_steps_takes_its_one_slot);
     tcase_add_test(time, K2_the_motors_take_their_turns_in_order);
     tcase_add_test(time, K2_what_a_later_motor_writes_is_seen_in_the_next_slot);
@@ -534,7 +534,7 @@ static Suite *interp_flow_suite(void)
     TCase *loops = tcase_create("loops");
     tcase_add_checked_fixture(loops, setup, teardown);
     tcase_add_test(loops, C7_a_loop_body_runs_n_times);
-    tcase_add_test(loops, C7_the_end_of_a_loop_goes_on_behind_its_L);
+    tcase_add_test(loops, C7_the_end_of_a_loop_goes_on_after_its_L);
     tcase_add_test(loops, C7_eight_levels_of_loops_multiply);
     tcase_add_test(loops, C7_a_ninth_loop_level_is_a_fault);
     tcase_add_test(loops, C7_an_end_without_a_loop_is_a_fault);
@@ -548,7 +548,7 @@ static Suite *interp_flow_suite(void)
 
     TCase *calls = tcase_create("calls");
     tcase_add_checked_fixture(calls, setup, teardown);
-    tcase_add_test(calls, C8_a_return_goes_behind_the_call);
+    tcase_add_test(calls, C8_a_return_goes_after_the_call);
     tcase_add_test(calls, C8_six_levels_of_calls);
     tcase_add_test(calls, C7_a_seventh_call_level_is_a_fault);
     tcase_add_test(calls, C7_a_return_without_a_call_is_a_fault);
@@ -565,7 +565,7 @@ static Suite *interp_flow_suite(void)
     TCase *blocks = tcase_create("blocks");
     tcase_add_checked_fixture(blocks, setup, teardown);
     tcase_add_test(blocks, C9_a_block_with_its_end_runs_at_once);
-    tcase_add_test(blocks, C9_an_open_block_waits_for_its_end_and_goes_on_behind_its_beginning);
+    tcase_add_test(blocks, C9_an_open_block_waits_for_its_end_and_goes_on_after_its_beginning);
     tcase_add_test(blocks, C9_an_end_before_the_beginning_does_not_count);
     tcase_add_test(blocks, C9_one_end_releases_all_open_beginnings);
     tcase_add_test(blocks, C9_an_executed_end_does_nothing_but_takes_a_place);

@@ -101,7 +101,7 @@ START_TEST(C5_one_guard_true_leaves_the_other_armed)
 }
 END_TEST
 
-START_TEST(C5_no_guard_is_looked_at_during_a_stop_ramp)
+START_TEST(C5_no_guard_is_checked_during_a_stop_ramp)
 {
     rig_input_at(&rig, 0, 6, true);
     rig_accept(&rig, '1', "M05 N06 F5000 R R");
@@ -278,7 +278,7 @@ START_TEST(C6_X_ends_the_program_between_commands)
 }
 END_TEST
 
-START_TEST(C6_X_is_looked_at_from_the_slot_behind_its_own)
+START_TEST(C6_X_is_checked_from_the_slot_after_its_own)
 {
     rig_input_at(&rig, 0, 4, true);
     rig_accept(&rig, '1', "T01 X04 T02");
@@ -288,7 +288,7 @@ START_TEST(C6_X_is_looked_at_from_the_slot_behind_its_own)
 }
 END_TEST
 
-START_TEST(C6_X_in_a_stop_ramp_of_a_guard_ends_the_program_behind_it)
+START_TEST(C6_X_in_a_stop_ramp_of_a_guard_ends_the_program_after_it)
 {
     rig_accept(&rig, '1', "X04 M05 F5000 R T01");
     rig_input_at(&rig, 1004 * MS, 5, true);
@@ -300,7 +300,7 @@ START_TEST(C6_X_in_a_stop_ramp_of_a_guard_ends_the_program_behind_it)
 }
 END_TEST
 
-START_TEST(C6_X_in_the_ramp_of_K_ends_the_program_behind_it)
+START_TEST(C6_X_in_the_ramp_of_K_ends_the_program_after_it)
 {
     rig_accept(&rig, '1', "X04 F5000 R T01");
     rig_to(&rig, 1003 * MS);
@@ -521,7 +521,7 @@ static Suite *interp_guards_suite(void)
     tcase_add_test(guards, C5_both_guards_true_are_both_used_up);
     tcase_add_test(guards, C5_both_guards_becoming_true_in_one_slot_are_both_used_up);
     tcase_add_test(guards, C5_one_guard_true_leaves_the_other_armed);
-    tcase_add_test(guards, C5_no_guard_is_looked_at_during_a_stop_ramp);
+    tcase_add_test(guards, C5_no_guard_is_checked_during_a_stop_ramp);
     tcase_add_test(guards, C5_a_guard_stays_armed_until_it_has_stopped_a_motion);
     tcase_add_test(guards, C5_a_guard_may_be_armed_again);
     tcase_add_test(guards, C5_a_new_M_replaces_the_old_one);
@@ -540,9 +540,9 @@ static Suite *interp_guards_suite(void)
     tcase_add_test(total_stop, C6_X_stops_a_motion_on_a_ramp_and_ends_the_program);
     tcase_add_test(total_stop, C6_X_ends_the_program_in_dwell_wait_and_block);
     tcase_add_test(total_stop, C6_X_ends_the_program_between_commands);
-    tcase_add_test(total_stop, C6_X_is_looked_at_from_the_slot_behind_its_own);
-    tcase_add_test(total_stop, C6_X_in_a_stop_ramp_of_a_guard_ends_the_program_behind_it);
-    tcase_add_test(total_stop, C6_X_in_the_ramp_of_K_ends_the_program_behind_it);
+    tcase_add_test(total_stop, C6_X_is_checked_from_the_slot_after_its_own);
+    tcase_add_test(total_stop, C6_X_in_a_stop_ramp_of_a_guard_ends_the_program_after_it);
+    tcase_add_test(total_stop, C6_X_in_the_ramp_of_K_ends_the_program_after_it);
     tcase_add_test(total_stop, C6_X_in_a_hold_ends_the_program);
     tcase_add_test(total_stop, C6_K_and_X_in_one_slot_end_the_program);
     tcase_add_test(total_stop, C6_X_wins_over_M_and_N);

@@ -38,7 +38,7 @@ static void hold_in_motion(const char *text)
 }
 
 
-START_TEST(C3_blanks_and_comments_may_stand_around_a_lone_K_and_C75)
+START_TEST(C3_blanks_and_comments_may_be_around_a_lone_K_and_C75)
 {
     rig_accept(&rig, '1', "F5000 R");
     rig_accept_at(&rig, 1002 * MS, " \r\n{ stop } K { now }\n");
@@ -254,7 +254,7 @@ START_TEST(C3_on_the_final_ramp_the_motion_runs_to_its_own_end_and_is_held_with_
 END_TEST
 
 /* M stops in slot 1003 (R in slot 3000): 1045 steps, 0.45 s. */
-START_TEST(C3_in_a_stop_ramp_of_a_guard_the_hold_falls_behind_the_motion)
+START_TEST(C3_in_a_stop_ramp_of_a_guard_the_hold_falls_after_the_motion)
 {
     rig_accept(&rig, '1', "M05 F5000 R T01");
     rig_input_at(&rig, 1003 * MS, 5, true);
@@ -416,7 +416,7 @@ START_TEST(C3_C4_a_change_of_speed_between_K_C75_and_a_second_K_is_dropped_by_it
 }
 END_TEST
 
-START_TEST(C3_K_behind_C75_in_the_slot_behind_the_last_command_holds_nothing)
+START_TEST(C3_K_after_C75_in_the_slot_after_the_last_command_holds_nothing)
 {
     rig_accept(&rig, '1', "T01");
     rig_accept_at(&rig, 1 * MS + 500, "C75");
@@ -437,7 +437,7 @@ static void hold_in_the_ramp_of_a_guard(const char *text)
     rig_accept_at(&rig, 1103 * MS, "K");
 }
 
-START_TEST(C3_C75_during_the_ramp_of_a_guard_is_remembered_for_the_hold_behind_it)
+START_TEST(C3_C75_during_the_ramp_of_a_guard_is_remembered_for_the_hold_after_it)
 {
     hold_in_the_ramp_of_a_guard("M01 F5000 R T01");
     rig_accept_at(&rig, 1203 * MS, "C75");
@@ -451,7 +451,7 @@ START_TEST(C3_C75_during_the_ramp_of_a_guard_is_remembered_for_the_hold_behind_i
 }
 END_TEST
 
-START_TEST(P9_held_behind_the_last_command_the_index_stays_at_it)
+START_TEST(P9_held_after_the_last_command_the_index_stays_at_it)
 {
     hold_in_the_ramp_of_a_guard("M01 F5000 R");
     rig_to(&rig, 3 * SECOND);
@@ -500,7 +500,7 @@ static Suite *interp_hold_suite(void)
 
     TCase *alone = tcase_create("alone");
     tcase_add_checked_fixture(alone, setup, teardown);
-    tcase_add_test(alone, C3_blanks_and_comments_may_stand_around_a_lone_K_and_C75);
+    tcase_add_test(alone, C3_blanks_and_comments_may_be_around_a_lone_K_and_C75);
     tcase_add_test(alone, C3_inside_a_longer_text_both_are_accepted_ignored_and_not_stored);
     tcase_add_test(alone, C3_K_of_an_idle_motor_is_nothing);
     tcase_add_test(alone, C3_K_after_a_total_stop_and_at_a_fault_is_nothing);
@@ -520,11 +520,11 @@ static Suite *interp_hold_suite(void)
     tcase_add_test(by_state, C3_a_motion_held_many_times_has_exactly_its_steps);
     tcase_add_test(by_state, C3_K_on_the_rising_ramp);
     tcase_add_test(by_state, C3_on_the_final_ramp_the_motion_runs_to_its_own_end_and_is_held_with_no_rest);
-    tcase_add_test(by_state, C3_in_a_stop_ramp_of_a_guard_the_hold_falls_behind_the_motion);
+    tcase_add_test(by_state, C3_in_a_stop_ramp_of_a_guard_the_hold_falls_after_the_motion);
     tcase_add_test(by_state, C3_K_stops_a_limit_move_at_the_next_step_and_C75_goes_on_with_it);
     tcase_add_test(by_state, C3_an_endless_motion_goes_on_endlessly_after_a_hold);
-    tcase_add_test(by_state, C3_K_behind_C75_in_the_slot_behind_the_last_command_holds_nothing);
-    tcase_add_test(by_state, P9_held_behind_the_last_command_the_index_stays_at_it);
+    tcase_add_test(by_state, C3_K_after_C75_in_the_slot_after_the_last_command_holds_nothing);
+    tcase_add_test(by_state, P9_held_after_the_last_command_the_index_stays_at_it);
     tcase_add_test(by_state, C5_a_guard_that_has_become_true_in_a_hold_lets_the_rest_do_no_step);
     tcase_add_test(by_state, R5_a_held_limit_move_whose_input_came_meanwhile_does_no_further_step);
     suite_add_tcase(suite, by_state);
@@ -539,7 +539,7 @@ static Suite *interp_hold_suite(void)
     tcase_add_test(order, C3_any_number_of_requests_in_one_slot_keep_their_meaning);
     tcase_add_test(order, C3_C75_K_C75_in_one_slot_stop_a_motion_and_let_it_go_on);
     tcase_add_test(order, C3_C4_a_change_of_speed_between_K_C75_and_a_second_K_is_dropped_by_it);
-    tcase_add_test(order, C3_C75_during_the_ramp_of_a_guard_is_remembered_for_the_hold_behind_it);
+    tcase_add_test(order, C3_C75_during_the_ramp_of_a_guard_is_remembered_for_the_hold_after_it);
     suite_add_tcase(suite, order);
 
     return suite;

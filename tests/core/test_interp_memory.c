@@ -282,7 +282,7 @@ START_TEST(C10_with_T40_what_fits_is_stored)
 }
 END_TEST
 
-START_TEST(C10_T40_is_looked_at_when_text_is_stored)
+START_TEST(C10_T40_is_checked_when_text_is_stored)
 {
     ck_assert_int_eq(set_around("T40", PLACES, "T01"), 3); /* not executed yet: overwritten, the T40 too */
     expect_program("", PLACES - 1, "T01");
@@ -480,7 +480,7 @@ static Suite *interp_memory_suite(void)
     tcase_add_checked_fixture(locked, setup, teardown);
     tcase_add_test(locked, C10_with_T40_the_rest_of_the_text_is_ignored);
     tcase_add_test(locked, C10_with_T40_what_fits_is_stored);
-    tcase_add_test(locked, C10_T40_is_looked_at_when_text_is_stored);
+    tcase_add_test(locked, C10_T40_is_checked_when_text_is_stored);
     tcase_add_test(locked, C10_C40_unlocks_the_memory);
     tcase_add_test(locked, C10_a_full_locked_memory_still_obeys_reset);
     tcase_add_test(locked, C10_a_full_locked_memory_still_obeys_K_C75_and_a_change_of_speed);

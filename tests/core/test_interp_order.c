@@ -51,7 +51,7 @@ START_TEST(K2_a_hold_that_an_input_leads_to_ends_in_that_slot_if_C75_is_remember
 }
 END_TEST
 
-START_TEST(K2_an_input_just_behind_a_slot_is_seen_in_the_next_one)
+START_TEST(K2_an_input_just_after_a_slot_is_seen_in_the_next_one)
 {
     hold_limit_move("X06 T01");
     rig_input_at(&rig, 701 * MS + 1, 6, true);
@@ -164,7 +164,7 @@ START_TEST(C6_X_on_the_ramp_of_a_hold_ends_the_C75_that_was_remembered)
 }
 END_TEST
 
-START_TEST(C6_X_fires_before_the_first_command_behind_a_fault)
+START_TEST(C6_X_fires_before_the_first_command_after_a_fault)
 {
     rig_power_up(&rig, &(struct rkm04_config){.node = 1, .readings.fault_exit = RKM04_FAULT_EXIT_NEW});
     rig_accept(&rig, '1', "X04 E");
@@ -196,7 +196,7 @@ START_TEST(C1_a_C75_remembered_is_forgotten)
 }
 END_TEST
 
-START_TEST(C3_a_C75_for_commands_that_wait_for_the_end_of_the_ramp_is_not_remembered_behind_them)
+START_TEST(C3_a_C75_for_commands_that_wait_for_the_end_of_the_ramp_is_not_remembered_after_them)
 {
     fault_for_good("E", "C75");
 }
@@ -269,15 +269,15 @@ static Suite *interp_order_suite(void)
     tcase_add_checked_fixture(slot, setup, teardown);
     tcase_add_test(slot, K2_a_hold_that_an_input_leads_to_ends_in_that_slot_if_new_commands_are_there);
     tcase_add_test(slot, K2_a_hold_that_an_input_leads_to_ends_in_that_slot_if_C75_is_remembered);
-    tcase_add_test(slot, K2_an_input_just_behind_a_slot_is_seen_in_the_next_one);
+    tcase_add_test(slot, K2_an_input_just_after_a_slot_is_seen_in_the_next_one);
     tcase_add_loop_test(slot, C3_K_of_an_idle_motor_leaves_its_loops_to_the_commands_that_follow_in_the_same_slot, 0, 4);
     tcase_add_test(slot, C3_a_flood_of_requests_in_one_slot_harms_nobody);
     tcase_add_test(slot, C4_a_change_that_is_due_in_the_slot_of_a_K_came_first);
     tcase_add_test(slot, C6_X_on_the_ramp_of_a_hold_ends_the_commands_that_were_to_follow_it);
     tcase_add_test(slot, C6_X_on_the_ramp_of_a_hold_ends_the_C75_that_was_remembered);
-    tcase_add_test(slot, C6_X_fires_before_the_first_command_behind_a_fault);
+    tcase_add_test(slot, C6_X_fires_before_the_first_command_after_a_fault);
     tcase_add_test(slot, C1_a_C75_remembered_is_forgotten);
-    tcase_add_test(slot, C3_a_C75_for_commands_that_wait_for_the_end_of_the_ramp_is_not_remembered_behind_them);
+    tcase_add_test(slot, C3_a_C75_for_commands_that_wait_for_the_end_of_the_ramp_is_not_remembered_after_them);
     tcase_add_test(slot, K3_a_unit_without_programs_has_nothing_to_do);
     suite_add_tcase(suite, slot);
 

@@ -105,7 +105,7 @@ END_TEST
 
 /* ---- hold-exit, x-after, guard-start -------------------------------------------------------------------------------- */
 
-START_TEST(C3_hold_exit_latch_new_commands_wait_behind_the_rest)
+START_TEST(C3_hold_exit_latch_new_commands_wait_after_the_rest)
 {
     READ(.hold_exit = RKM04_HOLD_EXIT_LATCH);
     rig_accept(&rig, '1', "F5000 R T01");
@@ -123,7 +123,7 @@ START_TEST(C3_hold_exit_latch_new_commands_wait_behind_the_rest)
 }
 END_TEST
 
-START_TEST(C3_hold_exit_latch_commands_behind_a_total_stop_held_before_they_begin_wait_for_C75)
+START_TEST(C3_hold_exit_latch_commands_after_a_total_stop_held_before_they_begin_wait_for_C75)
 {
     READ(.hold_exit = RKM04_HOLD_EXIT_LATCH);
     rig_accept(&rig, '1', "X04 W1000");
@@ -298,7 +298,7 @@ START_TEST(R1_planning_is_held_and_resumed_as_a_dwell_and_ended_by_X)
 }
 END_TEST
 
-START_TEST(C5_planning_guards_and_the_table_are_looked_at_when_the_motion_begins)
+START_TEST(C5_planning_guards_and_the_table_are_checked_when_the_motion_begins)
 {
     READ(.planning = 300);
     rig_accept(&rig, '1', "M04 F10 R T01");
@@ -393,7 +393,7 @@ START_TEST(P6_store_time_delays_the_answer_and_all_commands_but_no_pulse)
 }
 END_TEST
 
-START_TEST(P6_store_time_a_wait_is_looked_at_again_when_the_flash_is_written)
+START_TEST(P6_store_time_a_wait_is_checked_again_when_the_flash_is_written)
 {
     static const uint8_t store[] = {3, '1'};
     uint8_t answer[8];
@@ -419,8 +419,8 @@ static Suite *interp_readings_suite(void)
     tcase_add_test(words, C3_fault_exit_new_a_text_without_commands_leaves_the_fault);
     tcase_add_test(words, C3_fault_exit_new_loops_and_calls_of_the_faulty_program_are_dropped);
     tcase_add_test(words, E1_fault_exit_new_the_LED_blinks_until_the_next_motion_begins);
-    tcase_add_test(words, C3_hold_exit_latch_new_commands_wait_behind_the_rest);
-    tcase_add_test(words, C3_hold_exit_latch_commands_behind_a_total_stop_held_before_they_begin_wait_for_C75);
+    tcase_add_test(words, C3_hold_exit_latch_new_commands_wait_after_the_rest);
+    tcase_add_test(words, C3_hold_exit_latch_commands_after_a_total_stop_held_before_they_begin_wait_for_C75);
     tcase_add_test(words, C6_x_after_once_X_has_fired_once_and_lets_new_commands_run);
     tcase_add_test(words, C5_guard_start_step_a_motion_begins_all_the_same_and_is_stopped_in_the_next_slot);
     tcase_add_test(words, C5_guard_start_step_holds_for_a_motion_that_goes_on_too);
@@ -435,11 +435,11 @@ static Suite *interp_readings_suite(void)
     tcase_add_checked_fixture(times, setup, teardown);
     tcase_add_test(times, R1_planning_a_motion_begins_so_much_later_and_the_motor_is_as_in_a_dwell);
     tcase_add_test(times, R1_planning_is_held_and_resumed_as_a_dwell_and_ended_by_X);
-    tcase_add_test(times, C5_planning_guards_and_the_table_are_looked_at_when_the_motion_begins);
+    tcase_add_test(times, C5_planning_guards_and_the_table_are_checked_when_the_motion_begins);
     tcase_add_test(times, U2_input_filter_an_input_counts_when_it_has_been_constant_for_so_long);
     tcase_add_test(times, C6_input_filter_delays_X_and_limit_moves);
     tcase_add_test(times, P6_store_time_delays_the_answer_and_all_commands_but_no_pulse);
-    tcase_add_test(times, P6_store_time_a_wait_is_looked_at_again_when_the_flash_is_written);
+    tcase_add_test(times, P6_store_time_a_wait_is_checked_again_when_the_flash_is_written);
     suite_add_tcase(suite, times);
     return suite;
 }

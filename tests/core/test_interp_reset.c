@@ -57,7 +57,7 @@ START_TEST(C1_a_pulse_due_at_the_tick_of_the_reset_is_not_sent)
 }
 END_TEST
 
-START_TEST(C1_commands_behind_it_are_the_new_program)
+START_TEST(C1_commands_after_it_are_the_new_program)
 {
     rig_accept(&rig, '1', "F5000 R T01");
     rig_accept_at(&rig, 1001501, "\\ T02 T03");
@@ -270,7 +270,7 @@ static Suite *interp_reset_suite(void)
     tcase_add_checked_fixture(at_once, setup, teardown);
     tcase_add_test(at_once, C1_reset_stops_a_motion_without_ramp_between_two_slots);
     tcase_add_test(at_once, C1_a_pulse_due_at_the_tick_of_the_reset_is_not_sent);
-    tcase_add_test(at_once, C1_commands_behind_it_are_the_new_program);
+    tcase_add_test(at_once, C1_commands_after_it_are_the_new_program);
     tcase_add_test(at_once, C1_commands_before_it_in_the_message_are_dropped);
     tcase_add_test(at_once, C1_reset_acts_in_every_state);
     tcase_add_test(at_once, C1_reset_ends_a_hold);

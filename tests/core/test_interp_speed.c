@@ -245,7 +245,7 @@ START_TEST(C4_the_delay_passes_before_the_change)
 }
 END_TEST
 
-START_TEST(C4_the_first_deadline_stands_and_the_last_value_wins)
+START_TEST(C4_the_first_deadline_counts_and_the_last_value_wins)
 {
     with_latency(500);
     rig_accept(&rig, '1', "F20000 R");
@@ -258,7 +258,7 @@ START_TEST(C4_the_first_deadline_stands_and_the_last_value_wins)
 }
 END_TEST
 
-START_TEST(C4_a_second_change_behind_the_first_has_its_own_deadline)
+START_TEST(C4_a_second_change_after_the_first_has_its_own_deadline)
 {
     with_latency(500);
     rig_accept(&rig, '1', "F20000 R");
@@ -293,7 +293,7 @@ START_TEST(C4_a_change_whose_motion_is_over_does_not_touch_the_next_one)
 }
 END_TEST
 
-START_TEST(C4_V_behind_K_in_its_slot_comes_to_the_stop_ramp)
+START_TEST(C4_V_after_K_in_its_slot_comes_to_the_stop_ramp)
 {
     static const char *const first[] = {"V300", "U"}; /* with and without a change before K */
     for (size_t i = 0; i < 2; i++) {
@@ -317,7 +317,7 @@ static Suite *interp_speed_suite(void)
     tcase_add_checked_fixture(motion, setup, teardown);
     tcase_add_test(motion, C4_a_lone_V_changes_the_motion_is_not_stored_and_leaves_the_parameter);
     tcase_add_test(motion, C4_it_may_be_repeated);
-    tcase_add_test(motion, C4_V_behind_K_in_its_slot_comes_to_the_stop_ramp);
+    tcase_add_test(motion, C4_V_after_K_in_its_slot_comes_to_the_stop_ramp);
     tcase_add_test(motion, C4_it_works_in_G_H_and_endless_motions);
     tcase_add_test(motion, C4_on_the_rising_ramp_it_is_a_change_too);
     tcase_add_test(motion, C4_in_a_compound_motion_it_is_the_V_of_the_present_segment);
@@ -346,8 +346,8 @@ static Suite *interp_speed_suite(void)
     TCase *latency = tcase_create("latency");
     tcase_add_checked_fixture(latency, setup, teardown);
     tcase_add_test(latency, C4_the_delay_passes_before_the_change);
-    tcase_add_test(latency, C4_the_first_deadline_stands_and_the_last_value_wins);
-    tcase_add_test(latency, C4_a_second_change_behind_the_first_has_its_own_deadline);
+    tcase_add_test(latency, C4_the_first_deadline_counts_and_the_last_value_wins);
+    tcase_add_test(latency, C4_a_second_change_after_the_first_has_its_own_deadline);
     tcase_add_test(latency, C4_K_drops_a_pending_change);
     tcase_add_test(latency, C4_a_change_whose_motion_is_over_does_not_touch_the_next_one);
     suite_add_tcase(suite, latency);

@@ -30,7 +30,7 @@ START_TEST(C3_the_endless_motion_stopped_by_hand_makes_way_for_the_next_command)
 }
 END_TEST
 
-START_TEST(C3_commands_stored_during_the_ramp_are_executed_behind_it)
+START_TEST(C3_commands_stored_during_the_ramp_are_executed_after_it)
 {
     rig_accept(&rig, '1', "F5000 R T01");
     rig_accept_at(&rig, 1002 * MS, "K");
@@ -43,7 +43,7 @@ START_TEST(C3_commands_stored_during_the_ramp_are_executed_behind_it)
 }
 END_TEST
 
-START_TEST(C3_commands_stored_behind_K_before_it_acts_end_the_hold_too)
+START_TEST(C3_commands_stored_after_K_before_it_acts_end_the_hold_too)
 {
     rig_accept(&rig, '1', "F5000 R T01");
     rig_accept_at(&rig, 1001 * MS + 1, "K");
@@ -55,7 +55,7 @@ START_TEST(C3_commands_stored_behind_K_before_it_acts_end_the_hold_too)
 }
 END_TEST
 
-START_TEST(C3_commands_stored_behind_K_in_one_slot_of_a_dwell)
+START_TEST(C3_commands_stored_after_K_in_one_slot_of_a_dwell)
 {
     rig_accept(&rig, '1', "W1000 T01");
     rig_accept_at(&rig, 100 * MS + 1, "K");
@@ -94,7 +94,7 @@ START_TEST(C3_the_rest_of_the_old_program_is_dropped_and_stays_in_memory)
 }
 END_TEST
 
-START_TEST(C3_C75_behind_new_commands_is_nothing)
+START_TEST(C3_C75_after_new_commands_is_nothing)
 {
     rig_accept(&rig, '1', "F5000 R T01");
     rig_accept_at(&rig, 1002 * MS, "K");
@@ -175,7 +175,7 @@ START_TEST(C3_guards_parameters_and_table_stay)
 }
 END_TEST
 
-START_TEST(C3_C75_behind_new_commands_during_the_ramp_is_nothing)
+START_TEST(C3_C75_after_new_commands_during_the_ramp_is_nothing)
 {
     rig_accept(&rig, '1', "F5000 R T01");
     rig_accept_at(&rig, 1002 * MS, "K");
@@ -188,7 +188,7 @@ START_TEST(C3_C75_behind_new_commands_during_the_ramp_is_nothing)
 }
 END_TEST
 
-START_TEST(C3_C75_behind_new_commands_in_the_same_slot_is_nothing)
+START_TEST(C3_C75_after_new_commands_in_the_same_slot_is_nothing)
 {
     rig_accept(&rig, '1', "W1000 T01");
     rig_accept_at(&rig, 100 * MS, "K");
@@ -199,7 +199,7 @@ START_TEST(C3_C75_behind_new_commands_in_the_same_slot_is_nothing)
 }
 END_TEST
 
-START_TEST(C3_new_commands_behind_C75_follow_the_old_program)
+START_TEST(C3_new_commands_after_C75_follow_the_old_program)
 {
     rig_accept(&rig, '1', "W1000 T01");
     rig_accept_at(&rig, 101 * MS, "K"); /* 900 slots left */
@@ -212,7 +212,7 @@ START_TEST(C3_new_commands_behind_C75_follow_the_old_program)
 END_TEST
 
 /* A K always stops what has arrived before it. */
-START_TEST(C3_a_K_behind_new_commands_holds_before_them)
+START_TEST(C3_a_K_after_new_commands_holds_before_them)
 {
     static const char *const old[] = {"", "W1000 T01", "O01 T01", "[ T01"};
     for (size_t i = 0; i < sizeof old / sizeof *old; i++) {
@@ -228,7 +228,7 @@ START_TEST(C3_a_K_behind_new_commands_holds_before_them)
 }
 END_TEST
 
-START_TEST(C3_a_K_behind_new_commands_during_the_ramp_holds_before_them)
+START_TEST(C3_a_K_after_new_commands_during_the_ramp_holds_before_them)
 {
     rig_accept(&rig, '1', "F5000 R T01");
     rig_accept_at(&rig, 1002 * MS, "K");
@@ -256,7 +256,7 @@ START_TEST(C3_new_commands_run_after_a_total_stop)
 }
 END_TEST
 
-START_TEST(C3_commands_stored_during_the_ramp_of_a_total_stop_run_behind_it)
+START_TEST(C3_commands_stored_during_the_ramp_of_a_total_stop_run_after_it)
 {
     rig_accept(&rig, '1', "X04 F5000 R T01");
     rig_input_at(&rig, 1003 * MS, 4, true);
@@ -301,7 +301,7 @@ START_TEST(C3_new_commands_at_a_fault_are_stored_and_not_executed)
 }
 END_TEST
 
-START_TEST(C3_commands_that_wait_behind_a_K_run_before_newer_ones)
+START_TEST(C3_commands_that_wait_after_a_K_run_before_newer_ones)
 {
     rig_accept(&rig, '1', "S100 V1000 A300 F5000 R");
     rig_accept_at(&rig, 3500 * MS, "K");
@@ -348,7 +348,7 @@ START_TEST(C7_a_program_sent_in_parts_does_what_it_does_sent_at_once)
 }
 END_TEST
 
-START_TEST(C7_a_call_that_has_waited_returns_behind_itself)
+START_TEST(C7_a_call_that_has_waited_returns_after_itself)
 {
     rig_accept(&rig, '1', "'5 T01");
     rig_accept_at(&rig, 50 * MS, "J6 @5 T02 . @6");
@@ -378,35 +378,35 @@ static Suite *interp_stored_suite(void)
     TCase *hold = tcase_create("hold");
     tcase_add_checked_fixture(hold, setup, teardown);
     tcase_add_test(hold, C3_the_endless_motion_stopped_by_hand_makes_way_for_the_next_command);
-    tcase_add_test(hold, C3_commands_stored_during_the_ramp_are_executed_behind_it);
-    tcase_add_test(hold, C3_commands_stored_behind_K_before_it_acts_end_the_hold_too);
-    tcase_add_test(hold, C3_commands_stored_behind_K_in_one_slot_of_a_dwell);
+    tcase_add_test(hold, C3_commands_stored_during_the_ramp_are_executed_after_it);
+    tcase_add_test(hold, C3_commands_stored_after_K_before_it_acts_end_the_hold_too);
+    tcase_add_test(hold, C3_commands_stored_after_K_in_one_slot_of_a_dwell);
     tcase_add_test(hold, C3_commands_stored_before_K_are_part_of_the_old_program);
     tcase_add_test(hold, C3_the_rest_of_the_old_program_is_dropped_and_stays_in_memory);
-    tcase_add_test(hold, C3_C75_behind_new_commands_is_nothing);
+    tcase_add_test(hold, C3_C75_after_new_commands_is_nothing);
     tcase_add_test(hold, C3_a_text_without_commands_leaves_the_hold);
     tcase_add_test(hold, C3_loops_of_the_old_program_are_dropped);
     tcase_add_test(hold, C3_calls_of_the_old_program_are_dropped);
     tcase_add_test(hold, C3_an_open_block_of_the_old_program_is_dropped);
     tcase_add_test(hold, C3_labels_stay);
     tcase_add_test(hold, C3_guards_parameters_and_table_stay);
-    tcase_add_test(hold, C3_C75_behind_new_commands_during_the_ramp_is_nothing);
-    tcase_add_test(hold, C3_C75_behind_new_commands_in_the_same_slot_is_nothing);
-    tcase_add_test(hold, C3_new_commands_behind_C75_follow_the_old_program);
-    tcase_add_test(hold, C3_a_K_behind_new_commands_holds_before_them);
-    tcase_add_test(hold, C3_a_K_behind_new_commands_during_the_ramp_holds_before_them);
+    tcase_add_test(hold, C3_C75_after_new_commands_during_the_ramp_is_nothing);
+    tcase_add_test(hold, C3_C75_after_new_commands_in_the_same_slot_is_nothing);
+    tcase_add_test(hold, C3_new_commands_after_C75_follow_the_old_program);
+    tcase_add_test(hold, C3_a_K_after_new_commands_holds_before_them);
+    tcase_add_test(hold, C3_a_K_after_new_commands_during_the_ramp_holds_before_them);
     suite_add_tcase(suite, hold);
 
     TCase *ended = tcase_create("ended");
     tcase_add_checked_fixture(ended, setup, teardown);
     tcase_add_test(ended, C3_new_commands_run_after_a_total_stop);
-    tcase_add_test(ended, C3_commands_stored_during_the_ramp_of_a_total_stop_run_behind_it);
+    tcase_add_test(ended, C3_commands_stored_during_the_ramp_of_a_total_stop_run_after_it);
     tcase_add_test(ended, C3_a_total_stop_cannot_be_resumed);
     tcase_add_test(ended, C3_new_commands_at_a_fault_are_stored_and_not_executed);
     tcase_add_test(ended, C7_a_program_sent_in_parts_does_what_it_does_sent_at_once);
-    tcase_add_test(ended, C7_a_call_that_has_waited_returns_behind_itself);
+    tcase_add_test(ended, C7_a_call_that_has_waited_returns_after_itself);
     tcase_add_test(ended, C6_X_and_C3_K_reach_a_motor_that_waits_for_a_label);
-    tcase_add_test(ended, C3_commands_that_wait_behind_a_K_run_before_newer_ones);
+    tcase_add_test(ended, C3_commands_that_wait_after_a_K_run_before_newer_ones);
     tcase_add_test(ended, P9_from_arrival_to_its_slot_the_first_new_command_is_shown);
     suite_add_tcase(suite, ended);
 

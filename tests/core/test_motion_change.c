@@ -323,7 +323,7 @@ END_TEST
 
 /* ---- When it acts --------------------------------------------------------------------------------------------------- */
 
-START_TEST(C4_with_a_latency_the_first_deadline_stands_and_the_last_value_wins)
+START_TEST(C4_with_a_latency_the_first_deadline_counts_and_the_last_value_wins)
 {
     const struct ref_segment m = {1500, 1000, 2000};
     for (unsigned latency = 0; latency <= 2000; latency += 1 + latency / 2) {
@@ -426,7 +426,7 @@ int main(void)
     TCase *when = tcase_create("when");
     tcase_add_checked_fixture(when, setup, teardown);
     tcase_set_timeout(when, 200);
-    tcase_add_test(when, C4_with_a_latency_the_first_deadline_stands_and_the_last_value_wins);
+    tcase_add_test(when, C4_with_a_latency_the_first_deadline_counts_and_the_last_value_wins);
     tcase_add_test(when, C4_K_drops_a_pending_change);
     tcase_add_test(when, C4_the_parameter_V_stays_as_it_was);
     tcase_add_test(when, C12_a_change_does_not_move_the_output_away_from_its_pulse);

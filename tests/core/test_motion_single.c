@@ -349,7 +349,7 @@ END_TEST
 
 /* ---- R7 ----------------------------------------------------------------------------------------------------------- */
 
-START_TEST(R7_the_direction_stands_20_us_before_the_first_pulse_and_10_us_after_the_last)
+START_TEST(R7_the_direction_is_set_20_us_before_the_first_pulse_and_10_us_after_the_last)
 {
     motion_trying("direction");
     motion_start(&rig, 0);
@@ -406,7 +406,7 @@ int main(void)
     tcase_add_test(unit, R2_nothing_grows_over_16000000_steps);
     tcase_add_test(unit, U3_an_absolute_motion_over_4147483648_steps_is_exact);
     tcase_add_test(unit, R2_pulses_are_exact_after_a_time_in_which_nobody_listened);
-    tcase_add_test(unit, R7_the_direction_stands_20_us_before_the_first_pulse_and_10_us_after_the_last);
+    tcase_add_test(unit, R7_the_direction_is_set_20_us_before_the_first_pulse_and_10_us_after_the_last);
     tcase_add_test(unit, R8_the_counter_wraps_as_two_s_complement);
     suite_add_tcase(suite, unit);
     SRunner *runner = srunner_create(suite);

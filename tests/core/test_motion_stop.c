@@ -419,7 +419,7 @@ END_TEST
 
 /* ---- Other ways to come to a stop ----------------------------------------------------------------------------------- */
 
-START_TEST(C3_C75_during_the_ramp_goes_on_behind_it_and_a_later_K_cancels_that)
+START_TEST(C3_C75_during_the_ramp_goes_on_after_it_and_a_later_K_cancels_that)
 {
     const struct ref_segment m = {2000, 1000, 2000};
     for (unsigned cancelled = 0; cancelled < 2; cancelled++)
@@ -528,7 +528,7 @@ int main(void)
     TCase *hold = tcase_create("hold");
     tcase_add_checked_fixture(hold, setup, teardown);
     tcase_set_timeout(hold, 200);
-    tcase_add_test(hold, C3_C75_during_the_ramp_goes_on_behind_it_and_a_later_K_cancels_that);
+    tcase_add_test(hold, C3_C75_during_the_ramp_goes_on_after_it_and_a_later_K_cancels_that);
     tcase_add_test(hold, C3_a_motion_held_and_resumed_many_times_makes_all_its_steps);
     tcase_add_test(hold, P7_a_held_motion_keeps_its_table);
     suite_add_tcase(suite, hold);

@@ -284,7 +284,7 @@ START_TEST(S5_commands_need_no_separator)
 }
 END_TEST
 
-START_TEST(S5_comments_stand_anywhere_between_commands)
+START_TEST(S5_comments_may_be_anywhere_between_commands)
 {
     static const char *const comments[] = {"{}", "{x}", "{ F1 R { \\ ' }", "{}{}{}", " { } ", "{\r\n\x01\x80\xFF}", "{{{{}",
                                             "\n{0}\n"};
@@ -302,7 +302,7 @@ START_TEST(S5_comments_stand_anywhere_between_commands)
 }
 END_TEST
 
-START_TEST(S5_a_comment_does_not_stand_inside_a_command)
+START_TEST(S5_a_comment_may_not_be_inside_a_command)
 {
     expect_error("F{}100", RKM04_READ_BAD_VALUE, 0, 1);
     expect_error("G {}+", RKM04_READ_BAD_VALUE, 0, 2);
@@ -334,7 +334,7 @@ END_TEST
 
 /* ---- Errors -------------------------------------------------------------------------------------------------------- */
 
-START_TEST(S5_reading_goes_on_behind_an_error_to_find_the_others)
+START_TEST(S5_reading_goes_on_after_an_error_to_find_the_others)
 {
     ck_assert_reads("\\ F0 R f100 R V16001 S R A-5 R", "\\ !2:3 R ?7 R !14:15 !21:23 R !25:26 R");
     ck_assert_reads("F0R", "!0:1 R");
@@ -399,14 +399,14 @@ static Suite *parse_suite(void)
     tcase_add_loop_test(characters, S5_a_number_ends_at_a_blank, 0, 0x21);
     tcase_add_test(characters, S5_blanks_inside_the_numbers_of_a_jump_are_refused);
     tcase_add_test(characters, S5_commands_need_no_separator);
-    tcase_add_test(characters, S5_comments_stand_anywhere_between_commands);
-    tcase_add_test(characters, S5_a_comment_does_not_stand_inside_a_command);
+    tcase_add_test(characters, S5_comments_may_be_anywhere_between_commands);
+    tcase_add_test(characters, S5_a_comment_may_not_be_inside_a_command);
     tcase_add_test(characters, S5_comments_do_not_nest);
     tcase_add_test(characters, S5_a_comment_never_closed_is_an_unknown_command_at_its_place);
     suite_add_tcase(suite, characters);
 
     TCase *errors = tcase_create("errors");
-    tcase_add_test(errors, S5_reading_goes_on_behind_an_error_to_find_the_others);
+    tcase_add_test(errors, S5_reading_goes_on_after_an_error_to_find_the_others);
     tcase_add_test(errors, S5_the_first_error_of_a_command_is_the_one_reported);
     suite_add_tcase(suite, errors);
     return suite;

@@ -80,7 +80,7 @@ END_TEST
 
 /* x' = 1000 t + 900 at constant speed, t seconds after the begin, wherever on the ramp the speed was changed: there it is no
  * finite binary fraction. */
-START_TEST(R5_C4_behind_a_change_at_any_speed_a_whole_way_adds_no_step)
+START_TEST(R5_C4_after_a_change_at_any_speed_a_whole_way_adds_no_step)
 {
     rig_accept(&rig, '1', "S100 A100 V2000 G+");
     rig_accept_at(&rig, (4 + (uint64_t)_i) * MS, "V1000");
@@ -90,7 +90,7 @@ END_TEST
 
 /* x' = 4350 + (221^2 - 110^2) / 120000 + 221 (0.999 - 111 / 60000) + (221^2 - 100^2) / 120000 = 4571, wherever at A1 the speed
  * was changed to 110. */
-START_TEST(R5_C4_behind_a_change_in_a_slow_segment_a_whole_way_adds_no_step_in_a_fast_one)
+START_TEST(R5_C4_after_a_change_in_a_slow_segment_a_whole_way_adds_no_step_in_a_fast_one)
 {
     rig_accept(&rig, '1', "S100 A1 V130 F4350 Y V221 A60000 F1000000 Y R");
     rig_accept_at(&rig, (10 + (uint64_t)_i) * MS, "V110");
@@ -101,7 +101,7 @@ END_TEST
 /* ---- Break points ------------------------------------------------------------------------------------------------------ */
 
 /* 100 steps/s; half a second after the begin x is 50, and there is no step left to do. */
-START_TEST(P7_no_point_lies_behind_the_last_step_of_a_stop)
+START_TEST(P7_no_point_lies_after_the_last_step_of_a_stop)
 {
     ck_assert_uint_eq(steps_of_stop("V100 F1000 R", 3, 500), 50);
     ck_assert_str_eq(rig_ask(&rig, 6, 1), " 3;[(1;100),(50;100),(50;0)]");
@@ -132,7 +132,7 @@ END_TEST
 
 /* Up for 0.2 s from 1 to 1.2 steps/s at 1 step/s^2 and down again are 0.44 steps, and 2 * 1.2^2 is no finite binary fraction.
  * Here 0.6 s at 1 step/s lie between two such changes, and 0.52 s after them. */
-START_TEST(P7_a_whole_step_is_shown_as_such_behind_two_changes_at_broken_speeds)
+START_TEST(P7_a_whole_step_is_shown_as_such_after_two_changes_at_broken_speeds)
 {
     rig_accept(&rig, '1', "S1 A1 V16000 G+");
     rig_accept_at(&rig, 4 * MS + 200 * MS, "V1");
@@ -168,14 +168,14 @@ static Suite *profile_suite(void)
     tcase_add_checked_fixture(stop, setup, teardown);
     tcase_add_loop_test(stop, R5_an_irrational_way_adds_a_step_from_a_millionth_of_a_step_on, 0, COUNT(irrational));
     tcase_add_loop_test(stop, R5_a_rational_way_adds_a_step_however_little_is_left, 0, COUNT(rational));
-    tcase_add_loop_test(stop, R5_C4_behind_a_change_at_any_speed_a_whole_way_adds_no_step, 1001, 1008);
-    tcase_add_loop_test(stop, R5_C4_behind_a_change_in_a_slow_segment_a_whole_way_adds_no_step_in_a_fast_one, 1001, 1008);
+    tcase_add_loop_test(stop, R5_C4_after_a_change_at_any_speed_a_whole_way_adds_no_step, 1001, 1008);
+    tcase_add_loop_test(stop, R5_C4_after_a_change_in_a_slow_segment_a_whole_way_adds_no_step_in_a_fast_one, 1001, 1008);
     suite_add_tcase(suite, stop);
     TCase *points = tcase_create("points");
     tcase_add_checked_fixture(points, setup, teardown);
-    tcase_add_test(points, P7_no_point_lies_behind_the_last_step_of_a_stop);
+    tcase_add_test(points, P7_no_point_lies_after_the_last_step_of_a_stop);
     tcase_add_loop_test(points, P7_a_point_hardly_below_a_whole_step_is_still_of_that_step, 0, COUNT(below));
-    tcase_add_test(points, P7_a_whole_step_is_shown_as_such_behind_two_changes_at_broken_speeds);
+    tcase_add_test(points, P7_a_whole_step_is_shown_as_such_after_two_changes_at_broken_speeds);
     tcase_add_loop_test(points, P7_R6_a_peak_at_a_whole_step_is_shown_there_after_changes, 0, 80);
     suite_add_tcase(suite, points);
     return suite;

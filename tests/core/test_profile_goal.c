@@ -132,7 +132,7 @@ START_TEST(a_stop_on_the_way_takes_the_deceleration)
 END_TEST
 
 /* The ramp continues as it was, but places on it are kept rounded from here on: that makes the way of a stop no step longer. */
-START_TEST(a_whole_way_of_a_stop_stays_whole_behind_a_goal_on_the_way)
+START_TEST(a_whole_way_of_a_stop_stays_whole_after_a_goal_on_the_way)
 {
     const uint64_t at = 123457 + 2 * (uint64_t)_i;
     ck_assert_int_eq(go(0, PROFILE_FOR_EVER, 0, 900), PROFILE_MOVES);
@@ -265,7 +265,7 @@ int main(void)
     tcase_add_loop_test(goal, a_motion_for_ever_keeps_its_speed, 0, 2);
     tcase_add_loop_test(goal, a_speed_in_the_same_direction_is_taken_on_the_way, 0, 2);
     tcase_add_loop_test(goal, a_stop_on_the_way_takes_the_deceleration, 0, 2);
-    tcase_add_loop_test(goal, a_whole_way_of_a_stop_stays_whole_behind_a_goal_on_the_way, 0, 40);
+    tcase_add_loop_test(goal, a_whole_way_of_a_stop_stays_whole_after_a_goal_on_the_way, 0, 40);
     tcase_add_loop_test(goal, a_place_ahead_is_reached_without_a_turn_from_the_way_of_a_stop_on, 0, 6);
     tcase_add_loop_test(goal, a_place_ahead_must_leave_room_for_the_part_of_a_step_that_is_done, 0, 2);
     tcase_add_loop_test(goal, a_place_ahead_that_is_too_near_is_reached_by_a_turn, 0, 2);

@@ -79,7 +79,7 @@ START_TEST(C2_an_empty_memory_has_no_commands_and_no_labels)
 }
 END_TEST
 
-START_TEST(C2_commands_stand_in_the_order_in_which_they_arrived)
+START_TEST(C2_commands_are_in_the_order_in_which_they_arrived)
 {
     append('F', 16000000);
     append('=', (uint32_t)-2000000000);
@@ -172,7 +172,7 @@ START_TEST(C10_a_label_that_overwrites_another_leaves_only_itself)
 }
 END_TEST
 
-START_TEST(C9_a_block_is_closed_by_a_bracket_behind_it_only)
+START_TEST(C9_a_block_is_closed_by_a_bracket_after_it_only)
 {
     append(']', 0);
     append('[', 0);
@@ -258,7 +258,7 @@ static Suite *program_suite(void)
     tcase_add_checked_fixture(ring, set_up, NULL);
     tcase_set_timeout(ring, 60);
     tcase_add_test(ring, C2_an_empty_memory_has_no_commands_and_no_labels);
-    tcase_add_test(ring, C2_commands_stand_in_the_order_in_which_they_arrived);
+    tcase_add_test(ring, C2_commands_are_in_the_order_in_which_they_arrived);
     tcase_add_test(ring, P9_places_count_from_1_to_700_and_begin_anew);
     tcase_add_test(ring, C10_700_commands_fit_and_the_701st_overwrites_the_oldest);
     tcase_add_test(ring, C1_after_a_reset_nothing_of_the_old_program_is_left);
@@ -276,7 +276,7 @@ static Suite *program_suite(void)
 
     TCase *blocks = tcase_create("blocks");
     tcase_add_checked_fixture(blocks, set_up, NULL);
-    tcase_add_test(blocks, C9_a_block_is_closed_by_a_bracket_behind_it_only);
+    tcase_add_test(blocks, C9_a_block_is_closed_by_a_bracket_after_it_only);
     tcase_add_test(blocks, C9_one_bracket_closes_all_open_blocks);
     tcase_add_test(blocks, C9_a_block_is_closed_across_the_end_of_the_memory);
     suite_add_tcase(suite, blocks);

@@ -80,7 +80,7 @@ START_TEST(R1_the_steepest_ramps_from_the_lowest_speeds_are_exact_at_any_rate)
 END_TEST
 
 /* A pulse on the falling leg is due so short after a tick that the slope of one tick decides. */
-START_TEST(R1_pulses_just_behind_a_tick_are_not_a_tick_early)
+START_TEST(R1_pulses_just_after_a_tick_are_not_a_tick_early)
 {
     static const struct {
         unsigned start_speed;
@@ -149,7 +149,7 @@ static long double time_of(const struct rkm04_ramp *ramp, unsigned j)
     return 2 * way / (w + sqrtl(w * w + 4 * (long double)ramp->slope * way));
 }
 
-START_TEST(R1_blocks_of_pulses_are_right_to_less_than_what_is_looked_at_anew)
+START_TEST(R1_blocks_of_pulses_are_right_to_less_than_what_is_checked_anew)
 {
     unsigned blocks = 0, sizes = 0;
     motion_randomize(8 + (unsigned)_i);
@@ -253,7 +253,7 @@ int main(void)
     tcase_set_timeout(rate, 200);
     tcase_add_loop_test(rate, R1_every_pulse_is_exact_at_any_rate, 0, RATES);
     tcase_add_loop_test(rate, R1_the_steepest_ramps_from_the_lowest_speeds_are_exact_at_any_rate, 0, RATES);
-    tcase_add_test(rate, R1_pulses_just_behind_a_tick_are_not_a_tick_early);
+    tcase_add_test(rate, R1_pulses_just_after_a_tick_are_not_a_tick_early);
     tcase_add_loop_test(rate, R1_a_slope_of_a_million_steps_per_second_squared_is_exact_at_any_rate, 0, RATES);
     suite_add_tcase(suite, rate);
     TCase *block = tcase_create("blocks");
@@ -261,7 +261,7 @@ int main(void)
     tcase_add_loop_test(block, R1_blocks_at_constant_speed_are_full, 0, RATES);
     tcase_add_test(block, R1_blocks_are_as_large_as_the_speed_allows);
     tcase_add_test(block, R1_blocks_begin_at_the_speed_from_which_they_are_right);
-    tcase_add_loop_test(block, R1_blocks_of_pulses_are_right_to_less_than_what_is_looked_at_anew, 0, RATES);
+    tcase_add_loop_test(block, R1_blocks_of_pulses_are_right_to_less_than_what_is_checked_anew, 0, RATES);
     suite_add_tcase(suite, block);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

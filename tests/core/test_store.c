@@ -29,7 +29,7 @@ START_TEST(U5_what_was_stored_for_a_motor_is_loaded_for_that_motor)
 }
 END_TEST
 
-START_TEST(P6_a_program_of_any_length_is_stored_as_it_stands)
+START_TEST(P6_a_program_of_any_length_is_stored_as_it_is)
 {
     struct rkm04_program program;
     for (unsigned count = 0; count <= RKM04_PROGRAM_MAX; count++) {
@@ -330,7 +330,7 @@ static Suite *store_suite(void)
     TCase *plain = add_store_case(suite, "plain", 30);
     tcase_add_test(plain, U5_a_new_flash_holds_four_empty_slots);
     tcase_add_test(plain, U5_what_was_stored_for_a_motor_is_loaded_for_that_motor);
-    tcase_add_test(plain, P6_a_program_of_any_length_is_stored_as_it_stands);
+    tcase_add_test(plain, P6_a_program_of_any_length_is_stored_as_it_is);
     tcase_add_test(plain, P6_a_loaded_program_has_its_labels_and_blocks);
     tcase_add_test(plain, P6_an_empty_program_empties_the_slot);
     tcase_add_test(plain, P6_a_store_leaves_the_memory_and_the_slots_of_the_others_alone);

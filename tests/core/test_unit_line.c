@@ -339,7 +339,7 @@ START_TEST(P10_requests_in_one_piece_are_answered_in_turn)
 }
 END_TEST
 
-START_TEST(P10_a_request_behind_another_is_held_until_its_answer_has_gone)
+START_TEST(P10_a_request_after_another_is_held_until_its_answer_has_gone)
 {
     for (size_t f = 0; rkm04_framings[f]; f++) {
         uint8_t wire[256], got[64];
@@ -385,7 +385,7 @@ START_TEST(P10_a_question_that_had_to_wait_is_answered_with_what_is_true_when_it
 }
 END_TEST
 
-START_TEST(P10_a_broadcast_behind_a_request_waits_too)
+START_TEST(P10_a_broadcast_after_a_request_waits_too)
 {
     uint8_t wire[64], got[64];
     rig_accept(&rig, '1', "W1 W2 W3 W4 W5");
@@ -452,9 +452,9 @@ static Suite *unit_line_suite(void)
     TCase *deferred = tcase_create("deferred");
     tcase_add_checked_fixture(deferred, setup, teardown);
     tcase_add_test(deferred, P10_requests_in_one_piece_are_answered_in_turn);
-    tcase_add_test(deferred, P10_a_request_behind_another_is_held_until_its_answer_has_gone);
+    tcase_add_test(deferred, P10_a_request_after_another_is_held_until_its_answer_has_gone);
     tcase_add_test(deferred, P10_a_question_that_had_to_wait_is_answered_with_what_is_true_when_it_is_taken);
-    tcase_add_test(deferred, P10_a_broadcast_behind_a_request_waits_too);
+    tcase_add_test(deferred, P10_a_broadcast_after_a_request_waits_too);
     tcase_add_test(deferred, P10_frames_for_others_and_broken_frames_do_not_wait);
     suite_add_tcase(suite, deferred);
 

@@ -246,7 +246,7 @@ START_TEST(P2_a_text_with_an_error_covers_its_flag_and_no_command)
 }
 END_TEST
 
-START_TEST(C1_what_stands_before_a_reset_is_not_covered)
+START_TEST(C1_what_is_before_a_reset_is_not_covered)
 {
     set('1', "D \\ H \\ U");
     ck_assert_uint_eq(times(COVERAGE_COMMANDS, "\\"), 1);
@@ -505,7 +505,7 @@ static Suite *coverage_suite(void)
     tcase_add_test(counting, G_and_position_count_by_sign_and_I_by_bit_and_level);
     tcase_add_test(counting, C3_C4_alone_and_in_a_text_are_two_things);
     tcase_add_test(counting, P2_a_text_with_an_error_covers_its_flag_and_no_command);
-    tcase_add_test(counting, C1_what_stands_before_a_reset_is_not_covered);
+    tcase_add_test(counting, C1_what_is_before_a_reset_is_not_covered);
     tcase_add_test(counting, any_spelling_of_the_call_counts_as_the_call);
     tcase_add_test(counting, a_fault_counts_by_its_reason);
     tcase_add_test(counting, a_fault_that_the_readings_exclude_is_not_on_the_list);

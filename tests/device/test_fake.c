@@ -31,7 +31,7 @@ static void expect_seen(const char *expected)
 
 /* ---- Kinds ---------------------------------------------------------------------------------------------------------- */
 
-START_TEST(kind_is_found_by_its_name_behind_those_of_the_product)
+START_TEST(kind_is_found_by_its_name_after_those_of_the_product)
 {
     ck_assert_str_eq(device_kind_at(0)->name, "rkm04");
     ck_assert_ptr_eq(device_kind_named("fake"), &fake_device);
@@ -346,7 +346,7 @@ static Suite *fake_suite(void)
 {
     Suite *suite = suite_create("fake");
     TCase *bus = tcase_create("bus"), *one = tcase_create("one");
-    tcase_add_test(bus, kind_is_found_by_its_name_behind_those_of_the_product);
+    tcase_add_test(bus, kind_is_found_by_its_name_after_those_of_the_product);
     tcase_add_test(bus, bytes_take_their_time_on_the_wires);
     tcase_add_test(bus, units_answer_to_their_address_only);
     tcase_add_checked_fixture(one, begin_one, end);

@@ -249,7 +249,7 @@ static enum scenario_end run_story(const char *text, char **said)
     return came;
 }
 
-START_TEST(scenario_is_a_client_and_looks_at_results)
+START_TEST(scenario_is_a_client_and_checks_results)
 {
     static const char *const head =
         "device: alone\nsteps:\n  - {call: service.open, params: {service: lines}, result: {client: 1}}\n";
@@ -289,7 +289,7 @@ static Suite *fake_service_suite(void)
     tcase_add_test(all, traces_have_what_passes);
     tcase_add_test(all, recording_has_the_clients_and_replays);
     tcase_add_test(all, snapshot_in_a_file_is_restored_among_clients);
-    tcase_add_test(all, scenario_is_a_client_and_looks_at_results);
+    tcase_add_test(all, scenario_is_a_client_and_checks_results);
     suite_add_tcase(suite, all);
     return suite;
 }

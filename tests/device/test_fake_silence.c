@@ -124,7 +124,7 @@ static void begin_watching(bool timed)
     sim_watch(&rig.sim, &messages);
 }
 
-START_TEST(monitor_finds_messages_by_the_silence_behind_them)
+START_TEST(monitor_finds_messages_by_the_silence_after_them)
 {
     begin_watching(true);
     send_request(1, "POS?", 0);
@@ -231,7 +231,7 @@ static Suite *fake_silence_suite(void)
     tcase_add_test(all, silence_passes_where_bytes_take_no_time);
     tcase_add_test(all, gap_ends_a_request_from_the_length_of_the_silence_on);
     tcase_add_test(all, cut_of_time_does_not_matter);
-    tcase_add_test(all, monitor_finds_messages_by_the_silence_behind_them);
+    tcase_add_test(all, monitor_finds_messages_by_the_silence_after_them);
     tcase_add_test(all, other_side_ends_a_message_too);
     tcase_add_test(all, message_at_the_end_is_whole_before_its_silence_is_over);
     tcase_add_test(all, snapshot_in_the_middle_of_a_request_continues_with_it);

@@ -164,7 +164,7 @@ START_TEST(a_flipped_byte_to_the_units_spoils_the_frame)
 }
 END_TEST
 
-START_TEST(a_byte_to_the_units_comes_twice_and_those_behind_it_wait)
+START_TEST(a_byte_to_the_units_comes_twice_and_those_after_it_wait)
 {
     version_with(true, "{'kind': 'duplicate', 'direction': 'to_units', 'skip': 3, 'count': 1}");
     ck_assert_uint_eq(rig.host.count, 0);
@@ -178,7 +178,7 @@ START_TEST(a_byte_to_the_units_comes_twice_and_those_behind_it_wait)
 }
 END_TEST
 
-START_TEST(bytes_of_the_host_behind_a_gap_are_not_moved_by_one_that_comes_twice)
+START_TEST(bytes_of_the_host_after_a_gap_are_not_moved_by_one_that_comes_twice)
 {
     rig_begin(true, 1);
     inject("{'kind': 'insert', 'byte': 33, 'count': 1}");
@@ -217,7 +217,7 @@ END_TEST
 
 /* ---- Echo ----------------------------------------------------------------------------------------------------------- */
 
-START_TEST(with_local_echo_the_host_hears_its_request_before_the_answer)
+START_TEST(with_local_echo_the_host_receives_its_request_before_the_answer)
 {
     version_with(_i, "{'kind': 'echo'}");
     ck_assert_uint_eq(rig.host.count, REQUEST + ANSWER);
@@ -447,11 +447,11 @@ int main(void)
     tcase_add_test(bytes, all_that_can_happen_to_a_byte_can_happen_to_one);
     tcase_add_loop_test(bytes, a_byte_dropped_to_the_units_leaves_a_gap_and_the_request_is_not_understood, 0, 2);
     tcase_add_loop_test(bytes, a_flipped_byte_to_the_units_spoils_the_frame, 0, 2);
-    tcase_add_test(bytes, a_byte_to_the_units_comes_twice_and_those_behind_it_wait);
-    tcase_add_test(bytes, bytes_of_the_host_behind_a_gap_are_not_moved_by_one_that_comes_twice);
+    tcase_add_test(bytes, a_byte_to_the_units_comes_twice_and_those_after_it_wait);
+    tcase_add_test(bytes, bytes_of_the_host_after_a_gap_are_not_moved_by_one_that_comes_twice);
     tcase_add_loop_test(bytes, a_flag_inserted_into_a_request_spoils_it_and_before_it_does_no_harm, 0, 2);
     tcase_add_loop_test(bytes, the_answers_of_one_unit_suffer_alone, 0, 2);
-    tcase_add_loop_test(line, with_local_echo_the_host_hears_its_request_before_the_answer, 0, 2);
+    tcase_add_loop_test(line, with_local_echo_the_host_receives_its_request_before_the_answer, 0, 2);
     tcase_add_loop_test(line, an_echo_may_end_after_some_bytes, 0, 2);
     tcase_add_test(line, a_break_spoils_the_request_under_way_and_is_one_framing_error);
     tcase_add_test(line, a_break_cuts_an_answer_short);

@@ -379,7 +379,7 @@ END_TEST
 
 /* The manual has lost the listing; this one follows its prose. The last segment, 2000 steps, takes 1880 at 500 and 0.4 s down:
  * it begins with the last pulse of the fifth, 16 000, at 24.469167 - 3.76 - 0.4 s. */
-START_TEST(M9_9_output_5_is_on_from_the_last_segment_to_500_ms_behind_the_motion)
+START_TEST(M9_9_output_5_is_on_from_the_last_segment_to_500_ms_after_the_motion)
 {
     rig_accept(&rig, '1',
                "\\\nS100 T55\nV500 A2000 F2000 Y\nV2000 Y\nV500 F5000 Y\nV3000 A1000 Y\nV1500 F2000 Y\nV500 Y\nR W500 C05");
@@ -441,7 +441,7 @@ static Suite *examples_suite(void)
 
     TCase *compound = tcase_create("compound");
     tcase_add_checked_fixture(compound, setup, teardown);
-    tcase_add_test(compound, M9_9_output_5_is_on_from_the_last_segment_to_500_ms_behind_the_motion);
+    tcase_add_test(compound, M9_9_output_5_is_on_from_the_last_segment_to_500_ms_after_the_motion);
     suite_add_tcase(suite, compound);
 
     return suite;

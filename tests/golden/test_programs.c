@@ -260,7 +260,7 @@ START_TEST(M7_37_input_1_at_0_calls_the_subroutine_back_first)
 }
 END_TEST
 
-START_TEST(M7_38_behind_the_call_the_program_waits_for_input_3)
+START_TEST(M7_38_after_the_call_the_program_waits_for_input_3)
 {
     rig_input_at(&rig, 0, 1, true);
     rig_input_at(&rig, 0, 3, true);
@@ -349,7 +349,7 @@ static Suite *programs_suite(void)
     tcase_add_test(jumps, M7_16_a_jump_back_repeats_for_ever);
     tcase_add_test(jumps, M7_37_input_1_at_1_calls_the_subroutine_forward_first);
     tcase_add_test(jumps, M7_37_input_1_at_0_calls_the_subroutine_back_first);
-    tcase_add_test(jumps, M7_38_behind_the_call_the_program_waits_for_input_3);
+    tcase_add_test(jumps, M7_38_after_the_call_the_program_waits_for_input_3);
     suite_add_tcase(suite, jumps);
 
     TCase *compound = tcase_create("compound");

@@ -132,7 +132,7 @@ static void assert_heard(struct line_settings from, struct line_settings to, uin
     ck_assert_uint_eq(receiver.framing_errors, framing_errors);
 }
 
-START_TEST(U7_equal_ends_hear_what_is_said)
+START_TEST(U7_equal_ends_receive_what_is_sent)
 {
     static const uint32_t speeds[] = {50, 9600, 19200, 31250, 115200};
     static const char parities[] = "NEOMS";
@@ -181,7 +181,7 @@ START_TEST(silence_takes_no_time_from_what_follows)
 END_TEST
 
 /* Each bit is sampled twice; the first sample is lost in the long start bit: 0 b0 b0 b1 b1 b2 b2 b3, b3 is taken as stop bit. */
-START_TEST(U7_a_client_at_half_the_speed_is_heard_as_garbage)
+START_TEST(U7_a_client_at_half_the_speed_is_received_as_garbage)
 {
     assert_heard(at_9600, at_19200, 0x00, 0, "", 1);
     assert_heard(at_9600, at_19200, 0xFF, 1, "\xFE", 0);
@@ -192,7 +192,7 @@ START_TEST(U7_a_client_at_half_the_speed_is_heard_as_garbage)
 END_TEST
 
 /* Every other bit is seen: the start bit is b0, then come b2, b4, b6 and the stop bit. */
-START_TEST(U7_a_client_at_twice_the_speed_is_heard_as_garbage_or_not_at_all)
+START_TEST(U7_a_client_at_twice_the_speed_is_received_as_garbage_or_not_at_all)
 {
     assert_heard(at_38400, at_19200, 0x00, 1, "\xF8", 0);
     assert_heard(at_38400, at_19200, 0x54, 1, "\xFF", 0);
@@ -210,7 +210,7 @@ START_TEST(U7_far_from_the_speed_there_is_silence)
 }
 END_TEST
 
-START_TEST(a_line_that_is_hung_up_says_and_hears_nothing)
+START_TEST(a_line_that_is_hung_up_sends_and_receives_nothing)
 {
     const struct line_settings hung_up = {0, 8, 'N', 2};
     assert_heard(hung_up, at_19200, 'A', 0, "", 0);
@@ -229,7 +229,7 @@ START_TEST(U7_parity_of_the_client_is_taken_as_the_top_bit_or_the_stop_bit)
 }
 END_TEST
 
-START_TEST(a_client_on_Linux_hears_characters_with_a_wrong_stop_bit_too)
+START_TEST(a_client_on_Linux_receives_characters_with_a_wrong_stop_bit_too)
 {
     const uint8_t zero = 0x00;
     hear_all(at_19200, line_settings_of(38400, 8, 'N', 1), true, &zero, 1);
@@ -298,7 +298,7 @@ static size_t reference(const struct row *row, uint8_t *out)
     return found;
 }
 
-START_TEST(any_bytes_at_any_two_speeds_are_heard_as_a_second_receiver_hears_them)
+START_TEST(any_bytes_at_any_two_speeds_are_received_as_a_second_receiver_receives_them)
 {
     static const uint32_t speeds[] = {300, 1200, 4800, 9600, 14400, 18000, 18700, 19200, 19700, 20400, 31250, 38400, 57600,
                                       115200};
@@ -375,17 +375,17 @@ static Suite *line_settings_suite(void)
     tcase_add_test(settings, settings_are_written_as_everybody_writes_them);
     tcase_add_test(settings, U7_a_difference_is_told_once_and_again_when_it_changes);
     suite_add_tcase(suite, settings);
-    tcase_add_test(hearing, U7_equal_ends_hear_what_is_said);
+    tcase_add_test(hearing, U7_equal_ends_receive_what_is_sent);
     tcase_add_test(hearing, a_byte_begins_when_it_is_said_or_when_the_line_is_free);
     tcase_add_test(hearing, silence_takes_no_time_from_what_follows);
-    tcase_add_test(hearing, U7_a_client_at_half_the_speed_is_heard_as_garbage);
-    tcase_add_test(hearing, U7_a_client_at_twice_the_speed_is_heard_as_garbage_or_not_at_all);
+    tcase_add_test(hearing, U7_a_client_at_half_the_speed_is_received_as_garbage);
+    tcase_add_test(hearing, U7_a_client_at_twice_the_speed_is_received_as_garbage_or_not_at_all);
     tcase_add_test(hearing, U7_far_from_the_speed_there_is_silence);
-    tcase_add_test(hearing, a_line_that_is_hung_up_says_and_hears_nothing);
+    tcase_add_test(hearing, a_line_that_is_hung_up_sends_and_receives_nothing);
     tcase_add_test(hearing, U7_parity_of_the_client_is_taken_as_the_top_bit_or_the_stop_bit);
-    tcase_add_test(hearing, a_client_on_Linux_hears_characters_with_a_wrong_stop_bit_too);
+    tcase_add_test(hearing, a_client_on_Linux_receives_characters_with_a_wrong_stop_bit_too);
     tcase_add_test(hearing, only_the_ratio_of_the_speeds_matters);
-    tcase_add_test(hearing, any_bytes_at_any_two_speeds_are_heard_as_a_second_receiver_hears_them);
+    tcase_add_test(hearing, any_bytes_at_any_two_speeds_are_received_as_a_second_receiver_receives_them);
     tcase_add_test(hearing, U7_two_per_cent_off_the_speed_does_no_harm);
     tcase_add_test(hearing, U7_a_unit_obeys_a_client_of_its_own_speed_only);
     tcase_set_timeout(hearing, 60);

@@ -261,7 +261,7 @@ START_TEST(a_client_that_comes_again_at_once_is_not_refused_by_itself)
 }
 END_TEST
 
-START_TEST(a_client_that_was_torn_away_behind_much_gives_way_at_once)
+START_TEST(a_client_that_was_torn_away_after_much_gives_way_at_once)
 {
     struct linger now = {.l_onoff = 1, .l_linger = 0};
     uint8_t much[20000] = {0};
@@ -513,7 +513,7 @@ int main(void)
     tcase_add_loop_test(clients, a_client_that_is_torn_away_leaves_the_line_to_the_next, 0, 2);
     tcase_add_loop_test(clients, a_client_that_has_sent_much_and_gone_gives_way_at_once, 0, 2);
     tcase_add_loop_test(clients, a_client_that_comes_again_at_once_is_not_refused_by_itself, 0, 2);
-    tcase_add_test(clients, a_client_that_was_torn_away_behind_much_gives_way_at_once);
+    tcase_add_test(clients, a_client_that_was_torn_away_after_much_gives_way_at_once);
     tcase_add_test(clients, a_crowd_that_is_sent_away_and_stays_delays_nobody);
     tcase_add_test(clients, closing_the_line_lets_go_of_everybody);
     suite_add_tcase(suite, clients);

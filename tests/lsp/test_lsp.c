@@ -135,7 +135,7 @@ START_TEST(positions_count_utf16_units)
 }
 END_TEST
 
-START_TEST(positions_inside_and_behind_are_clipped)
+START_TEST(positions_inside_and_after_are_clipped)
 {
     initialize();
     open_text("{😀}\\nR");
@@ -160,7 +160,7 @@ START_TEST(lines_end_with_any_of_three)
 }
 END_TEST
 
-START_TEST(diagnostics_far_behind_have_the_right_place)
+START_TEST(diagnostics_far_after_have_the_right_place)
 {
     char text[4000] = "", *at = text;
     initialize();
@@ -419,7 +419,7 @@ START_TEST(a_text_that_is_too_long_is_not_checked)
 }
 END_TEST
 
-START_TEST(a_document_too_many_is_not_looked_at)
+START_TEST(a_document_too_many_is_not_checked)
 {
     char message[300];
     initialize();
@@ -511,8 +511,8 @@ int main(void)
 {
     Suite *suite = suite_create("lsp");
     add_case(suite, "positions",
-             (const TTest *const[]){positions_count_utf16_units, positions_inside_and_behind_are_clipped,
-                                    lines_end_with_any_of_three, diagnostics_far_behind_have_the_right_place,
+             (const TTest *const[]){positions_count_utf16_units, positions_inside_and_after_are_clipped,
+                                    lines_end_with_any_of_three, diagnostics_far_after_have_the_right_place,
                                     half_a_surrogate_pair_is_a_character, random_edits_give_the_text_of_the_editor, NULL});
     add_case(suite, "answers",
              (const TTest *const[]){labels_are_found_and_renamed, a_label_is_not_renamed_into_one_that_is_jumped_to,
@@ -522,7 +522,7 @@ int main(void)
     add_case(suite, "refused",
              (const TTest *const[]){requests_have_their_order, wrong_parameters_are_named,
                                     an_edit_that_is_none_makes_the_text_unknown_until_it_is_opened_again,
-                                    a_text_that_is_too_long_is_not_checked, a_document_too_many_is_not_looked_at, NULL});
+                                    a_text_that_is_too_long_is_not_checked, a_document_too_many_is_not_checked, NULL});
     add_case(suite, "frames",
              (const TTest *const[]){frames_come_in_any_pieces, a_frame_too_long_is_skipped, what_is_no_frame_ends_the_stream,
                                     NULL});

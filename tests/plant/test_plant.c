@@ -117,7 +117,7 @@ START_TEST(U8_a_reset_clears_the_counter_and_leaves_the_axis_where_it_is)
 }
 END_TEST
 
-START_TEST(a_motor_without_power_stands)
+START_TEST(a_motor_without_power_does_not_move)
 {
     begin("motors: {1: }");
     plant_rig_program(&rig, 1, '1', "S100 V100 F500 R");
@@ -312,7 +312,7 @@ START_TEST(without_a_plant_inputs_are_those_set_by_hand_again)
 }
 END_TEST
 
-START_TEST(switches_of_a_turntable_look_at_the_angle)
+START_TEST(switches_of_a_turntable_depend_on_the_angle)
 {
     begin("motors: {1: {turn: 100}}\n"
           "switches: [{input: 01, motor: 1, between: [98, 1]}, {input: 02, motor: 1, at_least: 50}]");
@@ -494,7 +494,7 @@ static Suite *plant_suite(void)
     tcase_add_test(motors, the_offset_counts_from_the_counter_when_the_plant_comes);
     tcase_add_test(motors, motors_that_the_plant_does_not_name_have_no_true_position);
     tcase_add_test(motors, U8_a_reset_clears_the_counter_and_leaves_the_axis_where_it_is);
-    tcase_add_test(motors, a_motor_without_power_stands);
+    tcase_add_test(motors, a_motor_without_power_does_not_move);
     tcase_add_test(motors, an_end_stop_costs_the_steps_that_go_against_it);
     tcase_add_test(motors, a_missing_lead_means_that_the_motor_does_not_turn);
     tcase_add_test(motors, a_jam_holds_the_motor_from_a_time_to_a_time);
@@ -512,7 +512,7 @@ static Suite *plant_suite(void)
     tcase_add_test(switches, of_several_switches_at_an_input_one_is_enough);
     tcase_add_test(switches, other_inputs_stay_as_a_hand_has_set_them);
     tcase_add_test(switches, without_a_plant_inputs_are_those_set_by_hand_again);
-    tcase_add_test(switches, switches_of_a_turntable_look_at_the_angle);
+    tcase_add_test(switches, switches_of_a_turntable_depend_on_the_angle);
     tcase_add_test(switches, hysteresis_of_a_turntable_reaches_across_zero);
     tcase_add_test(switches, a_switch_that_bounces_changes_several_times_and_then_rests);
     tcase_add_test(switches, a_wait_for_an_input_sees_a_bounce_that_lasts_into_a_slot);

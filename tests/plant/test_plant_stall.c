@@ -140,7 +140,7 @@ END_TEST
 
 /* ---- Afterwards ----------------------------------------------------------------------------------------------------- */
 
-START_TEST(a_stalled_motor_stands_until_pulses_come_slowly_enough)
+START_TEST(a_stalled_motor_stops_until_pulses_come_slowly_enough)
 {
     static const char plant[] = STALL("{start: 500, limit: [{speed: 1500, acceleration: 20000}]}");
     int64_t steps = lost(plant, "S100 V3000 A10000 F2000 R");
@@ -199,7 +199,7 @@ static Suite *plant_stall_suite(void)
 
     TCase *afterwards = tcase_create("afterwards");
     tcase_add_checked_fixture(afterwards, NULL, teardown);
-    tcase_add_test(afterwards, a_stalled_motor_stands_until_pulses_come_slowly_enough);
+    tcase_add_test(afterwards, a_stalled_motor_stops_until_pulses_come_slowly_enough);
     tcase_add_test(afterwards, a_motor_that_was_jammed_at_speed_stays_behind_when_the_jam_ends);
     tcase_add_test(afterwards, a_turn_of_direction_counts_as_a_new_start);
     suite_add_tcase(suite, afterwards);

@@ -123,7 +123,7 @@ START_TEST(U7_bytes_take_their_time_unless_baud_is_0)
 }
 END_TEST
 
-START_TEST(a_program_may_stand_in_a_file_beside_the_scenario)
+START_TEST(a_program_may_be_in_a_file_beside_the_scenario)
 {
     file_path = "folder/there.rks";
     file_text = "F7 R\n";
@@ -202,7 +202,7 @@ START_TEST(any_method_that_acts_at_once_can_be_called)
 }
 END_TEST
 
-START_TEST(pulses_are_counted_by_direction_and_since_the_last_look)
+START_TEST(pulses_are_counted_by_direction_and_since_the_last_expectation)
 {
     static const char text[] = QUIET "  - set: 'F30 R B10 R'\n  - wait: {motor: 1, state: idle}\n"
                                      "  - pulses: {motor: 1, count: 40, forward: {\">\": 29, \"<=\": 30}, back: 10}\n"
@@ -247,7 +247,7 @@ START_TEST(a_step_may_have_its_time)
 }
 END_TEST
 
-START_TEST(what_must_hold_always_is_looked_at_all_the_time)
+START_TEST(what_must_hold_always_is_checked_all_the_time)
 {
     expect_fail("baud: 0\nalways: [{motor: 1, position: {\"<\": 50}}, {idle: false}]\nsteps:\n  - {set: 'W1'}\n", 2,
                 "always idle == false", "idle true");
@@ -527,7 +527,7 @@ static TCase *steps_case(void)
     TCase *steps = tcase_create("steps");
     tcase_add_test(steps, a_program_runs_to_its_end);
     tcase_add_test(steps, U7_bytes_take_their_time_unless_baud_is_0);
-    tcase_add_test(steps, a_program_may_stand_in_a_file_beside_the_scenario);
+    tcase_add_test(steps, a_program_may_be_in_a_file_beside_the_scenario);
     tcase_add_test(steps, answers_are_compared_byte_by_byte);
     tcase_add_test(steps, P1_a_program_must_be_taken_unless_another_flag_is_expected);
     tcase_add_test(steps, L3_what_is_sent_to_all_is_not_answered);
@@ -536,7 +536,7 @@ static TCase *steps_case(void)
     tcase_add_test(steps, inputs_power_and_reset_act_at_once);
     tcase_add_test(steps, inputs_at_power_up_are_those_of_all_units);
     tcase_add_test(steps, any_method_that_acts_at_once_can_be_called);
-    tcase_add_test(steps, pulses_are_counted_by_direction_and_since_the_last_look);
+    tcase_add_test(steps, pulses_are_counted_by_direction_and_since_the_last_expectation);
     return steps;
 }
 
@@ -546,7 +546,7 @@ static TCase *time_case(void)
     tcase_add_test(time, a_wait_has_an_end_and_a_beginning);
     tcase_add_test(time, what_stays_has_to_stay_at_every_tick);
     tcase_add_test(time, a_step_may_have_its_time);
-    tcase_add_test(time, what_must_hold_always_is_looked_at_all_the_time);
+    tcase_add_test(time, what_must_hold_always_is_checked_all_the_time);
     tcase_add_test(time, C7_a_fault_fails_unless_it_is_allowed);
     tcase_add_test(time, stimuli_come_at_times_and_on_conditions_whatever_the_steps_do);
     tcase_add_test(time, a_stimulus_that_never_acts_is_a_failure);

@@ -96,7 +96,7 @@ static const char *complaint_about(const char *address)
 
 /* ---- The service manager ------------------------------------------------------------------------------------------ */
 
-START_TEST(a_manager_at_a_path_hears_that_the_emulator_is_ready_and_then_that_it_ends)
+START_TEST(a_manager_at_a_path_is_told_that_the_emulator_is_ready_and_then_that_it_ends)
 {
     listen_at(path, strlen(path) + 1);
     setenv("NOTIFY_SOCKET", path, 1);
@@ -108,7 +108,7 @@ START_TEST(a_manager_at_a_path_hears_that_the_emulator_is_ready_and_then_that_it
 }
 END_TEST
 
-START_TEST(a_manager_without_a_file_hears_it_too)
+START_TEST(a_manager_without_a_file_is_told_too)
 {
     char name[sizeof path];
     snprintf(name, sizeof name, "@%s", path + 1);
@@ -161,7 +161,7 @@ START_TEST(a_manager_that_is_not_there_is_reported_and_survived)
 }
 END_TEST
 
-START_TEST(the_longest_path_is_heard_and_a_longer_one_is_reported)
+START_TEST(the_longest_path_is_used_and_a_longer_one_is_reported)
 {
     char name[200] = "/";
     const size_t most = sizeof ((struct sockaddr_un *)NULL)->sun_path;
@@ -291,13 +291,13 @@ int main(void)
     Suite *suite = suite_create("notify");
     TCase *service = tcase_create("manager");
     tcase_add_checked_fixture(service, start, end);
-    tcase_add_test(service, a_manager_at_a_path_hears_that_the_emulator_is_ready_and_then_that_it_ends);
-    tcase_add_test(service, a_manager_without_a_file_hears_it_too);
+    tcase_add_test(service, a_manager_at_a_path_is_told_that_the_emulator_is_ready_and_then_that_it_ends);
+    tcase_add_test(service, a_manager_without_a_file_is_told_too);
     tcase_add_test(service, the_status_is_one_line);
     tcase_add_test(service, an_endless_status_is_cut_and_the_rest_arrives);
     tcase_add_test(service, without_a_manager_nothing_is_said);
     tcase_add_test(service, a_manager_that_is_not_there_is_reported_and_survived);
-    tcase_add_test(service, the_longest_path_is_heard_and_a_longer_one_is_reported);
+    tcase_add_test(service, the_longest_path_is_used_and_a_longer_one_is_reported);
     tcase_add_test(service, a_manager_that_does_not_listen_does_not_stop_the_emulator);
     suite_add_tcase(suite, service);
     TCase *descriptor = tcase_create("descriptor");

@@ -167,7 +167,7 @@ START_TEST(K3_the_same_session_is_told_the_same_whatever_the_clock_does)
 }
 END_TEST
 
-START_TEST(time_does_not_go_on_by_looking)
+START_TEST(time_does_not_pass_by_reading_it)
 {
     one = line(true, 1, WATCH_ALL);
     sim_advance(&one->sim, 5000);
@@ -321,7 +321,7 @@ int main(void)
     TCase *tcase = tcase_create("time");
     tcase_set_timeout(tcase, 200);
     tcase_add_test(tcase, K3_the_same_session_is_told_the_same_whatever_the_clock_does);
-    tcase_add_test(tcase, time_does_not_go_on_by_looking);
+    tcase_add_test(tcase, time_does_not_pass_by_reading_it);
     tcase_add_test(tcase, bytes_that_are_under_way_arrive_before_the_line_takes_no_time);
     suite_add_tcase(suite, tcase);
     tcase = tcase_create("units");

@@ -44,7 +44,7 @@ test_K3_a_session_in_steps_is_the_same_as_in_virtual_time() { under_clock steppe
 # tick: where the line's time stands.
 tick() { ctrl state --json | sed 's/.*"t_us": *\([0-9]*\).*/\1/'; }
 
-test_stepped_time_stands_and_requests_are_answered_at_that_instant() {
+test_stepped_time_is_stopped_and_requests_are_answered_at_that_instant() {
     serve bus --clock stepped
     exits 0 ctl bus set 'F100 R'
     exits 0 ctl bus position

@@ -316,7 +316,7 @@ def test_a_clock_that_is_being_advanced_cannot_be_changed(emulator):
     assert other.call("clock", clock="max")["clock"] == "max"
 
 
-def test_what_stands_behind_an_advance_waits_for_it(emulator):
+def test_what_follows_an_advance_waits_for_it(emulator):
     client = emulator.client()
     emulator.program(1, "S100 F1000 R")
     requests = b""

@@ -228,7 +228,7 @@ test_the_clock_is_shown_and_set() {
     holds "$complained" stepped "the message says what there is"
 }
 
-test_traces_lie_where_the_caller_stands() {
+test_traces_are_in_the_folder_of_the_caller() {
     local here=$folder/here
     emulator
     mkdir "$here"

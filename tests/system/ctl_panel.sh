@@ -41,7 +41,7 @@ test_the_panel_shows_what_changes() {
         "see: VAR   ○  ○" keys:q status:0
 }
 
-test_the_picture_goes_on_while_one_looks() {
+test_the_picture_is_updated_while_it_is_shown() {
     emulator
     exits 0 "$RKMCTL" clock real
     start mover "$RKMCTL" -p "$folder/bus" set 'L255 F200 R W300 B200 R W300 E'

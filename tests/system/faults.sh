@@ -96,7 +96,7 @@ test_an_answer_ends_after_some_bytes() {
     silent "the rest"
 }
 
-test_a_two_wire_adapter_lets_the_host_hear_itself() {
+test_a_two_wire_adapter_lets_the_host_receive_its_own_bytes() {
     begin
     fault echo
     dialogue 3 "$unknown" "$unknown $answer" "echo and answer"

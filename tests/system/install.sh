@@ -42,7 +42,7 @@ END
     same "$("$RKM04" --version)" "rkm04 $(pkg-config --modversion rkm04)" "version in rkm04.pc"
 }
 
-test_every_public_header_stands_on_its_own() {
+test_every_public_header_compiles_alone() {
     install_there
     local header
     for header in "$staged"/include/rkm04/*.h; do

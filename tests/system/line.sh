@@ -44,7 +44,7 @@ test_U7_on_a_strict_line_a_client_with_another_speed_is_not_understood() {
 
 reported() { [[ $(said bus 'client is 9600 8N1, unit is 19200 8N1') == 1 ]]; }
 
-test_U7_on_a_strict_line_a_faster_listener_hears_garbage() {
+test_U7_on_a_strict_line_a_faster_listener_receives_garbage() {
     serve bus --strict-line --turnaround 1000000
     exec 3<>"$folder/bus"
     say_bytes 3 "$request"

@@ -299,7 +299,7 @@ test_a_snapshot_replaces_regular_files_alone() {
     exits 0 control snapshot file=target
 }
 
-test_a_snapshot_leaves_what_stands_beside_it() {
+test_a_snapshot_leaves_the_files_beside_it() {
     cd "$folder" || exit 1
     serve bus --record s.record
     printf 'precious' | tee x.rkm.new x.rkm.tmp x.rkm~ >.x.rkm

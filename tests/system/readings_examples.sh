@@ -37,7 +37,7 @@ test_another_device_has_no_readings() {
     depends cib-feeder "passes under 1 of 1"
 }
 
-test_every_example_stands_here() {
+test_every_example_is_tested_here() {
     local file
     for file in $(cd "$examples" && grep -l '^steps:' ./*.yaml manual/*.yaml | sed 's|^\./||; s|\.yaml$||'); do
         grep -q "depends $file " "$0" || fail "$file is not here"

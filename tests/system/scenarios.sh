@@ -130,7 +130,7 @@ for case in root[0].findall("testcase"):
 PYTHON
 }
 
-test_junit_is_well_formed_whatever_stands_in_the_names() {
+test_junit_is_well_formed_whatever_the_names_are() {
     scenarios
     printf 'name: "\\x01 ]]> \\u00e9 \\uD7FF \\u2028 <&>"\nsteps:\n  - {message: "01", answer: "07 \\"<&>\\""}\n' >odd.yaml
     cp good.yaml "$(printf 'na\xffme.yaml')"

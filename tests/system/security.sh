@@ -70,7 +70,7 @@ test_a_pipe_in_place_of_a_lock_file_makes_nobody_wait() {
     refused "the link" "$folder/bus.lock" "$RKM04" serve --link "$folder/bus"
 }
 
-test_a_flash_image_is_not_made_behind_a_dangling_link() {
+test_a_flash_image_is_not_made_after_a_dangling_link() {
     ln -s "$folder/elsewhere" "$folder/unit.flash"
     refused "the flash image" "$folder/unit.flash" "$RKM04" serve --link "$folder/bus" --flash "$folder/unit.flash"
     [[ ! -e $folder/elsewhere ]] || fail "it was made where the link leads"
@@ -141,7 +141,7 @@ test_TCP_listens_to_this_machine_unless_asked() {
     same 2 "$(wc -l <"$folder/listening")" "listeners at all"
 }
 
-test_a_plant_without_end_or_with_more_behind_its_text_is_refused() {
+test_a_plant_without_end_or_with_more_after_its_text_is_refused() {
     refused "a plant without end" "longer than 1 MiB" "$RKM04" serve --link "$folder/bus" --plant /dev/zero
     printf 'motors: {}\n\0more' >"$folder/plant.yaml"
     refused "a plant with a 0 in it" "character 0" "$RKM04" serve --link "$folder/bus" --plant "$folder/plant.yaml"

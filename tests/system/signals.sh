@@ -33,7 +33,7 @@ test_signals_that_the_parent_has_blocked_end_the_client() {
 }
 
 # When the first files are there, and the last of many are not.
-test_a_signal_during_the_start_leaves_nothing_behind() {
+test_a_signal_during_the_start_leaves_no_files() {
     local signal
     mkdir "$folder/many"
     for signal in HUP TERM INT; do

@@ -39,7 +39,7 @@ test_the_client_may_close_and_connect_again_at_will() {
     done
 }
 
-test_an_IPv6_address_stands_in_brackets() {
+test_an_IPv6_address_is_in_brackets() {
     [[ -e /proc/net/if_inet6 ]] && grep -q '^0*1 ' /proc/net/if_inet6 || return 0 # this machine has none
     serve_tcp --tcp '[::1]:0'
     [[ $address =~ ^\[::1\]:[1-9][0-9]*$ ]] || fail "the address: '$address'"
@@ -130,7 +130,7 @@ test_a_client_that_is_killed_leaves_the_line_to_the_next() {
     done
 }
 
-test_a_client_hears_that_the_emulator_has_ended() {
+test_a_client_is_told_that_the_emulator_has_ended() {
     local unit
     serve_tcp --tcp 0
     unit=$started

@@ -21,7 +21,7 @@ test_a_dialogue_can_be_followed_while_it_lasts() {
     holds "$(told)" "4 Get Position m1 -> 50" "the log"
 }
 
-test_refusals_and_what_was_dropped_stand_in_it_with_the_reason() {
+test_refusals_and_what_was_dropped_are_in_it_with_the_reason() {
     serve bus --node 3,5 --wire "$folder/bus.log"
     exec 3<>"$folder/bus"
     say_bytes 3 "7E 03 00 02 31 66 35 5D 49 7E" # f5

@@ -172,7 +172,7 @@ START_TEST(flags_have_many_names)
 }
 END_TEST
 
-START_TEST(every_unknown_key_is_reported_where_it_stands)
+START_TEST(every_unknown_key_is_reported_with_its_place)
 {
     static const char *const names[] = {"from", "to", "at", NULL};
     struct config_tree *tree = read_well("form: 1\nto:\n  2\nta: 3\n");
@@ -315,7 +315,7 @@ static Suite *config_tree_suite(void)
     tcase_add_test(reading, a_long_text_is_cut_in_messages);
     tcase_add_test(reading, times_have_a_unit);
     tcase_add_test(reading, flags_have_many_names);
-    tcase_add_test(reading, every_unknown_key_is_reported_where_it_stands);
+    tcase_add_test(reading, every_unknown_key_is_reported_with_its_place);
     tcase_add_test(reading, as_JSON_whole_numbers_and_truth_are_themselves_and_the_rest_is_text);
     suite_add_tcase(suite, reading);
 

@@ -126,7 +126,7 @@ START_TEST(U4_each_of_sixteen_units_answers_for_itself_alone)
 }
 END_TEST
 
-START_TEST(L1_answers_of_others_are_heard_and_not_obeyed)
+START_TEST(L1_answers_of_others_are_received_and_not_obeyed)
 {
     begin(three);
     line_set(2, '1', "F100 R", 0);
@@ -235,7 +235,7 @@ START_TEST(a_request_that_begins_during_an_answer_collides_with_it)
 }
 END_TEST
 
-START_TEST(a_request_right_behind_another_one_collides_with_its_answer)
+START_TEST(a_request_right_after_another_one_collides_with_its_answer)
 {
     ask_too_early(0);
     ck_assert_uint_eq(line_answers(2, 1), 0);
@@ -363,7 +363,7 @@ START_TEST(next_events_count_in_the_time_of_the_line)
 }
 END_TEST
 
-START_TEST(with_an_echo_the_host_hears_itself)
+START_TEST(with_an_echo_the_host_receives_its_own_bytes)
 {
     struct segment_config config = line_timed();
     config.echo = true;
@@ -515,7 +515,7 @@ int main(void)
     tcase_add_loop_test(times, the_answer_begins_when_the_turnaround_is_over, 0, 5);
     TCase *addresses = add_case(suite, "addresses");
     tcase_add_test(addresses, U4_each_of_sixteen_units_answers_for_itself_alone);
-    tcase_add_test(addresses, L1_answers_of_others_are_heard_and_not_obeyed);
+    tcase_add_test(addresses, L1_answers_of_others_are_received_and_not_obeyed);
     tcase_add_test(addresses, L3_a_broadcast_is_obeyed_by_all_and_answered_by_none);
     tcase_add_test(addresses, L3_a_request_for_nobody_is_answered_by_nobody);
     TCase *collisions = add_case(suite, "collisions");
@@ -523,7 +523,7 @@ int main(void)
     tcase_add_test(collisions, two_units_of_one_address_with_different_answers_destroy_them);
     tcase_add_test(collisions, two_units_of_one_address_with_different_programs_destroy_their_answers);
     tcase_add_loop_test(collisions, a_request_that_begins_during_an_answer_collides_with_it, 0, 60);
-    tcase_add_test(collisions, a_request_right_behind_another_one_collides_with_its_answer);
+    tcase_add_test(collisions, a_request_right_after_another_one_collides_with_its_answer);
     tcase_add_test(collisions, a_request_after_the_last_byte_of_an_answer_does_not_collide);
     TCase *waiting = add_case(suite, "waiting");
     tcase_add_test(waiting, P10_a_request_during_the_turnaround_is_taken_after_the_answer);
@@ -535,7 +535,7 @@ int main(void)
     tcase_add_test(power, U8_power_up_begins_anew_with_a_time_of_its_own);
     tcase_add_test(power, next_events_count_in_the_time_of_the_line);
     TCase *host = add_case(suite, "master");
-    tcase_add_loop_test(host, with_an_echo_the_host_hears_itself, 0, 2);
+    tcase_add_loop_test(host, with_an_echo_the_host_receives_its_own_bytes, 0, 2);
     tcase_add_test(host, a_break_spoils_what_is_sent_meanwhile);
     tcase_add_test(host, a_break_that_ends_while_bytes_take_no_time_is_over);
     tcase_add_test(host, a_break_that_begins_while_bytes_take_no_time_is_there_when_they_do);

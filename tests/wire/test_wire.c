@@ -60,7 +60,7 @@ static void expect(unsigned receiver, size_t n, uint64_t start, uint8_t byte, ui
 
 /* ---- One sender ----------------------------------------------------------------------------------------------------- */
 
-START_TEST(U7_every_byte_is_heard_as_it_was_sent_by_all_but_the_sender)
+START_TEST(U7_every_byte_is_received_as_it_was_sent_by_all_but_the_sender)
 {
     begin(2);
     wire_send(&wire, 1, (uint8_t)_i, 1000);
@@ -77,7 +77,7 @@ START_TEST(U7_every_byte_is_heard_as_it_was_sent_by_all_but_the_sender)
 }
 END_TEST
 
-START_TEST(U7_bytes_without_a_gap_are_heard_one_after_the_other)
+START_TEST(U7_bytes_without_a_gap_are_received_one_after_the_other)
 {
     begin(1);
     for (unsigned k = 0; k < 600; k++) {
@@ -93,7 +93,7 @@ START_TEST(U7_bytes_without_a_gap_are_heard_one_after_the_other)
 }
 END_TEST
 
-START_TEST(a_station_that_is_not_there_hears_nothing)
+START_TEST(a_station_that_is_not_there_receives_nothing)
 {
     begin(2);
     wire_leave(&wire, 2, 0);
@@ -106,7 +106,7 @@ END_TEST
 
 /* ---- Several senders ------------------------------------------------------------------------------------------------ */
 
-START_TEST(the_same_byte_sent_twice_at_once_is_heard_as_it_is)
+START_TEST(the_same_byte_sent_twice_at_once_is_received_as_it_is)
 {
     begin(3);
     wire_send(&wire, 1, 0xA5, 0);
@@ -130,7 +130,7 @@ START_TEST(of_two_bytes_at_once_a_0_wins_in_every_bit)
 }
 END_TEST
 
-START_TEST(a_byte_that_comes_three_bits_late_is_heard_as_part_of_the_first)
+START_TEST(a_byte_that_comes_three_bits_late_is_received_as_part_of_the_first)
 {
     begin(2);
     wire_send(&wire, 1, 0xFF, 0);          /* 0 1111 1111 1 */
@@ -186,7 +186,7 @@ END_TEST
 
 /* ---- Who sends does not hear ------------------------------------------------------------------------------------------ */
 
-START_TEST(who_begins_to_send_within_a_byte_does_not_hear_it)
+START_TEST(who_begins_to_send_within_a_byte_does_not_receive_it)
 {
     begin(2);
     wire_send(&wire, 1, 0xFF, 0);
@@ -261,7 +261,7 @@ START_TEST(a_break_is_one_lost_byte_and_then_silence)
 }
 END_TEST
 
-START_TEST(what_is_sent_during_a_break_is_not_heard)
+START_TEST(what_is_sent_during_a_break_is_not_received)
 {
     begin(2);
     wire_hold(&wire, WIRE_HOST, true, 0);
@@ -406,7 +406,7 @@ static void compare(unsigned receiver, int round)
     ck_assert_uint_eq(wire.receiver[receiver].framing_errors, lost);
 }
 
-START_TEST(whatever_is_sent_is_heard_as_a_UART_hears_it)
+START_TEST(whatever_is_sent_is_received_as_a_UART_receives_it)
 {
     static struct send sends[STATIONS * LENGTH / BYTE];
     seed = (uint32_t)_i;
@@ -436,18 +436,18 @@ int main(void)
 {
     Suite *suite = suite_create("wire");
     TCase *sender = tcase_create("sender");
-    tcase_add_loop_test(sender, U7_every_byte_is_heard_as_it_was_sent_by_all_but_the_sender, 0, 256);
-    tcase_add_test(sender, U7_bytes_without_a_gap_are_heard_one_after_the_other);
-    tcase_add_test(sender, a_station_that_is_not_there_hears_nothing);
+    tcase_add_loop_test(sender, U7_every_byte_is_received_as_it_was_sent_by_all_but_the_sender, 0, 256);
+    tcase_add_test(sender, U7_bytes_without_a_gap_are_received_one_after_the_other);
+    tcase_add_test(sender, a_station_that_is_not_there_receives_nothing);
     suite_add_tcase(suite, sender);
     TCase *collision = tcase_create("collision");
-    tcase_add_test(collision, the_same_byte_sent_twice_at_once_is_heard_as_it_is);
+    tcase_add_test(collision, the_same_byte_sent_twice_at_once_is_received_as_it_is);
     tcase_add_test(collision, of_two_bytes_at_once_a_0_wins_in_every_bit);
-    tcase_add_test(collision, a_byte_that_comes_three_bits_late_is_heard_as_part_of_the_first);
+    tcase_add_test(collision, a_byte_that_comes_three_bits_late_is_received_as_part_of_the_first);
     tcase_add_test(collision, a_wrong_stop_bit_loses_the_byte);
     tcase_add_test(collision, a_small_shift_does_no_harm);
     tcase_add_test(collision, bytes_that_touch_do_not_collide);
-    tcase_add_test(collision, who_begins_to_send_within_a_byte_does_not_hear_it);
+    tcase_add_test(collision, who_begins_to_send_within_a_byte_does_not_receive_it);
     tcase_add_test(collision, who_has_sent_joins_in_the_middle_of_what_others_send);
     suite_add_tcase(suite, collision);
     TCase *power = tcase_create("power");
@@ -455,13 +455,13 @@ int main(void)
     tcase_add_test(power, a_sender_without_power_leaves_the_line_at_1);
     tcase_add_test(power, who_joins_within_a_byte_waits_for_the_line_to_fall);
     tcase_add_test(power, a_break_is_one_lost_byte_and_then_silence);
-    tcase_add_test(power, what_is_sent_during_a_break_is_not_heard);
+    tcase_add_test(power, what_is_sent_during_a_break_is_not_received);
     tcase_add_test(power, any_number_of_short_breaks_is_survived);
     tcase_add_test(power, bytes_take_the_time_of_the_speed);
     suite_add_tcase(suite, power);
     TCase *uart = tcase_create("uart");
     tcase_set_timeout(uart, 60);
-    tcase_add_loop_test(uart, whatever_is_sent_is_heard_as_a_UART_hears_it, 0, 200);
+    tcase_add_loop_test(uart, whatever_is_sent_is_received_as_a_UART_receives_it, 0, 200);
     suite_add_tcase(suite, uart);
     return rig_run(suite, "./test_wire");
 }

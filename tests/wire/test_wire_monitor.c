@@ -48,7 +48,7 @@ START_TEST(characters_that_cannot_be_seen_are_told_as_numbers)
 }
 END_TEST
 
-START_TEST(bytes_behind_a_request_are_told_too)
+START_TEST(bytes_after_a_request_are_told_too)
 {
     wire_rig_begin("3", HDLC);
     DIALOGUE("\4" "1xy", "master > 3: 4 Get Position m1, and 78 79", "3 > master: 4 Get Position m1 -> 0");
@@ -376,7 +376,7 @@ START_TEST(a_line_without_time_is_told_like_one_with)
 }
 END_TEST
 
-START_TEST(a_copy_goes_on_with_what_was_half_heard)
+START_TEST(a_copy_goes_on_with_what_was_half_received)
 {
     struct wire_monitor copy;
     wire_rig_begin("3", HDLC);
@@ -424,7 +424,7 @@ static Suite *wire_monitor_suite(void)
     TCase *words = tcase_create("words");
     tcase_add_test(words, every_message_is_told_in_words);
     tcase_add_test(words, characters_that_cannot_be_seen_are_told_as_numbers);
-    tcase_add_test(words, bytes_behind_a_request_are_told_too);
+    tcase_add_test(words, bytes_after_a_request_are_told_too);
     tcase_add_test(words, U7_a_message_has_the_times_of_its_first_and_last_bit);
     tcase_add_test(words, the_longest_message_is_told_whole);
     tcase_add_test(words, damaged_messages_are_told_in_characters_that_can_be_seen);
@@ -454,7 +454,7 @@ static Suite *wire_monitor_suite(void)
     suite_add_tcase(suite, refused);
     TCase *around = tcase_create("around");
     tcase_add_test(around, a_line_without_time_is_told_like_one_with);
-    tcase_add_test(around, a_copy_goes_on_with_what_was_half_heard);
+    tcase_add_test(around, a_copy_goes_on_with_what_was_half_received);
     suite_add_tcase(suite, around);
     return suite;
 }
