@@ -66,7 +66,8 @@ void cnc_publish_block(struct cnc *cnc)
 {
     struct cnc_machine *machine = &cnc->machine;
     const struct cnc_nc_block *next = &cnc->program->blocks[machine->next];
-    if (cnc->move.section.count == 0 && !cnc_gear_fits(cnc, next)) {
+    const bool is_silent = machine->next == machine->selected && machine->technology_off;
+    if (cnc->move.section.count == 0 && !is_silent && !cnc_gear_fits(cnc, next)) {
         refuse_block(cnc, next);
         return;
     }
@@ -201,6 +202,8 @@ static void begin_work(struct cnc *cnc)
         machine->phase = CNC_MOVE;
         return;
     }
+    if (!machine->is_reached && cnc_has_single(cnc, cnc->move.section.axes))
+        return; /* a spindle axis has to come to its place first */
     if (!machine->is_reached) {
         const uint16_t axes = cnc->move.section.segment[cnc->move.segment].axes;
         if (cnc_begin_motion(cnc)) {

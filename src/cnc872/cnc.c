@@ -92,10 +92,10 @@ void cnc_tick(struct cnc *cnc)
     cnc_run_pass(cnc);
     cnc_call_plc(cnc, CNC_PLC_MAIN);
     /* requests and block machine */
-    cnc_take_displays(cnc);
-    cnc_take_backup(cnc);
-    cnc_take_references(cnc);
     cnc_take_stop(cnc);
+    cnc_take_references(cnc);
+    cnc_take_backup(cnc);
+    cnc_take_displays(cnc);
     cnc_run_machine(cnc);
     /* motion */
     cnc_move_path(cnc);

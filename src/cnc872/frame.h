@@ -152,6 +152,9 @@ void cnc_end_single(struct cnc *cnc, unsigned axis);
 /* One T of it towards a target speed; by_emergency: with AccelerationEmergency. Returns the speed, 0 while BZH13 is not 0. */
 int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_emergency);
 
+/* Does one of these axes move by itself? */
+bool cnc_has_single(const struct cnc *cnc, uint16_t axes);
+
 /* Step 4: manual moves, references, spindle axes. */
 void cnc_move_manual(struct cnc *cnc);
 void cnc_move_references(struct cnc *cnc);

@@ -34,6 +34,14 @@ int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_
     return v;
 }
 
+bool cnc_has_single(const struct cnc *cnc, uint16_t axes)
+{
+    for (unsigned i = 0; i < CNC_AXES; i++)
+        if (((unsigned)axes >> i & 1u) != 0 && cnc->axis[i].kind != CNC_SINGLE_NONE)
+            return true;
+    return false;
+}
+
 /* ---- Manual moves ------------------------------------------------------------------------------------------------------ */
 
 /* Do axes still run out? */

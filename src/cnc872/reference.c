@@ -40,7 +40,7 @@ static bool is_referencing(const struct cnc *cnc)
 static void take_position(struct cnc *cnc, unsigned i)
 {
     const bool moves = cnc->machine.phase == CNC_MOVE && !cnc_is_set(cnc, CNC_BIT_PO_STOP);
-    if (moves || cnc->axis[i].kind != CNC_SINGLE_NONE)
+    if (moves || cnc->move.is_going || cnc->axis[i].kind != CNC_SINGLE_NONE)
         return; /* it waits */
     const int64_t distance = cnc_number(&cnc->cells, CNC_CELL_REFPOINT_DIST, i);
     put_bit(cnc, CNC_CELL_HOMING_REQ, i, false);

@@ -146,12 +146,6 @@ void cnc_put_spindle(struct cnc *cnc)
 
 /* ---- Spindle axes (NF6) ------------------------------------------------------------------------------------------------- */
 
-void cnc_position_spindle(struct cnc *cnc, unsigned axis)
-{
-    if (cnc->config->axis[axis].is_configured && cnc->config->axis[axis].is_rotary)
-        cnc->spindle_asked = (uint16_t)(cnc->spindle_asked | 1u << axis);
-}
-
 /* Way in + to the next whole turn, 0: it is there. */
 static int64_t find_way_to_turn(int64_t position)
 {
@@ -159,34 +153,62 @@ static int64_t find_way_to_turn(int64_t position)
     return beyond == 0 ? 0 : beyond > 0 ? TURN - beyond : -beyond;
 }
 
+/* Does the path or a motion of its own move the axis? */
+static bool is_moved(const struct cnc *cnc, unsigned i)
+{
+    return cnc->axis[i].kind != CNC_SINGLE_NONE || (cnc->move.is_going && ((unsigned)cnc->move.section.axes >> i & 1u) != 0);
+}
+
+static void put_asked(struct cnc *cnc, unsigned i, bool is_asked)
+{
+    const uint16_t bit = (uint16_t)(1u << i);
+    cnc->spindle_asked = (uint16_t)(is_asked ? cnc->spindle_asked | bit : cnc->spindle_asked & ~bit);
+    cnc_set(cnc, CNC_BIT_POLOHV_x + i, is_asked);
+}
+
+void cnc_position_spindle(struct cnc *cnc, unsigned axis)
+{
+    const struct cnc_axis_config *config = &cnc->config->axis[axis];
+    if (config->is_configured && config->is_rotary && cnc->axis[axis].kind != CNC_SINGLE_SPINDLE)
+        put_asked(cnc, axis, is_moved(cnc, axis) || find_way_to_turn(cnc->axis[axis].position) != 0);
+}
+
 /* Begin once nothing else moves the axis. */
 static void begin_axis(struct cnc *cnc, unsigned i)
 {
-    struct cnc_axis *axis = &cnc->axis[i];
-    const bool is_moved = cnc->move.is_going && ((unsigned)cnc->move.section.axes >> i & 1u) != 0;
-    if (axis->kind != CNC_SINGLE_NONE || is_moved)
+    const int64_t way = find_way_to_turn(cnc->axis[i].position);
+    if (is_moved(cnc, i))
         return;
-    const int64_t way = find_way_to_turn(axis->position);
-    cnc->spindle_asked = (uint16_t)(cnc->spindle_asked & ~(1u << i));
-    cnc_set(cnc, CNC_BIT_POLOHV_x + i, way != 0);
+    put_asked(cnc, i, false);
     if (way == 0)
         return;
+    cnc_set(cnc, CNC_BIT_POLOHV_x + i, true);
     cnc_begin_single(cnc, i, CNC_SINGLE_SPINDLE, 1, way);
     cnc_set(cnc, CNC_BIT_PO_OSxPI + i, true);
+}
+
+/* One T of the motion to the whole turn; central annulment ends it at rest. */
+static void move_axis(struct cnc *cnc, unsigned i)
+{
+    const bool is_annulled = cnc->machine.annulment == CNC_ANNULMENT_ASKED;
+    const bool is_held = !cnc_is_set(cnc, CNC_BIT_MPxPI + i) || cnc_find_limit(cnc, i, 1) != CNC_LIMIT_NONE;
+    const int64_t target = is_held || is_annulled ? 0 : cnc_speed_of(cnc->config->axis[i].feed_reference);
+    const int64_t v = cnc_step_single(cnc, i, target, is_held);
+    if (cnc_path_rest(&cnc->axis[i].path) > 0 && !(is_annulled && v == 0))
+        return;
+    cnc_set(cnc, CNC_BIT_POLOHV_x + i, false);
+    cnc_end_single(cnc, i);
 }
 
 void cnc_move_spindles(struct cnc *cnc)
 {
     for (unsigned i = 0; i < CNC_AXES; i++) {
-        if (((unsigned)cnc->spindle_asked >> i & 1u) != 0)
+        const bool is_asked = ((unsigned)cnc->spindle_asked >> i & 1u) != 0;
+        if (is_asked && cnc->machine.annulment == CNC_ANNULMENT_ASKED)
+            put_asked(cnc, i, false);
+        else if (is_asked)
             begin_axis(cnc, i);
-        if (cnc->axis[i].kind != CNC_SINGLE_SPINDLE)
-            continue;
-        const bool is_held = !cnc_is_set(cnc, CNC_BIT_MPxPI + i) || cnc_find_limit(cnc, i, 1) != CNC_LIMIT_NONE;
-        cnc_step_single(cnc, i, is_held ? 0 : cnc_speed_of(cnc->config->axis[i].feed_reference), is_held);
-        if (cnc_path_rest(&cnc->axis[i].path) == 0) {
-            cnc_set(cnc, CNC_BIT_POLOHV_x + i, false);
-            cnc_end_single(cnc, i);
-        }
+        if (cnc->axis[i].kind == CNC_SINGLE_SPINDLE)
+            move_axis(cnc, i);
     }
 }

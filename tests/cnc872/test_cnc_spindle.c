@@ -253,6 +253,7 @@ START_TEST(w35_spindle_axis)
 {
     power_rotary();
     cnc_position_spindle(&cnc, 3);
+    ck_assert(bit("POLOHV_4")); /* at once: the PLC program may wait for it in the same call */
     run_to(1);
     ck_assert(bit("POLOHV_4") && bit("PO_OS4PI") && !bit("INPOS"));
     ck_assert_int_eq(cnc.axis[3].position, INT64_C(90000) * CNC_U_PER_UM + 32768);
@@ -262,6 +263,7 @@ START_TEST(w35_spindle_axis)
     ck_assert(!bit("POLOHV_4") && !bit("PO_OS4PI") && bit("INPOS"));
     ck_assert_int_eq(cnc.axis[3].position, INT64_C(360000) * CNC_U_PER_UM);
     cnc_position_spindle(&cnc, 3); /* it is there */
+    ck_assert(!bit("POLOHV_4"));
     run_to(4620);
     ck_assert(!bit("POLOHV_4"));
     cnc.axis[3].position = cnc.axis[3].actual = INT64_C(-1000) * CNC_U_PER_UM;
@@ -297,16 +299,48 @@ START_TEST(nf6_waits_for_other_motions_of_its_axis)
     cnc_start(&cnc);
     run_to(20);
     cnc_position_spindle(&cnc, 3);
-    run_to(30);
-    const int64_t before = cnc.axis[3].position;
-    run_to(31);
-    ck_assert_int_lt(cnc.axis[3].position, before + 1092267);
-    ck_assert(!bit("PO_STOP") && bit("PO_F"));
+    ck_assert(bit("POLOHV_4"));
     while (bit("PO_F"))
         run_to(cnc.turn + 1);
-    run_to(cnc.turn + 20000);
-    ck_assert_int_eq(cnc.axis[3].position % (INT64_C(360000) * CNC_U_PER_UM), 0);
-    ck_assert_int_ge(cnc.axis[3].position, 100 * MM);
+    ck_assert_int_ge(cnc.axis[3].position, 100 * MM); /* the block has got to its target */
+    run_to(cnc.turn + 50000);
+    ck_assert(!bit("POLOHV_4"));
+    ck_assert_int_eq(cnc.axis[3].position, INT64_C(360000) * CNC_U_PER_UM);
+}
+END_TEST
+
+START_TEST(nf6_a_block_waits_for_a_spindle_axis)
+{
+    power_rotary();
+    cnc_position_spindle(&cnc, 3);
+    cnc_start(&cnc);
+    run_to(4619);
+    ck_assert(!bit("POLOHV_4") && bit("PO_F"));
+    ck_assert_int_eq(at(4619).x, 0);
+    ck_assert_int_eq(cnc.axis[3].position, INT64_C(360000) * CNC_U_PER_UM);
+    run_to(4620);
+    ck_assert_int_gt(at(4620).x, 0);
+    while (bit("PO_F"))
+        run_to(cnc.turn + 1);
+    ck_assert_int_eq(cnc.axis[3].position, 100 * MM);
+}
+END_TEST
+
+START_TEST(nf6_central_annulment_ends_it)
+{
+    power_rotary();
+    cnc_position_spindle(&cnc, 3);
+    run_to(1000);
+    cnc_reset(&cnc);
+    run_to(1200);
+    ck_assert(bit("CAPI") && !bit("POLOHV_4") && !bit("PO_OS4PI") && bit("INPOS"));
+    ck_assert_int_lt(cnc.axis[3].position, INT64_C(360000) * CNC_U_PER_UM);
+    set_bit("MP4PI", false); /* held for ever */
+    cnc_position_spindle(&cnc, 3);
+    run_to(1300);
+    cnc_reset(&cnc);
+    run_to(1310);
+    ck_assert(!bit("POLOHV_4") && bit("SF_STOP"));
 }
 END_TEST
 
@@ -328,6 +362,8 @@ int main(void)
     tcase_add_test(all, w35_spindle_axis);
     tcase_add_test(all, nf6_holds_of_a_spindle_axis);
     tcase_add_test(all, nf6_waits_for_other_motions_of_its_axis);
+    tcase_add_test(all, nf6_a_block_waits_for_a_spindle_axis);
+    tcase_add_test(all, nf6_central_annulment_ends_it);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
