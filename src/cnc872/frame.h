@@ -167,7 +167,7 @@ void cnc_take_references(struct cnc *cnc);
 void cnc_stop_manual(struct cnc *cnc, bool by_emergency);
 void cnc_stop_references(struct cnc *cnc, bool by_emergency);
 
-/* Central annulment: no reference is left. */
+/* Central annulment, all axes being at rest: no reference is left. */
 void cnc_drop_references(struct cnc *cnc);
 
 /* SPI_AX_x (NF6). Nothing happens if it is not a rotary axis. */

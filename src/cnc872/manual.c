@@ -89,13 +89,14 @@ static int find_request(const struct cnc *cnc, unsigned axis)
     return (int)plus - (int)minus;
 }
 
-static void move_axis(struct cnc *cnc, unsigned i, int request, bool rapid)
+static void move_axis(struct cnc *cnc, unsigned i, bool may_move, bool rapid)
 {
     struct cnc_axis *axis = &cnc->axis[i];
     const uint16_t bit = (uint16_t)(1u << i);
+    int request = find_request(cnc, i);
     if (request == 0)
         cnc->manual_stopped = (uint16_t)(cnc->manual_stopped & ~bit);
-    if ((cnc->manual_stopped & bit) != 0)
+    if (!may_move || (cnc->manual_stopped & bit) != 0)
         request = 0;
     if (axis->kind == CNC_SINGLE_NONE) {
         if (request == 0 || cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) != 0)
@@ -110,7 +111,7 @@ static void move_axis(struct cnc *cnc, unsigned i, int request, bool rapid)
     const int64_t target = request == axis->direction && !is_held ? find_speed(cnc, i, rapid) : 0;
     const int64_t v = cnc_step_single(cnc, i, target, is_held || (cnc->manual_emergency & bit) != 0);
     cnc_set(cnc, CNC_BIT_PO_OSxPI + i, v > 0);
-    if (v == 0 && target == 0)
+    if (v == 0 && (target == 0 || cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) != 0))
         cnc_end_single(cnc, i);
 }
 
@@ -128,7 +129,7 @@ void cnc_move_manual(struct cnc *cnc)
     cnc_set(cnc, CNC_BIT_AUTMAN_CONT_G00, shown && rapid);
     for (unsigned i = 0; i < CNC_AXES; i++)
         if (cnc->config->axis[i].is_configured)
-            move_axis(cnc, i, active && !chosen_only ? find_request(cnc, i) : 0, rapid);
+            move_axis(cnc, i, active && !chosen_only, rapid);
 }
 
 void cnc_stop_manual(struct cnc *cnc, bool by_emergency)

@@ -125,11 +125,8 @@ void cnc_drop_references(struct cnc *cnc)
 {
     cnc_put_number(&cnc->cells, CNC_CELL_HOMING_START_REQ, 0, 0);
     cnc_set(cnc, CNC_BIT_HOMING_SINGLE, false);
-    for (unsigned i = 0; i < CNC_AXES; i++) {
+    for (unsigned i = 0; i < CNC_AXES; i++)
         cnc->axis[i].reference.state = CNC_REFERENCE_NONE;
-        if (cnc->axis[i].kind == CNC_SINGLE_REFERENCE)
-            cnc_end_single(cnc, i);
-    }
 }
 
 /* ---- Motion ------------------------------------------------------------------------------------------------------------ */
@@ -251,7 +248,8 @@ static void move_reference(struct cnc *cnc, unsigned i)
     axis->direction = (int8_t)direction;
     const bool by_emergency = is_held || is_limit || axis->reference.by_emergency;
     const int64_t v = cnc_step_single(cnc, i, is_held ? 0 : cnc_speed_of(feed), by_emergency);
-    if (v == 0 && feed == 0)
+    const bool is_ending = axis->reference.state == CNC_REFERENCE_ENDS;
+    if (v == 0 && feed == 0 && (is_ending || cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) == 0))
         advance_state(cnc, i);
 }
 

@@ -179,6 +179,15 @@ START_TEST(nj1_wrong_texts_are_refused)
         {"<ChannelConfig ManualEnable=\"X\"/>", "1:30: expected PI or MAN\n"},
         {"<ChannelConfig NoLicense=\"FeaturePlcX\"/>",
          "1:27: expected HwKeyConnected or FeaturePlc0 to FeaturePlc9, spaces between them\n"},
+        {"<ChannelConfig NoLicense=\"FeaturePlc\"/>",
+         "1:27: expected HwKeyConnected or FeaturePlc0 to FeaturePlc9, spaces between them\n"},
+        {"<ChannelConfig NoLicense=\"FeaturePlc/\"/>",
+         "1:27: expected HwKeyConnected or FeaturePlc0 to FeaturePlc9, spaces between them\n"},
+        {"<ChannelConfig NoLicense=\"FeatureXyz1\"/>",
+         "1:27: expected HwKeyConnected or FeaturePlc0 to FeaturePlc9, spaces between them\n"},
+        {"</ChannelConfig>", "1:1: expected ChannelConfig or MFunctions\n"},
+        {"<ChannelConfig><Axis Name=\"X\"></Gear></ChannelConfig>", "1:31: expected </Axis>\n"},
+        {"<MFunctions><Gear/></MFunctions>", "1:13: expected MFunc or </MFunctions>\n"},
         {"<ChannelConfig AccelerationType\"2\"/>", "1:32: expected = behind the name of an attribute\n"},
         {"<ChannelConfig AccelerationType=2/>", "1:33: expected a value in quotes\n"},
         {"<ChannelConfig AccelerationType=\"2/>", "1:37: expected a quote behind the value\n"},
@@ -188,6 +197,15 @@ START_TEST(nj1_wrong_texts_are_refused)
         {"<!-- ", "1:6: expected --> behind a comment\n"},
         {"<?xml ", "1:7: expected ?> behind the XML line\n"},
         {"<!DOCTYPE a>", "1:1: expected ChannelConfig or MFunctions\n"},
+    };
+    for (unsigned i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
+        check_wrong(wrong[i][0], wrong[i][1]);
+}
+END_TEST
+
+START_TEST(nj1_wrong_values_are_refused)
+{
+    static const char *const wrong[][2] = {
         {"<ChannelConfig><Axis Feed=\"1\"/></ChannelConfig>", "1:17: expected Name\n"},
         {"<ChannelConfig><Axis Name=\"17\"/></ChannelConfig>", "1:28: expected X, Y, Z, or a number from 4 to 16\n"},
         {"<ChannelConfig><Axis Name=\"X\"/>\n<Axis Name=\"X\"/></ChannelConfig>", "2:13: expected each axis once\n"},
@@ -231,6 +249,15 @@ START_TEST(nj1_numbers)
 }
 END_TEST
 
+START_TEST(nj1_licences_and_smoothing)
+{
+    read_well("<ChannelConfig NoLicense=\" FeaturePlc0\tFeaturePlc9\r\n HwKeyConnected \">"
+              "<Axis Name=\"X\" LinearAccel=\"1\" ParabAccel=\"4\"/></ChannelConfig>");
+    ck_assert_uint_eq(config.no_license, 1u | 1u << 1 | 1u << 10);
+    ck_assert_uint_eq(config.axis[0].smoothing[CNC_SET_NORMAL], 1); /* 0.25 */
+}
+END_TEST
+
 START_TEST(the_first_twenty_errors_are_reported)
 {
     char text[4000] = "<ChannelConfig>";
@@ -257,7 +284,9 @@ int main(void)
     tcase_add_test(all, nj3_groups_of_the_documentation);
     tcase_add_test(all, nj3_fragment_that_is_not_closed);
     tcase_add_test(all, nj1_wrong_texts_are_refused);
+    tcase_add_test(all, nj1_wrong_values_are_refused);
     tcase_add_test(all, nj1_numbers);
+    tcase_add_test(all, nj1_licences_and_smoothing);
     tcase_add_test(all, the_first_twenty_errors_are_reported);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);

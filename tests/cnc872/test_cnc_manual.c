@@ -322,7 +322,7 @@ START_TEST(ns5_a_critical_error_stops_at_once)
     cnc_set_critical(&cnc, 3);
     run_to(110);
     ck_assert_int_eq(at(110).x, at(100).x);
-    ck_assert(!bit("PO_OSXPI"));
+    ck_assert(!bit("PO_OSXPI") && bit("INPOS"));
     cnc_set_critical(&cnc, 0);
     run_to(111);
     ck_assert_int_eq(step_of_x(111), 32768);

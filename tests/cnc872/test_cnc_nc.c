@@ -36,7 +36,7 @@ static void read_well(const char *text)
 START_TEST(nn1_a_line_is_a_block)
 {
     cnc_config_clear(&config);
-    read_well("( a program )\n\n  ; nothing\nN10 G1 X10 F1000 (feed)\r\ng0y-2.5z+.25;rapid\nM30");
+    read_well("\xEF\xBB\xBF( a program )\n\n  ; nothing\nN10\tG1 X10 F1000 (feed)\r\ng0y-2.5z+.25;rapid\nM30");
     ck_assert_uint_eq(program.block_count, 3);
     ck_assert_uint_eq(block(0)->line, 4);
     ck_assert_uint_eq(block(0)->motion, CNC_MOTION_FEED);
@@ -133,6 +133,9 @@ START_TEST(nn2_wrong_texts_are_not_loaded)
         {"G4", "1:1: expected P with G4\n"},
         {"P1", "1:1: expected G4 with P\n"},
         {"G4 (a", "1:4: expected ) behind a comment\n"},
+        {"G0 X1\n\x80", "2:1: expected N, G, X, Y, Z, A4= to A16=, F, S, L, T, H, M, P, I0= to I4=, R0= to R4=, not ?\n"},
+        {"G0 |1", "1:4: expected N, G, X, Y, Z, A4= to A16=, F, S, L, T, H, M, P, I0= to I4=, R0= to R4=, not |\n"},
+        {"G4 P1 P2", "1:7: expected each word once in a block\n"},
         {"G0 Q1", "1:4: expected N, G, X, Y, Z, A4= to A16=, F, S, L, T, H, M, P, I0= to I4=, R0= to R4=, not Q\n"},
         {"%", "1:1: expected N, G, X, Y, Z, A4= to A16=, F, S, L, T, H, M, P, I0= to I4=, R0= to R4=, not %\n"},
         {"X1\nF0 F0\nM1\nM1 M0", "1:1: expected G0, G1 or G33 before an axis\n"
@@ -159,6 +162,20 @@ START_TEST(nn2_a_byte_0_is_not_a_word)
     ck_assert(!cnc_nc_read(text, sizeof text - 1, &config, &program, text_report, NULL));
     ck_assert_str_eq(text_reported, "2:4: expected ) behind a comment\n");
     ck_assert(!cnc_nc_read(text, sizeof text, &config, &program, NULL, NULL));
+}
+END_TEST
+
+START_TEST(nn2_the_first_twenty_errors)
+{
+    char text[200] = "";
+    for (unsigned i = 0; i < 30; i++)
+        strcat(text, "X1\n");
+    cnc_config_clear(&config);
+    ck_assert(!text_read_nc(text, &config, &program));
+    unsigned lines = 0;
+    for (const char *at = text_reported; *at != '\0'; at++)
+        lines += *at == '\n';
+    ck_assert_uint_eq(lines, CNC_TEXT_ERRORS_MAX);
 }
 END_TEST
 
@@ -213,6 +230,7 @@ int main(void)
     tcase_add_test(all, nn1_modes_and_speeds);
     tcase_add_test(all, nn2_wrong_texts_are_not_loaded);
     tcase_add_test(all, nn2_a_byte_0_is_not_a_word);
+    tcase_add_test(all, nn2_the_first_twenty_errors);
     tcase_add_test(all, nl4_blocks_beyond_the_room_are_refused);
     tcase_add_test(all, nl4_a_million_blocks);
     suite_add_tcase(suite, all);

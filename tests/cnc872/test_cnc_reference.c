@@ -118,6 +118,25 @@ START_TEST(w22_begins_on_the_switch)
 }
 END_TEST
 
+START_TEST(nh2_reference_in_plus)
+{
+    begin_reference("<ChannelConfig><Axis Name=\"X\" RefDir=\"+\" MachineNullPoint=\"7\"/></ChannelConfig>", 0);
+    set_ranges(99, 99, 5, 99, 999, 999);
+    run_to(100);
+    ck_assert_int_gt(at(100).x, 0);
+    ck_assert(!bit("SM_POXPI"));
+    const uint64_t seen = run_to_state(CNC_REFERENCE_STOP);
+    const int64_t from = cnc.axis[0].reference.seen_at;
+    run_to_state(CNC_REFERENCE_NONE);
+    ck_assert_int_ge(at(seen - 1).x, 5 * MM); /* seen by the position at the end of the T before */
+    ck_assert_int_lt(at(seen - 2).x, 5 * MM);
+    ck_assert_int_eq(from, at(seen - 1).x);
+    ck_assert_int_gt(cnc_position(&cnc, 0, 5), 7 * MM);
+    ck_assert_int_lt(cnc_position(&cnc, 0, 5), 9 * MM);
+    ck_assert_int_eq(cell("HOMING", 0), 1);
+}
+END_TEST
+
 START_TEST(w23_position_given_by_the_plc)
 {
     rig_power("<ChannelConfig><Axis Name=\"Y\" MachineNullPoint=\"100\" Offset1=\"1\"/></ChannelConfig>", NULL);
@@ -154,10 +173,51 @@ START_TEST(nh1_a_position_waits_for_rest)
     ck_assert_int_eq(cell("HOMING_REQ", 0), 0); /* refused: too far */
     ck_assert_int_eq(at(1101).x, 10 * MM);
     ck_assert_uint_eq(count_events(CNC_EVENT_REFERENCE_FAILED), 1);
-    set_cell("HOMING_REQ", 0, 8); /* not in the configuration */
+    set_cell("HOMING_REQ", 0, 1);
+    set_cell("REFPOINT_DIST", 0, -200001 * MM);
     run_to(1102);
+    set_cell("HOMING_REQ", 0, 8); /* not in the configuration */
+    run_to(1103);
     ck_assert_int_eq(cell("HOMING_REQ", 0), 0);
-    ck_assert_uint_eq(count_events(CNC_EVENT_REFERENCE_FAILED), 2);
+    ck_assert_uint_eq(count_events(CNC_EVENT_REFERENCE_FAILED), 3);
+    set_cell("REFPOINT_DIST", 0, -200000 * MM);
+    set_cell("HOMING_REQ", 0, 1);
+    run_to(1104);
+    ck_assert_int_eq(at(1104).x, -200000 * MM);
+}
+END_TEST
+
+/* An inner block of a section is in its INIT pass while the path moves. */
+START_TEST(nh1_a_position_waits_for_the_end_of_a_section)
+{
+    rig_begin("G23 G1 X10 F1000\nX20\nX30");
+    set_bit("EXT_PLC", true);
+    set_bit("PLC_PASS_DONE", true);
+    run_to(1000);
+    ck_assert_uint_eq(at(1000).phase, CNC_DONE);
+    set_cell("HOMING_REQ", 0, 1);
+    run_to(1001);
+    ck_assert_int_eq(cell("HOMING_REQ", 0), 1);
+    ck_assert_int_gt(at(1001).x, at(1000).x);
+}
+END_TEST
+
+START_TEST(nh1_a_position_waits_for_a_manual_move)
+{
+    rig_power(NULL, NULL);
+    cnc.panel.manual = true;
+    cnc.panel.jog_plus = 1;
+    run_to(100);
+    set_cell("HOMING_REQ", 0, 1);
+    set_cell("HOMING_START_REQ", 0, 1); /* as a reference does */
+    cnc.panel.manual = false;
+    run_to(150);
+    ck_assert_int_eq(cell("HOMING_REQ", 0), 1);
+    ck_assert(!bit("REFPI"));
+    run_to(168);
+    ck_assert_int_eq(cell("HOMING_REQ", 0), 0);
+    ck_assert(bit("REFPI"));
+    ck_assert_int_eq(at(168).x, 0);
 }
 END_TEST
 
@@ -322,6 +382,20 @@ START_TEST(nb8_central_annulment_ends_a_reference)
 }
 END_TEST
 
+START_TEST(nb8_central_annulment_in_a_critical_error)
+{
+    rig_power(NULL, NULL);
+    set_cell("HOMING_START_REQ", 0, 1);
+    run_to(100);
+    cnc_set_critical(&cnc, 1);
+    cnc_reset(&cnc);
+    run_to(110);
+    ck_assert(bit("CAPI") && !bit("PO_F"));
+    ck_assert_int_eq(cell("BZH13", 0), 0);
+    ck_assert_int_eq(cell("HOMING", 0), 0);
+}
+END_TEST
+
 START_TEST(ns5_a_critical_error_halts_a_reference)
 {
     rig_power(NULL, NULL);
@@ -333,6 +407,15 @@ START_TEST(ns5_a_critical_error_halts_a_reference)
     cnc_set_critical(&cnc, 0);
     run_to(201);
     ck_assert_int_eq(at(200).x - at(201).x, 32768); /* from rest */
+    run_to(300);
+    set_bit("KRX", true);
+    run_to(301);
+    cnc_set_critical(&cnc, 1);
+    run_to(310);
+    ck_assert_int_eq(cell("HOMING", 0), 0); /* nothing is known while there is an error */
+    cnc_set_critical(&cnc, 0);
+    run_to(311);
+    ck_assert_int_eq(cell("HOMING", 0), 1);
 }
 END_TEST
 
@@ -343,7 +426,11 @@ int main(void)
     tcase_add_test(all, w20_reference);
     tcase_add_test(all, w21_reversing_switch);
     tcase_add_test(all, w22_begins_on_the_switch);
+    tcase_add_test(all, nh2_reference_in_plus);
     tcase_add_test(all, w23_position_given_by_the_plc);
+    tcase_add_test(all, nh1_a_position_waits_for_the_end_of_a_section);
+    tcase_add_test(all, nh1_a_position_waits_for_a_manual_move);
+    tcase_add_test(all, nb8_central_annulment_in_a_critical_error);
     tcase_add_test(all, nh1_a_position_waits_for_rest);
     tcase_add_test(all, w51_stop_in_a_reference);
     tcase_add_test(all, nh2_ends_of_a_reference);

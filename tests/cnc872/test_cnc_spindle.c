@@ -99,10 +99,14 @@ START_TEST(nf3_actual_speed)
     ck_assert_int_eq(cell("AVG_SPEED_PT", 0), 600);
     run_to(6);
     ck_assert_int_eq(cell("ACT_SPEED_PT", 0), 0);
-    rig_power(gears, NULL);
-    set_cell("SPINDLE_GEAR_ACT_1", 0, 9); /* not in the configuration: 0-4000 */
-    run_to(1);
-    check_speed(0, 0, 0);
+    static const int64_t others[] = {0, 9, 33};
+    for (unsigned i = 0; i < 3; i++) { /* not in the configuration: 0-4000 */
+        begin_in_gear("S1000", 3);
+        set_cell("SPINDLE_GEAR_ACT_1", 0, others[i]);
+        run_to(2);
+        check_speed(0x1FFF, 999908, 5999);
+        ck_assert_uint_eq(count_events(CNC_EVENT_BLOCK_REFUSED), 0);
+    }
 }
 END_TEST
 
@@ -200,6 +204,16 @@ START_TEST(nf5_gears)
 }
 END_TEST
 
+START_TEST(nf5_the_automatic_gear_beyond_all_gears)
+{
+    rig_begin_with("<ChannelConfig><Gear No=\"2\" MaxSpeed=\"1000\"/></ChannelConfig>", "M40 S100\nM40 S2000");
+    run_to(1);
+    ck_assert_int_eq(cell("SPINDLE_GEAR_ACT_1", 0), 2);
+    run_to(3);
+    ck_assert(bit("SF_STOP") && !bit("PO_F")); /* no gear reaches it */
+}
+END_TEST
+
 START_TEST(nf5_gears_of_the_plc)
 {
     rig_begin_with(gears, "M43 S1500");
@@ -288,6 +302,10 @@ START_TEST(nf6_holds_of_a_spindle_axis)
     ck_assert_int_eq(cnc.axis[3].position, held);
     ck_assert(bit("POLOHV_4"));
     set_bit("MP4PI", true);
+    set_bit("KH40", true);
+    run_to(1400);
+    ck_assert_int_eq(cnc.axis[3].position, held);
+    set_bit("KH40", false);
     run_to(6000);
     ck_assert_int_eq(cnc.axis[3].position, INT64_C(360000) * CNC_U_PER_UM);
 }
@@ -341,6 +359,18 @@ START_TEST(nf6_central_annulment_ends_it)
     cnc_reset(&cnc);
     run_to(1310);
     ck_assert(!bit("POLOHV_4") && bit("SF_STOP"));
+    set_bit("MP4PI", true);
+    cnc.panel.manual = true; /* it waits for a manual move */
+    cnc.panel.jog_plus = 8;
+    run_to(1400);
+    cnc_position_spindle(&cnc, 3);
+    run_to(1410);
+    ck_assert(bit("POLOHV_4"));
+    cnc_reset(&cnc);
+    run_to(1411);
+    ck_assert(!bit("POLOHV_4"));
+    run_to(1600);
+    ck_assert(bit("SF_STOP") && bit("INPOS")); /* the key has not been let go */
 }
 END_TEST
 
@@ -357,6 +387,7 @@ int main(void)
     tcase_add_test(all, w46_threading);
     tcase_add_test(all, nf4_threading_waits_for_the_spindle);
     tcase_add_test(all, nf5_gears);
+    tcase_add_test(all, nf5_the_automatic_gear_beyond_all_gears);
     tcase_add_test(all, nf5_gears_of_the_plc);
     tcase_add_test(all, nf5_speed_outside_of_the_gear);
     tcase_add_test(all, w35_spindle_axis);
