@@ -145,10 +145,23 @@ int64_t cnc_read_number(const struct cnc_cells *cells, unsigned place, enum cnc_
 
 void cnc_write_number(struct cnc_cells *cells, unsigned place, enum cnc_type type, int64_t value)
 {
-    uint64_t rest = (uint64_t)value;
+    const uint64_t bits = (uint64_t)value;
+    uint8_t *at = cells->memory + place;
 
-    for (unsigned i = 0; i < cnc_type_size[type]; i++, rest >>= 8)
-        cells->memory[place + i] = (uint8_t)rest;
+    at[0] = (uint8_t)bits;
+    if (cnc_type_size[type] == 1)
+        return;
+    at[1] = (uint8_t)(bits >> 8);
+    if (type == CNC_WORD)
+        return;
+    at[2] = (uint8_t)(bits >> 16);
+    at[3] = (uint8_t)(bits >> 24);
+    if (type == CNC_DWRD)
+        return;
+    at[4] = (uint8_t)(bits >> 32);
+    at[5] = (uint8_t)(bits >> 40);
+    at[6] = (uint8_t)(bits >> 48);
+    at[7] = (uint8_t)(bits >> 56);
 }
 
 double cnc_read_real(const struct cnc_cells *cells, unsigned place)

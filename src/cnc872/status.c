@@ -48,10 +48,10 @@ static void put_axes(struct cnc *cnc)
     const bool manual = cnc_is_set(cnc, CNC_BIT_ACK_AUTMAN);
     bool switches = false, software = false, same = true;
     for (unsigned i = 0; i < CNC_AXES; i++) {
-        put_positions(cnc, i);
         cnc_set(cnc, CNC_BIT_MPx + i, may_move(cnc, i, manual));
         if (!cnc->config->axis[i].is_configured)
             continue;
+        put_positions(cnc, i);
         switches |= cnc_is_set(cnc, CNC_BIT_KHx0 + i) || cnc_is_set(cnc, CNC_BIT_KHx1 + i);
         software |= cnc_find_limit(cnc, i, 1) == CNC_LIMIT_SOFTWARE || cnc_find_limit(cnc, i, -1) == CNC_LIMIT_SOFTWARE;
         same &= cnc->axis[i].position == cnc->axis[i].stop_position;
