@@ -126,8 +126,11 @@ static enum pmc_answer stop(struct pmc_unit *unit, uint8_t digits)
     unsigned slow = digits & 15u, at_once = digits >> 4;
     if (!are_axes(unit, slow | at_once) || (slow & at_once) != 0)
         return PMC_RANGE;
-    enum pmc_answer answer = slow != 0 ? ask(unit, PMC_STOP, slow) : PMC_OK;
-    return answer == PMC_OK && at_once != 0 ? ask(unit, PMC_STOP_NOW, at_once) : answer;
+    if (slow != 0) /* stops are always taken */
+        (void)ask(unit, PMC_STOP, slow);
+    if (at_once != 0)
+        (void)ask(unit, PMC_STOP_NOW, at_once);
+    return PMC_OK;
 }
 
 /* 01 X, 02 Y commanded, 10 X, 20 Y actual counter. */
@@ -136,11 +139,16 @@ static enum pmc_answer clear_counters(struct pmc_unit *unit, uint8_t digits)
     unsigned commanded = digits & 15u, actual = digits >> 4;
     if (!are_axes(unit, commanded | actual))
         return PMC_RANGE;
-    for (unsigned axis = 0; axis < unit->config.axes; axis++)
-        if (((commanded | actual) >> axis & 1u) != 0 && pmc_is_busy(unit, axis))
+    for (unsigned axis = 0; axis < unit->config.axes; axis++) {
+        const unsigned requests = (commanded >> axis & 1u) + (actual >> axis & 1u);
+        if (requests > 0 && (pmc_is_busy(unit, axis) || unit->axis[axis].pendings + requests > PMC_PENDING_MAX))
             return PMC_BUSY;
-    enum pmc_answer answer = commanded != 0 ? ask(unit, PMC_CLEAR_COMMANDED, commanded) : PMC_OK;
-    return answer == PMC_OK && actual != 0 ? ask(unit, PMC_CLEAR_ACTUAL, actual) : answer;
+    }
+    if (commanded != 0)
+        (void)ask(unit, PMC_CLEAR_COMMANDED, commanded);
+    if (actual != 0)
+        (void)ask(unit, PMC_CLEAR_ACTUAL, actual);
+    return PMC_OK;
 }
 
 /* X, then Y. */
@@ -278,22 +286,37 @@ static bool are_values(const struct pmc_unit *unit, uint16_t address, unsigned c
     return true;
 }
 
-/* Write the values; `check`: only find out whether they can be. */
-static enum modbus_exception write_values(struct request *request, uint16_t address, unsigned count, const uint8_t *words,
-                                          bool check)
+/* Can nothing be written there now? A fifth speed waits for the slot, and the queue may be full. */
+static bool is_busy(const struct pmc_unit *unit, const struct pmc_place *place)
 {
-    bool is_busy = false;
+    const struct pmc_request speed = {.kind = PMC_SET_SPEED, .axes = (uint8_t)(1u << place->axis), .value = {1, 1}};
+    if (place->kind == PMC_PLACE_SPEED)
+        return pmc_check(unit, &speed) != PMC_OK;
+    return place->kind != PMC_PLACE_START && pmc_is_busy(unit, place->axis);
+}
+
+static enum modbus_exception check_values(const struct pmc_unit *unit, uint16_t address, unsigned count, const uint8_t *words)
+{
+    enum modbus_exception exception = MODBUS_NO_EXCEPTION;
     for (unsigned i = 0; i < count;) {
-        struct pmc_place place = pmc_holding_place(request->unit, (uint16_t)(address + i));
-        if (check && !pmc_is_holding_value(&place, words + 2u * i))
+        const struct pmc_place place = pmc_holding_place(unit, (uint16_t)(address + i));
+        if (!pmc_is_holding_value(&place, words + 2u * i))
             return MODBUS_ILLEGAL_VALUE;
-        if (!check && pmc_write_holding(request->unit, &place, words + 2u * i) != PMC_OK)
-            return MODBUS_DEVICE_BUSY;
-        if (place.kind == PMC_PLACE_PARAMETER || place.kind == PMC_PLACE_REGISTER)
-            is_busy = is_busy || pmc_is_busy(request->unit, place.axis);
+        if (is_busy(unit, &place))
+            exception = MODBUS_DEVICE_BUSY;
         i += place.words;
     }
-    return is_busy ? MODBUS_DEVICE_BUSY : MODBUS_NO_EXCEPTION;
+    return exception;
+}
+
+/* Write values that have been checked. */
+static void write_values(struct pmc_unit *unit, uint16_t address, unsigned count, const uint8_t *words)
+{
+    for (unsigned i = 0; i < count;) {
+        const struct pmc_place place = pmc_holding_place(unit, (uint16_t)(address + i));
+        (void)pmc_write_holding(unit, &place, words + 2u * i);
+        i += place.words;
+    }
 }
 
 static enum modbus_exception write_range(struct request *request, uint16_t address, unsigned count, const uint8_t *words)
@@ -304,8 +327,10 @@ static enum modbus_exception write_range(struct request *request, uint16_t addre
         return exception_of(execute_block(request->unit, words, count));
     if (!are_values(request->unit, address, count))
         return MODBUS_ILLEGAL_ADDRESS;
-    enum modbus_exception exception = write_values(request, address, count, words, true);
-    return exception != MODBUS_NO_EXCEPTION ? exception : write_values(request, address, count, words, false);
+    enum modbus_exception exception = check_values(request->unit, address, count, words);
+    if (exception == MODBUS_NO_EXCEPTION)
+        write_values(request->unit, address, count, words);
+    return exception;
 }
 
 static enum modbus_exception write_one(struct request *request)

@@ -36,7 +36,7 @@ struct fault_rig {
         uint64_t tick;
         bool plugged;
     } plug[64];
-    char refusal[400];    /* of the last refused(), "CODE TEXT" */
+    char refusal[660];    /* of the last refused(), "CODE TEXT" */
 };
 
 extern struct fault_rig rig;
