@@ -41,7 +41,8 @@ at() { "$RKMCTL" -p "$1" "${@:2}"; }
 is_at() { [[ $(at "$1" position 2>"$folder/ctl.err") == "motor 1: $2" ]]; }
 
 test_clients_here_use_a_unit_there_to_the_last_step() {
-    serve_exe bus --tcp 0 --rfc2217 0 --record there.record --trace there.csv --wire there.log
+    serve_exe bus --tcp 0 --rfc2217 0 --plant "$tests/../../examples/linear-axis.plant.yaml" --coverage covered.txt \
+        --record there.record --trace there.csv --wire there.log
     port=tcp:$(part bus tcp)
     same "01.02,06.03.2009" "$(at "$port" version 2>ctl.err)" "the version"
     same "motor 1: ok" "$(at "$port" set '\C100 S100 V1000 A2000 F500 R' 2>ctl.err)" "a program"
@@ -52,6 +53,7 @@ test_clients_here_use_a_unit_there_to_the_last_step() {
     holds "$said" "the same" "the recording replayed here"
     cmp here.csv there.csv || fail "the trace"
     cmp here.log there.log || fail "the log of the wires"
+    holds "$(<covered.txt)" "messages" "the coverage report"
 }
 
 test_a_Windows_program_uses_a_unit_there() {
@@ -71,6 +73,18 @@ test_settings_of_an_RFC_2217_client_count() {
     say_bytes 3 "fffb2c fffa2c0100002580fff0 7e01000858107e" # WILL COM-PORT, 9600 baud, a request
     soon "the log says so" grep -q "client is 9600 8N1, unit is 19200 8N1" bus.err
     exec 3>&-
+    end_exe bus
+}
+
+test_host_software_with_pyserial_uses_a_unit_there() {
+    local what url
+    /usr/bin/python3 -c 'import serial.rfc2217' 2>/dev/null || skip_case "there is no pyserial; apt-get install python3-serial"
+    serve_exe bus --framing plain --tcp 0 --rfc2217 0
+    for what in talk settings; do
+        for url in "socket://$(part bus tcp)" "rfc2217://$(part bus rfc2217)"; do
+            exits 0 timeout "$limit" /usr/bin/python3 -W ignore "$tests/pyserial_client.py" "$what" "$url"
+        done
+    done
     end_exe bus
 }
 
@@ -107,6 +121,10 @@ test_what_Windows_does_not_have_is_refused() {
     done
     exits 2 exe serve
     holds "$complained" "expected --tcp, --rfc2217 or --port" "the message without a port"
+    serve_exe bus --tcp 0
+    exits 1 exe serve --tcp "$(part bus tcp)"
+    holds "$complained" "another program listens there" "the message about a port in use"
+    end_exe bus
     exits 1 exe serve --tcp 192.0.2.1:4001
     holds "$complained" "cannot listen at 192.0.2.1:4001" "the message about a strange address"
 }
@@ -231,6 +249,19 @@ test_a_unit_at_a_COM_port_is_used_to_the_last_step() {
     exits 0 "$RKM04" replay there.record
     holds "$said" "the same" "the recording"
     serve_exe bus --port '\\.\COM41' --device pmc-1hs
+    end_exe bus
+}
+
+test_a_Windows_program_and_a_unit_are_at_the_two_ends_of_a_pair() {
+    local check
+    [[ -f $PORT_CLIENT ]] || skip_case "the programs for Windows are not built"
+    begin_pair 47
+    ln -sfn "$folder/end" "$prefix/dosdevices/com48"
+    serve_exe bus --port COM47
+    wine_in "$prefix" "$PORT_CLIENT" COM48 version motion timeouts gap overlapped queue 2>wine.err | tr -d '\r' >checks.err
+    for check in version motion timeouts gap overlapped queue; do
+        grep -qx "ok $check" checks.err || fail "$check at COM48"
+    done
     end_exe bus
 }
 
