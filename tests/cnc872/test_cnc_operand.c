@@ -101,6 +101,11 @@ START_TEST(fields_of_the_queue_are_bits_whole_or_real)
     ck_assert_uint_eq(operand.place, CNC_QUEUE_IPlcn);
     ck_assert_uint_eq(operand.index, 1);
     ck_assert_uint_eq(operand.block, CNC_BLOCK_BX);
+    for (unsigned group = 0; group < 15; group++) {
+        char text[20];
+        snprintf(text, sizeof text, "BLK[0].M%u", group);
+        ck_assert_uint_eq(parse(text)->index, group);
+    }
     ck_assert_uint_eq(parse("BLK[1].AxNC15Move")->index, 15);
     parse("BLK[ 15 ] . M [ 14 ]");
     ck_assert_int_eq(operand.kind, CNC_OPERAND_QUEUE);
@@ -175,6 +180,11 @@ static const struct {
     {"CNST.5 5", "expected the end of the operand", "5"},
     {"BLK[0].Foo", "a block has no field", "Foo"},
     {"BLK[0].M15", "a block has no field", "M15"},
+    {"BLK[0].M011", "a block has no field", "M011"},
+    {"BLK[0].Mx", "a block has no field", "Mx"},
+    {"BLK[0].M1x", "a block has no field", "M1x"},
+    {"BLK[0].M01", "a block has no field", "M01"},
+    {"BLK[0].AxNC16Move", "a block has no field", "AxNC16Move"},
     {"BLK[0].STOPPI", "a block has no field", "STOPPI"},
     {"BLK[0].(T)", "expected a name", ""},
     {"BLK[0].M", "expected the number of an element, `[0]'", ""},
