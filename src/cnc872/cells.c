@@ -126,44 +126,6 @@ const struct cnc_row *cnc_find_row(const struct cnc_row *rows, unsigned count, c
 
 /* ---- Memory ---------------------------------------------------------------------------------------------------------- */
 
-int64_t cnc_read_number(const struct cnc_cells *cells, unsigned place, enum cnc_type type)
-{
-    const uint8_t *at = cells->memory + place;
-    uint32_t low = at[0];
-
-    if (type == CNC_BYTE)
-        return low;
-    low |= (uint32_t)at[1] << 8;
-    if (type == CNC_WORD)
-        return low;
-    low |= (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
-    if (type == CNC_DWRD)
-        return (int32_t)low;
-    uint32_t high = at[4] | (uint32_t)at[5] << 8 | (uint32_t)at[6] << 16 | (uint32_t)at[7] << 24;
-    return (int64_t)((uint64_t)high << 32 | low);
-}
-
-void cnc_write_number(struct cnc_cells *cells, unsigned place, enum cnc_type type, int64_t value)
-{
-    const uint64_t bits = (uint64_t)value;
-    uint8_t *at = cells->memory + place;
-
-    at[0] = (uint8_t)bits;
-    if (cnc_type_size[type] == 1)
-        return;
-    at[1] = (uint8_t)(bits >> 8);
-    if (type == CNC_WORD)
-        return;
-    at[2] = (uint8_t)(bits >> 16);
-    at[3] = (uint8_t)(bits >> 24);
-    if (type == CNC_DWRD)
-        return;
-    at[4] = (uint8_t)(bits >> 32);
-    at[5] = (uint8_t)(bits >> 40);
-    at[6] = (uint8_t)(bits >> 48);
-    at[7] = (uint8_t)(bits >> 56);
-}
-
 double cnc_read_real(const struct cnc_cells *cells, unsigned place)
 {
     int64_t bits = cnc_read_number(cells, place, CNC_QWRD);
@@ -179,36 +141,6 @@ void cnc_write_real(struct cnc_cells *cells, unsigned place, double value)
 
     memcpy(&bits, &value, sizeof bits);
     cnc_write_number(cells, place, CNC_QWRD, bits);
-}
-
-unsigned cnc_cell_place(enum cnc_cell cell)
-{
-    return cnc_rows[cell].place;
-}
-
-static unsigned place_of(enum cnc_cell cell, unsigned index)
-{
-    return cnc_rows[cell].place + index * cnc_type_size[cnc_rows[cell].type];
-}
-
-int64_t cnc_number(const struct cnc_cells *cells, enum cnc_cell cell, unsigned index)
-{
-    return cnc_read_number(cells, place_of(cell, index), (enum cnc_type)cnc_rows[cell].type);
-}
-
-void cnc_put_number(struct cnc_cells *cells, enum cnc_cell cell, unsigned index, int64_t value)
-{
-    cnc_write_number(cells, place_of(cell, index), (enum cnc_type)cnc_rows[cell].type, value);
-}
-
-double cnc_real(const struct cnc_cells *cells, enum cnc_cell cell, unsigned index)
-{
-    return cnc_read_real(cells, place_of(cell, index));
-}
-
-void cnc_put_real(struct cnc_cells *cells, enum cnc_cell cell, unsigned index, double value)
-{
-    cnc_write_real(cells, place_of(cell, index), value);
 }
 
 void cnc_clear_cells(struct cnc_cells *cells)

@@ -105,21 +105,94 @@ static inline void cnc_put_bit(struct cnc_cells *cells, unsigned place, bool val
     cells->bits[place] = value;
 }
 
-/* Element `index` (below the cell's count) of a cell of whole numbers. */
-int64_t cnc_number(const struct cnc_cells *cells, enum cnc_cell cell, unsigned index);
-/* The same is set, cut to the width of the cell. */
-void cnc_put_number(struct cnc_cells *cells, enum cnc_cell cell, unsigned index, int64_t value);
-/* Element `index` of a cell of type REAL. */
-double cnc_real(const struct cnc_cells *cells, enum cnc_cell cell, unsigned index);
-void cnc_put_real(struct cnc_cells *cells, enum cnc_cell cell, unsigned index, double value);
+/* Where a cell is and what it is, known to the compiler: access to a cell by its constant is a load or a store. */
+struct cnc_shape {
+    uint16_t place;
+    uint8_t type; /* enum cnc_type */
+};
+#define CNC_OWN_(name, type, count, access, fields, preset, section) {offsetof(struct cnc_layout, name), CNC_##type},
+#define CNC_SAME_(name, other, offset, type, count, access, section) {offsetof(struct cnc_layout, other) + (offset), CNC_##type},
+static const struct cnc_shape cnc_shapes[CNC_CELLS] = {CNC_NUMBERS(CNC_OWN_, CNC_SAME_)};
+#undef CNC_OWN_
+#undef CNC_SAME_
 
-/* The same at a place in memory, with any type of numbers: cnc_cell_place(cell) + a byte offset (SYST_TIME_INFO's fields), or the
- * place of an operand. */
-unsigned cnc_cell_place(enum cnc_cell cell);
-int64_t cnc_read_number(const struct cnc_cells *cells, unsigned place, enum cnc_type type);
-void cnc_write_number(struct cnc_cells *cells, unsigned place, enum cnc_type type, int64_t value);
+static inline unsigned cnc_cell_place(enum cnc_cell cell)
+{
+    return cnc_shapes[cell].place;
+}
+
+/* A number of any type at a place in memory: cnc_cell_place() + a byte offset (SYST_TIME_INFO's fields), or an operand's. */
+static inline int64_t cnc_read_number(const struct cnc_cells *cells, unsigned place, enum cnc_type type)
+{
+    const uint8_t *at = cells->memory + place;
+    uint32_t low = at[0];
+
+    if (type == CNC_BYTE)
+        return low;
+    low |= (uint32_t)at[1] << 8;
+    if (type == CNC_WORD)
+        return low;
+    low |= (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+    if (type == CNC_DWRD)
+        return (int32_t)low;
+    uint32_t high = at[4] | (uint32_t)at[5] << 8 | (uint32_t)at[6] << 16 | (uint32_t)at[7] << 24;
+    return (int64_t)((uint64_t)high << 32 | low);
+}
+
+/* The same is written, cut to the width of the type. */
+static inline void cnc_write_number(struct cnc_cells *cells, unsigned place, enum cnc_type type, int64_t value)
+{
+    uint8_t *at = cells->memory + place;
+    uint64_t bits = (uint64_t)value;
+
+    at[0] = (uint8_t)bits;
+    if (type == CNC_BYTE)
+        return;
+    at[1] = (uint8_t)(bits >> 8);
+    if (type == CNC_WORD)
+        return;
+    at[2] = (uint8_t)(bits >> 16);
+    at[3] = (uint8_t)(bits >> 24);
+    if (type == CNC_DWRD)
+        return;
+    at[4] = (uint8_t)(bits >> 32);
+    at[5] = (uint8_t)(bits >> 40);
+    at[6] = (uint8_t)(bits >> 48);
+    at[7] = (uint8_t)(bits >> 56);
+}
+
 double cnc_read_real(const struct cnc_cells *cells, unsigned place);
 void cnc_write_real(struct cnc_cells *cells, unsigned place, double value);
+
+/* The place of element `index` of a cell, which is below its count. */
+static inline unsigned cnc_element_place(enum cnc_cell cell, unsigned index)
+{
+    static const uint8_t sizes[CNC_TYPES] = {0, 1, 2, 4, 8, 8, 1};
+
+    return cnc_shapes[cell].place + index * sizes[cnc_shapes[cell].type];
+}
+
+/* Element `index` of a cell of whole numbers. */
+static inline int64_t cnc_number(const struct cnc_cells *cells, enum cnc_cell cell, unsigned index)
+{
+    return cnc_read_number(cells, cnc_element_place(cell, index), (enum cnc_type)cnc_shapes[cell].type);
+}
+
+static inline void cnc_put_number(struct cnc_cells *cells, enum cnc_cell cell, unsigned index, int64_t value)
+{
+    cnc_write_number(cells, cnc_element_place(cell, index), (enum cnc_type)cnc_shapes[cell].type, value);
+}
+
+/* Element `index` of a cell of type REAL. */
+static inline double cnc_real(const struct cnc_cells *cells, enum cnc_cell cell, unsigned index)
+{
+    return cnc_read_real(cells, cnc_element_place(cell, index));
+}
+
+static inline void cnc_put_real(struct cnc_cells *cells, enum cnc_cell cell, unsigned index, double value)
+{
+    cnc_write_real(cells, cnc_element_place(cell, index), value);
+}
 
 /* ---- The table ------------------------------------------------------------------------------------------------------- */
 
