@@ -8,6 +8,9 @@
 #include "serve/serve_sandbox.h"
 #include "serve/serve_window.h"
 
+#define FILES_MAX 2048u /* of the C library */
+#define FILES_SPARE 48u /* standard streams, streams in memory, reports, the control file, files of control clients */
+
 /* Ctrl-C, Ctrl-Break, and the console that is closed. */
 const int serve_signals[SERVE_SIGNALS] = {SIGINT, SIGBREAK, SIGHUP};
 
@@ -31,11 +34,17 @@ bool serve_has_option(const char *name)
     return true;
 }
 
-/* Handles are as many as there is memory. */
+/* Sockets are handles, of which there are as many as there is memory; files are descriptors of the C library. */
 bool serve_allow_files(const struct bus_options *options)
 {
-    (void)options;
-    return true;
+    unsigned line = (options->record != NULL) + (options->flash ? options->nodes.count : 0);
+    for (unsigned i = 0; i < BUS_FILES_MAX; i++)
+        line += (unsigned)(options->trace[i] != NULL) + (options->wire[i] != NULL);
+    _setmaxstdio(FILES_MAX);
+    if (options->lines * line + FILES_SPARE <= FILES_MAX)
+        return true;
+    log_error("too many files: %u, expected at most %u", options->lines * line, FILES_MAX - FILES_SPARE);
+    return false;
 }
 
 /* A process of Windows keeps the rights of its user. */

@@ -125,6 +125,8 @@ test_what_Windows_does_not_have_is_refused() {
     exits 1 exe serve --tcp "$(part bus tcp)"
     holds "$complained" "another program listens there" "the message about a port in use"
     end_exe bus
+    exits 1 exe serve --tcp 0 --lines 256 --node 1-16 --flash f%l-%n.flash
+    holds "$complained" "too many files: 4096, expected at most 2000" "the message about files"
     exits 1 exe serve --tcp 192.0.2.1:4001
     holds "$complained" "cannot listen at 192.0.2.1:4001" "the message about a strange address"
 }
