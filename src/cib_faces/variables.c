@@ -20,8 +20,8 @@ struct row {
     uint8_t bit;
 };
 
-#define DI_BIT(n) {"DI" #n, CIB_INPUT_ZONE, BIT, 0, n - 1}
-#define DO_BIT(n) {"DO" #n, CIB_OUTPUT_ZONE, BIT, 0, n - 1}
+#define DI_BIT(n) {"DI" #n, CIB_INPUT_ZONE, BIT, 0, (n) - 1}
+#define DO_BIT(n) {"DO" #n, CIB_OUTPUT_ZONE, BIT, 0, (n) - 1}
 #define PWM(n) {"PWM" #n, CIB_OUTPUT_ZONE, WORD, n, 0}
 #define STATUS(name, bit) {name, CIB_INPUT_ZONE, BIT, 1, bit}
 

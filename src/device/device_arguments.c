@@ -105,17 +105,21 @@ static char *read_text(const char *path, size_t *length, const char **why)
     FILE *file = fopen(path, "re");
     char *text = file ? malloc(FILE_SIZE_MAX + 2u) : NULL;
     *length = text ? fread(text, 1, FILE_SIZE_MAX + 1u, file) : 0;
-    *why = !text || ferror(file) ? strerror(errno) : *length > FILE_SIZE_MAX ? "it is longer than 1 MiB" : NULL;
-    if (!*why && memchr(text, '\0', *length))
+    *why = NULL;
+    if (!text || ferror(file))
+        *why = strerror(errno);
+    else if (*length > FILE_SIZE_MAX)
+        *why = "it is longer than 1 MiB";
+    else if (memchr(text, '\0', *length))
         *why = "expected text without the character 0";
-    if (!*why && !output_file_spare(path))
+    else if (!output_file_spare(path))
         *why = strerror(ENOMEM);
+    else
+        text[*length] = '\0';
     if (file)
         fclose(file);
-    if (!*why) {
-        text[*length] = '\0';
+    if (!*why)
         return text;
-    }
     free(text);
     return NULL;
 }

@@ -89,7 +89,7 @@ static bool set_polling(struct line_watch *watch, bool on)
     if (watch->looking == on)
         return true;
     if (on)
-        spec.it_interval.tv_nsec = spec.it_value.tv_nsec = LOOK_MS * 1000000l;
+        spec.it_interval.tv_nsec = spec.it_value.tv_nsec = LOOK_MS * 1000000L;
     if (!make_timer(watch))
         return false;
     watch->looking = timerfd_settime(watch->timer, 0, &spec, NULL) == 0 ? on : watch->looking;

@@ -57,7 +57,7 @@ static const unsigned controls[] = {
     TIOCMBIS, TIOCMBIC, TIOCMSET, TIOCSERGETLSR, TIOCGRS485, TIOCSRS485,
 };
 
-#define COUNT(list) (sizeof list / sizeof list[0])
+#define COUNT(list) (sizeof(list) / sizeof(list)[0])
 
 static bool add_calls(scmp_filter_ctx filter)
 {

@@ -4,7 +4,7 @@
 #include <embedded/window_pages.h>
 #include <string.h>
 
-#define ROW(path, type, name) {path, type, name, sizeof name},
+#define ROW(path, type, name) {path, type, name, sizeof(name)},
 static const struct window_file files[] = {WINDOW_PAGES(ROW)};
 #undef ROW
 
