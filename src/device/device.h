@@ -297,6 +297,7 @@ struct device_kind {
     const char *const *value_names;
     int32_t (*value)(const struct device_unit *unit, unsigned number);
     unsigned addresses;      /* 1..addresses are addresses; at most 247 */
+    const char *address_note; /* how they are set, for messages: ", as set with switch S1"; NULL: nothing is said */
     unsigned ticks_per_us;
     unsigned slot;           /* us of the period in which it reads inputs and executes commands */
     unsigned pulse;          /* us of a step pulse; see pulse_ticks */
@@ -436,6 +437,10 @@ const char *device_kind_names(char text[DEVICE_ERROR_SIZE]);
 /* The number of an input, or output, from 1, by its name or number ("near", "3", "03"). Returns 0: there is none. */
 unsigned device_input_named(const struct device_kind *kind, const char *name);
 unsigned device_output_named(const struct device_kind *kind, const char *name);
+
+/* What addresses of units are expected, for messages: "expected addresses from 1 to 16, as in 3 or 1,2,5-8, at most 16 units".
+ * Returns `text`. */
+const char *device_addresses(const struct device_kind *kind, char text[DEVICE_ERROR_SIZE]);
 
 /* What inputs, or outputs, are expected, for messages: "1 to 8", "1 to 3 or near, home, z". Returns `text`. */
 const char *device_input_names(const struct device_kind *kind, char text[DEVICE_ERROR_SIZE]);

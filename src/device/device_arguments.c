@@ -93,7 +93,7 @@ const struct argp *device_arguments_argp(struct device_arguments *arguments)
         add_kind(arguments, kind);
     help.row[help.rows] = (struct argp_option){0};
     help.argp = (struct argp){.options = help.row, .parser = parse};
-    arguments->kind = &rkm04_device;
+    arguments->kind = device_kind_at(0);
     return &help.argp;
 }
 

@@ -33,6 +33,13 @@ const char *device_kind_names(char text[DEVICE_ERROR_SIZE])
     return text;
 }
 
+const char *device_addresses(const struct device_kind *kind, char text[DEVICE_ERROR_SIZE])
+{
+    snprintf(text, DEVICE_ERROR_SIZE, "expected addresses from 1 to %u%s, as in 3 or 1,2,5-8, at most %u units", kind->addresses,
+             kind->address_note ? kind->address_note : "", NODE_LIST_MAX);
+    return text;
+}
+
 const struct device_kind *device_kind_named(const char *name)
 {
     const struct device_kind *kind;

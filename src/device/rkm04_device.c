@@ -375,6 +375,7 @@ const struct device_kind rkm04_device = {
     .variables = RKM04_VARIABLES,
     .first_variable = RKM04_FIRST_VARIABLE,
     .addresses = RKM04_NODE_MAX,
+    .address_note = ", as set with switch S1",
     .ticks_per_us = 1,
     .slot = RKM04_SLOT_TICKS,
     .pulse = RKM04_PULSE_TICKS,

@@ -11,8 +11,6 @@
 #include <rkm04/limits.h>
 
 #define NODE_LIST_MAX 16u /* units on a line (U4) */
-#define NODE_LIST_EXPECTED "addresses from 1 to 16, as set with switch S1, as in 3 or 1,2,5-8, at most 16 units"
-#define NODE_LIST_FORMAT "expected addresses from 1 to %u, as in 3 or 1,2,5-8, at most 16 units" /* of another kind */
 #define NODE_NAME_SIZE 8u
 
 /* The addresses of the units of a line, in the order given. An address may occur more than once, as on a bus on which two
@@ -22,7 +20,7 @@ struct node_list {
     uint8_t node[NODE_LIST_MAX];
 };
 
-/* Read "3", "1,2,5-8". Returns false if it is none of NODE_LIST_EXPECTED. */
+/* Read addresses from 1 to 16, at most 16 of them: "3", "1,2,5-8". Returns false if they are something else. */
 bool node_list_read(struct node_list *list, const char *text);
 
 /* The same for a kind of device with addresses 1..addresses, at most 247. */

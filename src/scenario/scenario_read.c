@@ -125,12 +125,11 @@ static bool read_line(struct scenario *scenario, const struct config_node *root)
     bool ok = true;
     struct sim_config *config = &scenario->config;
     uint64_t turnaround = device_turnaround(config->device);
+    char expected[DEVICE_ERROR_SIZE];
     const char *units = text_of(root, "units", &ok);
     const char *baud = text_of(root, "baud", &ok);
     if (!node_list_read_up_to(&config->nodes, units != NULL ? units : "1", config->device->addresses))
-        ok = config->device == &rkm04_device
-                   ? config_error(config_get(root, "units"), "expected %s", NODE_LIST_EXPECTED)
-                   : config_error(config_get(root, "units"), NODE_LIST_FORMAT, config->device->addresses);
+        ok = config_error(config_get(root, "units"), "%s", device_addresses(config->device, expected));
     config->timed = baud == NULL || strcmp(baud, "0") != 0;
     ok = (baud == NULL || strcmp(baud, "0") == 0 || read_rate(config, config_get(root, "baud"), baud)) && ok;
     ok = read_time_up_to(root, "turnaround", SEGMENT_TURNAROUND_MAX, &turnaround) && ok;

@@ -520,11 +520,9 @@ static error_t read_test_option(int key, char *text, struct argp_state *state)
 static void check_device(struct bus_options *options, const struct argp_state *state)
 {
     const struct device_kind *device = options->device.kind;
-    if (options->nodes_text && !node_list_read_up_to(&options->nodes, options->nodes_text, device->addresses)) {
-        if (device == &rkm04_device)
-            argp_error(state, "--node: `%s' is wrong: expected " NODE_LIST_EXPECTED, options->nodes_text);
-        argp_error(state, "--node: `%s' is wrong: " NODE_LIST_FORMAT, options->nodes_text, device->addresses);
-    }
+    char expected[DEVICE_ERROR_SIZE];
+    if (options->nodes_text && !node_list_read_up_to(&options->nodes, options->nodes_text, device->addresses))
+        argp_error(state, "--node: `%s' is wrong: %s", options->nodes_text, device_addresses(device, expected));
     options->device.config.node = options->nodes.node[0];
     if ((options->coverage || options->min_coverage >= 0) && !device->coverage)
         argp_error(state, "--coverage: not known for the device %s", device->name);
