@@ -21,7 +21,7 @@ struct cause {
     bool stepped;
 };
 
-/* Connect to the control socket next to the link. Returns false if there is none. */
+/* Connect to the control socket, or by the control file, next to the link. Returns false if there is none. */
 static bool connect_beside(struct cause *cause, const char *port)
 {
     char path[PATH_MAX];
@@ -29,7 +29,8 @@ static bool connect_beside(struct cause *cause, const char *port)
     if (strncmp(port, "tcp:", 4) == 0 || snprintf(path, sizeof path, "%s.control", port) >= PATH_MAX)
         return false;
     cause->rpc.quiet = true;
-    return stat(path, &found) == 0 && S_ISSOCK(found.st_mode) && client_rpc_open(&cause->rpc, path);
+    return stat(path, &found) == 0 && (S_ISSOCK(found.st_mode) || S_ISREG(found.st_mode)) &&
+           client_rpc_open(&cause->rpc, path);
 }
 
 /* Returns NULL if the emulator does not answer. */

@@ -11,6 +11,7 @@
 
 #include "client_find.h"
 #include "client_watch.h"
+#include "options/options.h"
 #include "text/text.h"
 
 #define WRONG_PARAMS (-32602) /* JSON-RPC 2.0 */
@@ -207,7 +208,7 @@ static enum exit_status show_or_set_clock(struct client_job *job)
 static char *absolute_path(const char *path)
 {
     char folder[PATH_MAX], *whole;
-    if (path[0] == '/')
+    if (process_path_is_absolute(path))
         return strdup(path);
     if (getcwd(folder, sizeof folder) != NULL && asprintf(&whole, "%s/%s", folder, path) >= 0)
         return whole;

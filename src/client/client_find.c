@@ -21,7 +21,7 @@ static bool is_candidate(const char *path)
 {
     struct stat found;
     size_t length = strlen(path), end = sizeof ENDING - 1;
-    return path[0] == '/' && length > end && strcmp(path + length - end, ENDING) == 0 && stat(path, &found) == 0 &&
+    return length > end && strcmp(path + length - end, ENDING) == 0 && stat(path, &found) == 0 &&
            (S_ISSOCK(found.st_mode) || S_ISREG(found.st_mode)) && found.st_uid == geteuid();
 }
 

@@ -1,19 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Each command runs in a process of its own, so that Ctrl-C ends the command and not the shell, and what one does to the
- * terminal or the port does not stay. Editing, history and completion are libedit's: it is small, in every distribution, and its
- * licence suits any user. */
 #include "client_shell.h"
 
-#include <editline/readline.h>
 #include <err.h>
-#include <errno.h>
 #include <limits.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <rkm04/limits.h>
@@ -23,11 +15,11 @@
 #include "client_help.h"
 #include "client_pmc.h"
 #include "client_request.h"
+#include "client_typing.h"
 #include "client_usage.h"
 #include "client_words.h"
 #include "text/text.h"
 
-#define HISTORY_LINES 1000
 #define OPTIONS_MAX 12
 #define PROMPT_SIZE 56
 
@@ -166,7 +158,6 @@ static bool choose_emulator(struct state *state, bool for_port)
 static enum exit_status run(struct state *state, char *const *word, int count)
 {
     static struct line line;
-    int status;
     const bool for_port = client_request_has(word[0]);
     if ((for_port || client_control_has(word[0])) && !choose_emulator(state, for_port))
         return STATUS_FAILURE;
@@ -175,22 +166,7 @@ static enum exit_status run(struct state *state, char *const *word, int count)
     for (int i = 0; i < count; i++)
         line.argv[line.argc++] = word[i];
     line.argv[line.argc] = NULL;
-    fflush(stdout);
-    pid_t child = fork();
-    if (child == 0) {
-        signal(SIGINT, SIG_DFL);
-        status = state->shell.run(line.argc, line.argv);
-        fflush(stdout);
-        _exit(status);
-    }
-    if (child < 0) {
-        warn("cannot begin a command");
-        return STATUS_FAILURE;
-    }
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            return STATUS_FAILURE;
-    return WIFEXITED(status) ? (enum exit_status)WEXITSTATUS(status) : STATUS_FAILURE;
+    return client_typing_run(state->shell.run, line.argc, line.argv);
 }
 
 static enum exit_status set_number(const struct state *state, char *const *word, int count, unsigned high, unsigned *number)
@@ -295,36 +271,6 @@ static enum exit_status do_file(struct state *state, FILE *in)
 
 /* ---- A person --------------------------------------------------------------------------------------------------------- */
 
-static char *complete_command(const char *text, int again)
-{
-    static unsigned at;
-    if (!again)
-        at = 0;
-    for (;;) {
-        unsigned i = at++;
-        unsigned owns = sizeof own / sizeof own[0] - 1;
-        const char *name = i < owns ? own[i] : client_help_name(i - owns);
-        if (name == NULL)
-            return NULL;
-        if (strncmp(name, text, strlen(text)) == 0)
-            return strdup(name);
-    }
-}
-
-static char *complete_pmc(const char *text, int again)
-{
-    static const char *const names[] = {CLIENT_PMC_NAMES, NULL};
-    static unsigned at;
-    if (!again)
-        at = 0;
-    while (names[at] != NULL) {
-        const char *name = names[at++];
-        if (strncmp(name, text, strlen(text)) == 0)
-            return strdup(name);
-    }
-    return NULL;
-}
-
 /* Is the word that begins at `start` the first one behind `pmc'? */
 static bool is_of_pmc(const char *line, int start)
 {
@@ -333,35 +279,14 @@ static bool is_of_pmc(const char *line, int start)
            name + strspn(line + name, " \t") == (size_t)start;
 }
 
-/* The first word is a command, others are files. */
-static char **complete(const char *text, int start, int end)
+/* The names that the word which begins at `start` may have, from 0 on. */
+static const char *name_of(const char *line, int start, unsigned i)
 {
-    (void)end;
-    if (start > 0 && !is_of_pmc(rl_line_buffer, start))
-        return NULL;
-    return rl_completion_matches(text, start == 0 ? complete_command : complete_pmc);
-}
-
-/* $XDG_STATE_HOME/rkm04/history, else below ~/.local/state. Makes the folders. Returns false if there is no place for it. */
-static bool find_history(char path[PATH_MAX])
-{
-    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
-    char folder[PATH_MAX - 16];
-    int length = state != NULL && state[0] == '/' ? snprintf(folder, sizeof folder, "%s", state) :
-                 home != NULL && home[0] == '/'   ? snprintf(folder, sizeof folder, "%s/.local/state", home) :
-                                                    -1;
-    if (length < 0 || (size_t)length + sizeof "/rkm04" > sizeof folder)
-        return false;
-    for (char *slash = folder + 1; (slash = strchr(slash, '/')) != NULL; slash++) {
-        *slash = '\0';
-        mkdir(folder, 0700);
-        *slash = '/';
-    }
-    mkdir(folder, 0700);
-    strcat(folder, "/rkm04");
-    mkdir(folder, 0700);
-    snprintf(path, PATH_MAX, "%s/history", folder);
-    return true;
+    static const char *const pmc[] = {CLIENT_PMC_NAMES, NULL};
+    const unsigned owns = sizeof own / sizeof own[0] - 1, pmcs = sizeof pmc / sizeof pmc[0] - 1;
+    if (start == 0)
+        return i < owns ? own[i] : client_help_name(i - owns);
+    return i < pmcs && is_of_pmc(line, start) ? pmc[i] : NULL;
 }
 
 static void put_prompt(const struct state *state, char prompt[PROMPT_SIZE])
@@ -376,34 +301,16 @@ static void put_prompt(const struct state *state, char prompt[PROMPT_SIZE])
 
 static enum exit_status do_person(struct state *state)
 {
-    char history[PATH_MAX], prompt[PROMPT_SIZE], *line;
-    bool has_history = find_history(history);
-    rl_readline_name = (char *)"rkmctl";
-    rl_attempted_completion_function = complete;
-    using_history();
-    stifle_history(HISTORY_LINES);
-    if (has_history)
-        read_history(history);
-    signal(SIGINT, SIG_IGN); /* ends the command */
-    puts("help lists the commands, Ctrl-D ends the shell");
-    fflush(stdout);
-    /* Where no line is being edited the terminal turns Ctrl-D into 00, to which libedit gives a binding of its own when it
-     * first prepares the terminal: it would quote the next key. */
-    rl_prep_terminal(1);
-    rl_parse_and_bind("bind ^@ em-delete-or-list");
+    char prompt[PROMPT_SIZE], *line;
+    client_typing_begin(name_of);
     while (!state->is_over) {
         put_prompt(state, prompt);
-        if ((line = readline(prompt)) == NULL)
+        if ((line = client_typing_read(prompt)) == NULL)
             break;
-        if (line[strspn(line, " \t")] != '\0')
-            add_history(line);
         do_line(state, line);
         free(line);
     }
-    mode_t mask = umask(077);
-    if (has_history && write_history(history) == 0)
-        history_truncate_file(history, HISTORY_LINES);
-    umask(mask);
+    client_typing_end();
     return STATUS_SUCCESS;
 }
 

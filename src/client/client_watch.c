@@ -1,21 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include "client_watch.h"
 
-#include <curses.h>
 #include <err.h>
-#include <langinfo.h>
-#include <locale.h>
-#include <poll.h>
-#include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "client_panel.h"
 #include "client_port.h"
-#include "client_terminal.h"
+#include "client_screen.h"
 
 #define PERIOD_US 100000 /* from frame to frame */
 #define TEXT_COLUMNS 100 /* of --once */
@@ -30,19 +24,7 @@ struct watching {
     bool asked;      /* for the state, not yet answered */
     bool plain;      /* nothing but ASCII */
     uint64_t next;   /* when to ask again */
-    SCREEN *screen;
-    bool coloured;
 };
-
-static volatile sig_atomic_t told_to_end, resized;
-
-static void on_signal(int number)
-{
-    if (number == SIGWINCH)
-        resized = 1;
-    else
-        told_to_end = number;
-}
 
 /* ---- The units -------------------------------------------------------------------------------------------------------- */
 
@@ -100,79 +82,17 @@ static enum exit_status show_once(struct watching *w)
     return STATUS_SUCCESS;
 }
 
-/* ---- The terminal ----------------------------------------------------------------------------------------------------- */
-
-static const struct {
-    attr_t attributes;
-    short pair, colour;
-} styles[PANEL_STYLES] = {
-    [PANEL_PLAIN] = {A_NORMAL, 0, 0},        [PANEL_TITLE] = {A_REVERSE, 0, 0},
-    [PANEL_HEAD] = {A_UNDERLINE, 0, 0},      [PANEL_LIT] = {A_BOLD, 1, COLOR_GREEN},
-    [PANEL_DARK] = {A_NORMAL, 0, 0},         [PANEL_WRONG] = {A_BOLD, 2, COLOR_RED},
-};
-
-/* Take the terminal over. Returns false if it cannot be used (reported). */
-static bool open_screen(struct watching *w)
-{
-    const char *no_color = getenv("NO_COLOR");
-    w->screen = client_terminal_is_usable() ? newterm(NULL, stdout, stdin) : NULL;
-    if (w->screen == NULL)
-        return false;
-    cbreak();
-    noecho();
-    nonl();
-    keypad(stdscr, TRUE);
-    nodelay(stdscr, TRUE);
-    curs_set(0);
-    w->coloured = has_colors() && (no_color == NULL || no_color[0] == '\0') && start_color() == OK && use_default_colors() == OK;
-    for (size_t i = 0; w->coloured && i < PANEL_STYLES; i++) {
-        if (styles[i].pair > 0)
-            init_pair(styles[i].pair, styles[i].colour, -1);
-    }
-    w->job->rpc.quiet = true;
-    return true;
-}
-
-static void close_screen(struct watching *w)
-{
-    endwin();
-    delscreen(w->screen);
-    w->job->rpc.quiet = false;
-    if (w->job->rpc.trouble[0] != '\0')
-        warnx("%s", w->job->rpc.trouble);
-}
+/* ---- Live ------------------------------------------------------------------------------------------------------------- */
 
 static void draw(const struct watching *w)
 {
     static struct panel panel;
     struct panel_view view = make_view(w, json_array_size(w->units) > 1 ? KEYS_UNITS : KEYS);
-    erase();
-    client_panel_draw(&panel, &view, LINES, COLS);
-    for (int row = 0; row < panel.rows; row++) {
-        for (int column = 0; column < panel.columns; column++) {
-            const struct panel_cell *cell = &panel.cell[row][column];
-            wchar_t text[2] = {cell->character, L'\0'};
-            cchar_t character;
-            short pair = w->coloured ? styles[cell->style].pair : 0;
-            setcchar(&character, text, styles[cell->style].attributes, pair, NULL);
-            mvadd_wch(row, column, &character);
-        }
-    }
-    refresh();
+    int rows, columns;
+    client_screen_size(&rows, &columns);
+    client_panel_draw(&panel, &view, rows, columns);
+    client_screen_draw(&panel);
 }
-
-/* The terminal has another size. Everything is painted again: what it showed may be gone, even if the size is what it was. */
-static void resize_screen(const struct watching *w)
-{
-    struct winsize size;
-    resized = 0;
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 && size.ws_col > 0)
-        resizeterm(size.ws_row, size.ws_col);
-    clearok(curscr, TRUE);
-    draw(w);
-}
-
-/* ---- The loop --------------------------------------------------------------------------------------------------------- */
 
 static void select_unit(struct watching *w, size_t step)
 {
@@ -186,31 +106,17 @@ static void select_unit(struct watching *w, size_t step)
 /* Obey what has been pressed. Returns false if that is to end. */
 static bool handle_keys(struct watching *w)
 {
-    int key;
-    while ((key = getch()) != ERR) {
-        switch (key) {
-        case 'q':
-        case 'Q':
+    int rows, columns;
+    for (enum client_key key; (key = client_screen_key()) != CLIENT_KEY_NONE;) {
+        if (key == CLIENT_KEY_QUIT)
             return false;
-        case '\t':
-        case 'n':
-        case KEY_RIGHT:
-        case KEY_DOWN:
+        if (key == CLIENT_KEY_NEXT)
             select_unit(w, 1);
-            break;
-        case KEY_BTAB:
-        case 'p':
-        case KEY_LEFT:
-        case KEY_UP:
+        if (key == CLIENT_KEY_BEFORE)
             select_unit(w, json_array_size(w->units) - 1);
-            break;
-        case '\f':
-            resize_screen(w);
-            break;
-        default:
-            break;
-        }
     }
+    if (client_screen_size(&rows, &columns))
+        draw(w);
     return true;
 }
 
@@ -238,45 +144,35 @@ static enum client_rpc_outcome update_state(struct watching *w, json_t **json)
     return CLIENT_RPC_NOTHING;
 }
 
-/* Wait for a key, an answer, or the next frame. Returns false if the terminal has gone. */
+/* Wait for a key, an answer, or the next frame. Returns false if it is to end. */
 static bool wait_for_input(const struct watching *w)
 {
-    struct pollfd ready[] = {{.fd = STDIN_FILENO, .events = POLLIN}, {.fd = w->job->rpc.fd, .events = POLLIN}};
     uint64_t now = client_now();
-    int left = w->asked ? 1000 : w->next > now ? (int)((w->next - now) / 1000u) + 1 : 0;
-    poll(ready, 2, left);
-    return (ready[0].revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
+    return client_screen_wait(w->job->rpc.fd, w->asked ? 1000 : w->next > now ? (int)((w->next - now) / 1000u) + 1 : 0);
 }
 
 static enum exit_status show_live(struct watching *w)
 {
-    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH};
-    struct sigaction action = {.sa_handler = on_signal};
     enum client_rpc_outcome outcome = CLIENT_RPC_NOTHING;
     json_t *json = NULL;
-    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
-        sigaction(signals[i], &action, NULL);
-    if (!open_screen(w))
+    if (!client_screen_open())
         return STATUS_FAILURE;
-    while (told_to_end == 0 && (outcome = update_state(w, &json)) == CLIENT_RPC_NOTHING && wait_for_input(w) && handle_keys(w)) {
-        if (resized)
-            resize_screen(w);
-    }
-    close_screen(w);
+    w->job->rpc.quiet = true;
+    while ((outcome = update_state(w, &json)) == CLIENT_RPC_NOTHING && wait_for_input(w) && handle_keys(w))
+        ;
+    client_screen_close();
+    w->job->rpc.quiet = false;
+    if (w->job->rpc.trouble[0] != '\0')
+        warnx("%s", w->job->rpc.trouble);
     enum exit_status status = outcome == CLIENT_RPC_NOTHING ? STATUS_SUCCESS : client_job_outcome(w->job, outcome, json);
     json_decref(json);
-    if (told_to_end != 0 && told_to_end != SIGINT) { /* Ctrl-C is as good as q; by the others one is ended */
-        signal(told_to_end, SIG_DFL);
-        raise(told_to_end);
-    }
+    client_screen_raise();
     return status;
 }
 
 enum exit_status client_watch(struct client_job *job)
 {
-    struct watching w = {.job = job};
-    setlocale(LC_CTYPE, "");
-    w.plain = strcmp(nl_langinfo(CODESET), "UTF-8") != 0;
+    struct watching w = {.job = job, .plain = client_screen_is_plain()};
     bool live = !job->once && !job->json;
     if (live && (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO)))
         return client_usage("watch: expected a terminal on standard input and output; --once prints one picture as text");

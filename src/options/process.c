@@ -34,6 +34,11 @@ void process_begin(void)
     unblock_signals();
 }
 
+bool process_path_is_absolute(const char *path)
+{
+    return path[0] == '/';
+}
+
 bool process_find_window(char path[PATH_MAX])
 {
     char self[PATH_MAX];

@@ -11,6 +11,9 @@
  * Ends the program with status 1 if there is no /dev/null. */
 void process_begin(void);
 
+/* Does the path begin at the root of the files, or of a drive? */
+bool process_path_is_absolute(const char *path);
+
 /* The program rkm04-window, which `rkmctl window' and `rkm04 serve --window' start: next to this one, or in libexec/rkm04 of the
  * place where it was installed. Returns false if it is in neither. */
 bool process_find_window(char path[PATH_MAX]);

@@ -199,3 +199,30 @@ int tcdrain(int fd)
     (void)fd;
     return com == INVALID_HANDLE_VALUE || FlushFileBuffers(com) ? 0 : -1;
 }
+
+int tcgetattr(int fd, struct termios *settings)
+{
+    DCB dcb = {.DCBlength = sizeof dcb};
+    (void)fd;
+    if (com == INVALID_HANDLE_VALUE || !GetCommState(com, &dcb))
+        return -1;
+    settings->speed = dcb.BaudRate;
+    return 0;
+}
+
+int tcsetattr(int fd, int when, const struct termios *settings)
+{
+    DCB dcb = {.DCBlength = sizeof dcb};
+    (void)fd;
+    (void)when;
+    if (com == INVALID_HANDLE_VALUE || !GetCommState(com, &dcb))
+        return -1;
+    dcb.BaudRate = settings->speed;
+    return SetCommState(com, &dcb) ? 0 : -1;
+}
+
+int cfsetspeed(struct termios *settings, speed_t speed)
+{
+    settings->speed = speed;
+    return 0;
+}

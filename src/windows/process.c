@@ -47,6 +47,11 @@ void process_begin(void)
     }
 }
 
+bool process_path_is_absolute(const char *path)
+{
+    return path[0] == '/' || path[0] == '\\' || (path[0] != '\0' && path[1] == ':');
+}
+
 bool process_find_window(char path[PATH_MAX])
 {
     (void)path;

@@ -4,6 +4,22 @@
 #include <errno.h>
 #include <stdarg.h>
 
+#undef strerror
+
+/* Of the numbers that Windows has of POSIX, it has no texts. */
+char *windows_strerror(int error)
+{
+    static const struct {
+        int error;
+        const char *text;
+    } texts[] = {{ECONNREFUSED, "Connection refused"}, {ECONNRESET, "Connection reset by peer"}, {EWOULDBLOCK, "Try again"},
+                 {EAFNOSUPPORT, "Not in Windows"},     {ETIMEDOUT, "Connection timed out"}};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+        if (texts[i].error == error)
+            return (char *)(uintptr_t)texts[i].text;
+    return strerror(error);
+}
+
 char *strndup(const char *text, size_t length)
 {
     size_t kept = strnlen(text, length);
@@ -46,7 +62,7 @@ static void report(int error, const char *format, va_list values)
 {
     fprintf(stderr, "%s: ", windows_short_name());
     vfprintf(stderr, format, values);
-    fprintf(stderr, error ? ": %s\n" : "%s\n", error ? strerror(error) : "");
+    fprintf(stderr, error ? ": %s\n" : "%s\n", error ? windows_strerror(error) : "");
 }
 
 void vwarnx(const char *format, va_list values)

@@ -66,6 +66,12 @@ test_messages_say_what_is_wrong_with_the_file() {
     holds "$complained" "has ended" "an emulator that is no more"
 }
 
+test_causes_of_silence_are_found_by_the_file() {
+    emulator --node 3
+    exits 3 "$RKMCTL" -p "$folder/bus" -n 5 --timeout 300 version
+    holds "$complained" "there are 3: select one with -n" "the addresses there are"
+}
+
 test_the_options_go_together_or_say_why_not() {
     exits 2 "$RKM04" serve --control-file x
     holds "$complained" "expected --control tcp:PORT, too" "the message"

@@ -143,8 +143,8 @@ test_rkmctl_reports_a_port_that_is_not_there_and_what_it_does_not_have() {
         same 1 $? "exit status at $port"
         holds "$(<ctl.err)" "$port" "the message"
     done
-    wine_in "$prefix" "${RKM04_EXE%/*}/rkmctl.exe" state >ctl.out 2>ctl.err
-    same 2 $? "exit status of state"
+    wine_in "$prefix" "${RKM04_EXE%/*}/rkmctl.exe" window >ctl.out 2>ctl.err
+    same 2 $? "exit status of window"
     holds "$(<ctl.err)" "docs/WINDOWS.md" "the message"
 }
 

@@ -26,6 +26,8 @@
 #define O_NOFOLLOW 0
 #define O_DIRECTORY 0 /* a folder cannot be opened, which is no failure where this stands */
 
+#define S_ISSOCK(mode) 0
+
 typedef uint64_t windows_ino_t;
 
 /* With the numbers that distinguish files, which the system's own has not. */
@@ -87,9 +89,12 @@ int windows_fflush(FILE *file);
 
 /* ---- Text ----------------------------------------------------------------------------------------------------------- */
 
+char *windows_strerror(int error);
 char *strndup(const char *text, size_t length);
 void *memrchr(const void *bytes, int wanted, size_t length);
 void *memmem(const void *bytes, size_t length, const void *wanted, size_t wanted_length);
+
+#define strerror windows_strerror
 
 /* ---- The process ---------------------------------------------------------------------------------------------------- */
 
