@@ -7,12 +7,13 @@ enum cnc_limit cnc_find_limit(const struct cnc *cnc, unsigned axis, int directio
     const struct cnc_axis_config *config = &cnc->config->axis[axis];
     if (cnc_is_set(cnc, (direction > 0 ? CNC_BIT_KHx0 : CNC_BIT_KHx1) + axis))
         return CNC_LIMIT_SWITCH;
+    if (!(direction > 0 ? config->has_sls_plus : config->has_sls_minus))
+        return CNC_LIMIT_NONE;
     const int64_t both = cnc_number(&cnc->cells, CNC_CELL_SLS_REFER, 0) & cnc_number(&cnc->cells, CNC_CELL_HOMING, 0);
     if ((both >> axis & 1) == 0)
         return CNC_LIMIT_NONE;
     const int64_t position = cnc_position(cnc, axis, 5);
-    if (direction > 0 ? config->has_sls_plus && position >= config->sls_plus
-                      : config->has_sls_minus && position <= config->sls_minus)
+    if (direction > 0 ? position >= config->sls_plus : position <= config->sls_minus)
         return CNC_LIMIT_SOFTWARE;
     return CNC_LIMIT_NONE;
 }

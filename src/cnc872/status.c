@@ -2,6 +2,8 @@
 /* status.c: cells that show what the cnc does (NS1 to NS5, NB5, NB6). */
 #include "frame.h"
 
+#define SHORT_AXES 6u /* of B_POL, B_INK, MPx */
+
 int64_t cnc_position(const struct cnc *cnc, unsigned axis, unsigned space)
 {
     const struct cnc_axis_config *config = &cnc->config->axis[axis];
@@ -22,7 +24,7 @@ static int64_t eighths(int64_t position)
 static void put_positions(struct cnc *cnc, unsigned i)
 {
     const struct cnc_axis *axis = &cnc->axis[i];
-    if (i < 6) {
+    if (i < SHORT_AXES) {
         cnc_put_number(&cnc->cells, CNC_CELL_B_POL, i, eighths(axis->block_start));
         cnc_put_number(&cnc->cells, CNC_CELL_B_INK, i, eighths(axis->position) - eighths(axis->block_start));
     }
@@ -47,8 +49,9 @@ static void put_axes(struct cnc *cnc)
 {
     const bool manual = cnc_is_set(cnc, CNC_BIT_ACK_AUTMAN);
     bool switches = false, software = false, same = true;
-    for (unsigned i = 0; i < CNC_AXES; i++) {
+    for (unsigned i = 0; i < SHORT_AXES; i++)
         cnc_set(cnc, CNC_BIT_MPx + i, may_move(cnc, i, manual));
+    for (unsigned i = 0; i < CNC_AXES; i++) {
         if (!cnc->config->axis[i].is_configured)
             continue;
         put_positions(cnc, i);

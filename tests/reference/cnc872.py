@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Compare block machine and motion of the CNC872 with a model in whole numbers.
+
+    cnc872.py SUBJECT [COUNT [SEED]]
+
+SUBJECT is cnc_subject. COUNT stories: a random machine and NC program; starts, stops, annulments, overrides and switches at
+random times. Everything has to be equal at the end of each T. Nothing here is taken from the product."""
+import random
+import subprocess
+import sys
+
+from cnc872_machine import Block, Machine
+
+MM = 65536000
+SHOWN = "PO_F PO_POL PO_STOP SF_STOP G23ACT BLOCK_RESTART CAPI INPOS STATUS_RESTART TIME_DIST".split()
+NAMES = dict(feed_rapid=["FeedRT"], feed_slow=["FeedSlow"], lag=["Lag"],
+             acceleration=["Acceleration", "AccelerationRT", "AccelerationEmergency"],
+             linear=["LinearAccel", "LinearAccelRT", "LinearAccelEmergency"],
+             parabolic=["ParabAccel", "ParabAccelRT", "ParabAccelEmergency"])
+
+
+def random_axis(rng):
+    few = lambda low, high: [rng.randint(low, high) for _ in range(3)]
+    return dict(feed_rapid=rng.randint(500, 20000), feed_slow=rng.randint(50, 2000), lag=rng.choice((1, 1, 1, 7, 20)),
+                acceleration=few(100, 9000), linear=few(100, 9000), parabolic=few(5, 300))
+
+
+def write_config(parabolic, axes):
+    lines = "".join(f'<Axis Name="{axis}" ' + " ".join(
+        f'{name}="{value}"' for key, names in NAMES.items()
+        for name, value in zip(names, values[key] if isinstance(values[key], list) else [values[key]])) + "/>"
+        for axis, values in axes.items())
+    return f'<ChannelConfig AccelerationType="{int(parabolic)}">{lines}</ChannelConfig>'
+
+
+def random_program(rng, axes):
+    """Blocks, and their text."""
+    blocks, text, feed = [], [], rng.randint(100, 9000)
+    place = dict.fromkeys(axes, 0)
+    continuous = rng.random() < 0.5
+    for index in range(rng.randint(1, 6)):
+        kind = rng.random()
+        g = 0 if kind < 0.15 else 1
+        delay = rng.randint(0, 60) if rng.random() < 0.15 else None
+        m = rng.choice((0, 1, 2, 30)) if rng.random() < 0.1 else None
+        moved = list(axes)[:1] if kind < 0.7 else rng.sample(list(axes), rng.randint(0, len(axes)))
+        step = rng.choice((1, 20, 300, 3000))
+        for axis in moved:
+            place[axis] += rng.randint(0, step) if continuous and axis == "X" else rng.randint(-step, step)
+        if rng.random() < 0.5:
+            feed = rng.randint(100, 9000)
+        words = [f"G{23 if continuous else 24}"] if index == 0 else []
+        words += [f"G{g}"] + [f"{axis}{place[axis] / 1000:.3f}" for axis in moved] if moved else []
+        words += [f"F{feed}", f"M{m}" if m is not None else "", f"G4 P{delay / 1000:.3f}" if delay is not None else ""]
+        text.append(" ".join(word for word in words if word))
+        blocks.append(Block(g, {axis: place[axis] * MM // 1000 for axis in moved}, feed, delay, m, continuous))
+    return blocks, text
+
+
+def random_action(rng, axes):
+    axis = rng.choice(list(axes))
+    return rng.choice((
+        ("stop",), ("stop",), ("reset",), ("bit", "STOP_EMERGENCY_REQ", 1), ("bit", "STOP_REQ", 1),
+        ("bit", "STOPPI", rng.randint(0, 1)), ("bit", f"MP{axis}PI", rng.randint(0, 1)), ("bit", f"KH{axis}0", rng.randint(0, 1)),
+        ("bit", f"VAZBA_{axis}", rng.randint(0, 1)), ("bit", f"ZP{axis}1", rng.randint(0, 1)),
+        ("bit", "START_DISABLE", rng.randint(0, 1)), ("bit", "FEED_OVR", rng.randint(0, 1)), ("pot", rng.randint(0, 200)),
+        ("pot", rng.randint(0, 200)), ("cell", "FEED_OVR_MULTIPLIER", rng.randint(0, 1500)),
+        ("cell", "LIMIT_FEED", rng.randint(-9, 3000000)), ("bit", "LIMIT_FEED_REQ", rng.randint(0, 1)),
+        ("cell", "LIMIT_FEED_G00", rng.randint(0, 9000000)), ("bit", "LIMIT_FEED_G00_REQ", rng.randint(0, 1)),
+        ("rtm", rng.choice((0, 0, 7))), ("m01", rng.randint(0, 1)), ("single", rng.randint(0, 1)),
+        ("bit", "EXT_PLC", rng.randint(0, 1)), ("bit", "PLC_PASS_DONE", 1)))
+
+
+def calm(axes):
+    """All back to what lets motions go on."""
+    yield from (("bit", name, 0) for name in ("STOPPI", "START_DISABLE", "FEED_OVR", "LIMIT_FEED_REQ", "LIMIT_FEED_G00_REQ",
+                                              "EXT_PLC"))
+    yield from (("bit", f"{name[0]}{axis}{name[1]}", value) for axis in axes
+                for name, value in ((("MP", "PI"), 1), (("KH", "0"), 0), (("VAZBA_", ""), 1), (("ZP", "1"), 0)))
+    yield from (("pot", 100), ("cell", "FEED_OVR_MULTIPLIER", 1000), ("rtm", 0))
+
+
+def apply(machine, action):
+    kind, *rest = action
+    if kind in ("bit", "cell"):
+        machine.cells[rest[0]] = rest[1]
+    elif kind == "pot":
+        machine.pot = rest[0]
+    elif kind == "rtm":
+        machine.cells["BZH13"] = rest[0]
+    elif kind == "m01":
+        machine.m01 = bool(rest[0])
+    elif kind == "single":
+        machine.block_by_block = bool(rest[0])
+    else:
+        getattr(machine, kind)()
+
+
+def run_story(rng):
+    """Returns the commands for the subject, and what each T must be."""
+    parabolic, axes = rng.random() < 0.5, {axis: random_axis(rng) for axis in "XYZ"}
+    program, text = random_program(rng, axes)
+    machine = Machine(parabolic, axes, program)
+    lines = [f"config {write_config(parabolic, axes)}"] + [f"nc {line}" for line in text] + ["power"]
+    wanted, busy, turns = [], rng.choice((20, 60, 200)), rng.randint(100, 1500)
+    for turn in range(turns):
+        actions = [("start",)] if turn % 97 == 0 or rng.random() < 0.02 else []
+        if turn < turns * 2 // 3 and rng.random() < 1 / busy:
+            actions.append(random_action(rng, axes))
+        if turn == turns * 2 // 3:
+            actions += calm(axes)
+        for action in actions:
+            apply(machine, action)
+            lines.append(" ".join(map(str, action)))
+        lines.append("tick")
+        machine.tick()
+        wanted.append([*(machine.position[axis] for axis in "XYZ"), machine.v, machine.phase,
+                       -1 if machine.block is None else machine.block, *(machine.cells[name] for name in SHOWN)])
+    return lines + ["end"], wanted
+
+
+def compare(subject, seed, number):
+    lines, wanted = run_story(random.Random(f"{seed} {number}"))
+    out = subprocess.run([subject], input="\n".join(lines) + "\n", stdout=subprocess.PIPE, text=True, check=True).stdout
+    got = [list(map(int, line.split())) for line in out.split("\n") if line]
+    for turn, (one, other) in enumerate(zip(got, wanted), 1):
+        if one != other:
+            print(f"story {number}, T {turn}: {one}, expected {other}")
+            print("    x y z v phase block " + " ".join(SHOWN))
+            ticks = [at for at, line in enumerate(lines) if line == "tick"]
+            print("    " + "\n    ".join(f"{lines[:at].count('tick') + 1}: {line}" for at, line in enumerate(lines)
+                                         if at < ticks[turn - 1] and line != "tick"))
+            return 0, 1
+    return len(wanted), int(len(got) != len(wanted))
+
+
+def main():
+    subject, count = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 200
+    seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+    results = [compare(subject, seed, number) for number in range(count)]
+    wrong = sum(result[1] for result in results)
+    print(f"{count} stories, {sum(result[0] for result in results)} T's compared: {wrong} went wrong")
+    sys.exit(wrong > 0)
+
+
+if __name__ == "__main__":
+    main()

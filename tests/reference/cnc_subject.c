@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+/* cnc_subject.c: a CNC872 that does what cnc872.py says. A line of input is a command:
+ *
+ *     config XML | nc LINE | power                    a machine, a line of its NC program, power-up
+ *     start | stop | reset | pot N | rtm N | m01 N | single N | bit NAME N | cell NAME N
+ *     tick                                            one T
+ *     end
+ *
+ * Output of a T: X Y Z, speed, phase, block (-1: none), PO_F PO_POL PO_STOP SF_STOP G23ACT BLOCK_RESTART CAPI INPOS
+ * STATUS_RESTART TIME_DIST. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cnc872/cnc_rig.h"
+
+static char xml[4000], nc[4000];
+
+static void print_turn(void)
+{
+    static const char *const names[] = {"PO_F", "PO_POL", "PO_STOP", "SF_STOP", "G23ACT", "BLOCK_RESTART", "CAPI", "INPOS"};
+    for (unsigned i = 0; i < 3; i++)
+        printf("%" PRId64 " ", cnc.axis[i].position);
+    printf("%" PRId64 " %u %" PRId64, cnc.move.v, cnc.machine.phase,
+           cnc.machine.block == CNC_NO_BLOCK ? -1 : (int64_t)cnc.machine.block);
+    for (unsigned i = 0; i < sizeof names / sizeof *names; i++)
+        printf(" %d", bit(names[i]));
+    printf(" %" PRId64 " %" PRId64 "\n", cell("STATUS_RESTART", 0), cell("TIME_DIST", 0));
+}
+
+static void obey(const char *what, const char *name, long long value)
+{
+    if (strcmp(what, "start") == 0)
+        cnc_start(&cnc);
+    else if (strcmp(what, "stop") == 0)
+        cnc_stop(&cnc);
+    else if (strcmp(what, "reset") == 0)
+        cnc_reset(&cnc);
+    else if (strcmp(what, "pot") == 0)
+        cnc.panel.feed = (uint16_t)atoi(name);
+    else if (strcmp(what, "rtm") == 0)
+        cnc_set_critical(&cnc, (uint8_t)atoi(name));
+    else if (strcmp(what, "m01") == 0)
+        cnc.panel.m01 = atoi(name) != 0;
+    else if (strcmp(what, "single") == 0)
+        cnc.panel.block_by_block = atoi(name) != 0;
+    else if (strcmp(what, "bit") == 0)
+        set_bit(name, value != 0);
+    else if (strcmp(what, "cell") == 0)
+        set_cell(name, 0, value);
+    else
+        ck_abort_msg("unexpected command %s", what);
+}
+
+START_TEST(input)
+{
+    char line[4000];
+    while (fgets(line, sizeof line, stdin) != NULL && strcmp(line, "end\n") != 0) {
+        char what[8] = "", name[32] = "";
+        long long value = 0;
+        rig_events = 0;
+        if (strncmp(line, "config ", 7) == 0) {
+            strcpy(xml, line + 7);
+        } else if (strncmp(line, "nc ", 3) == 0) {
+            strcat(nc, line + 3);
+        } else if (strcmp(line, "power\n") == 0) {
+            rig_power(xml, nc);
+        } else if (strcmp(line, "tick\n") == 0) {
+            cnc_tick(&cnc);
+            print_turn();
+        } else {
+            ck_assert_int_ge(sscanf(line, "%7s %31s %lld", what, name, &value), 1);
+            obey(what, name, value);
+        }
+    }
+}
+END_TEST
+
+/* The rig asserts: it needs a test around it. */
+int main(void)
+{
+    Suite *suite = suite_create("cnc_subject");
+    TCase *only = tcase_create("input");
+    tcase_add_test(only, input);
+    suite_add_tcase(suite, only);
+    SRunner *runner = srunner_create(suite);
+    srunner_set_fork_status(runner, CK_NOFORK);
+    srunner_run_all(runner, CK_SILENT);
+    const int failed = srunner_ntests_failed(runner);
+    TestResult **results = srunner_failures(runner);
+    for (int i = 0; i < failed; i++)
+        fprintf(stderr, "cnc_subject: %s:%d: %s\n", tr_lfile(results[i]), tr_lno(results[i]), tr_msg(results[i]));
+    free(results);
+    srunner_free(runner);
+    return failed == 0 ? 0 : 1;
+}
