@@ -42,7 +42,8 @@ static DWORD read_size(struct line_device *device)
     return status.cbInQue < IN_SIZE ? status.cbInQue : IN_SIZE;
 }
 
-/* The read that is under way, or has to begin, has come to its end. Returns false if it has not, or the port is gone. */
+/* Begin a read unless one is under way, and see whether it has come to its end. Returns false if it has not, or the port is
+ * gone. */
 static bool finish_read(struct line_device *device)
 {
     DWORD length = 0;
@@ -142,7 +143,7 @@ static void on_wake(uv_async_t *handle)
     if (!device)
         return;
     pump(device);
-    if (device->started)
+    if (device->started && (device->at < device->length || finish_read(device) || device->failed))
         poll->readable(poll->context);
     bool more = device->at < device->length || !device->read.pending;
     if (poll->open && device->started && more && !device->failed)

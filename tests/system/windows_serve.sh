@@ -252,6 +252,9 @@ test_a_unit_at_a_COM_port_is_used_to_the_last_step() {
     holds "$said" "the same" "the recording"
     serve_exe bus --port '\\.\COM41' --device pmc-1hs
     end_exe bus
+    serve_exe bus --port COM41 --exit-when-idle=1
+    status_of "$started"
+    holds "$(<bus.err)" "no client has used the bus for 1 s" "the end of an idle unit"
 }
 
 test_a_Windows_program_and_a_unit_are_at_the_two_ends_of_a_pair() {
