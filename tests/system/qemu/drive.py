@@ -7,7 +7,7 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from stm32 import Board  # noqa: E402
+from stm32 import IDLE, INTERRUPTS, NOW, WORST, Board  # noqa: E402
 
 LATE = 2  # us by which the interrupt may come after its tick
 PULSE = 10  # us
@@ -111,11 +111,63 @@ def manual(board, replay, *scenarios):
     print(told(found))
 
 
-TASKS = {"manual": manual, "store": store}
+FULL = "\\ S2000 V16000 A60000 F16000000 R"
+INSTRUCTION = 8  # ns
+
+
+def pulses_of(board):
+    return sum(len(changes) for (name, _), changes in board.powers[-1].pins.items() if name == "step") / 2
+
+
+def figures(board):
+    """Instructions for a pulse, in the main loop and in interrupts: at full speed and on a ramp; of the longest interrupt."""
+    for name, program, begin, length in (("level", FULL, 500_000, 500_000),
+                                         ("ramp", "\\ S100 V16000 A20000 F16000000 R", 20_000, 700_000)):
+        board.power()
+        set_program(board, program)
+        board.run(begin)
+        before, pulses = dict(board.count()), pulses_of(board)
+        board.run(length)
+        after, pulses = board.count(), pulses_of(board) - pulses
+        passed, idle, interrupts = ((after[key] - before[key]) % 2**32 / INSTRUCTION / pulses
+                                    for key in (NOW, IDLE, INTERRUPTS))
+        print(f"{name}_main_loop {passed - idle - interrupts:.0f}\n{name}_interrupts {interrupts:.0f}")
+    print(f"worst_interrupt {after[WORST] // INSTRUCTION}")
+
+
+def late(board, replay):
+    """How late the latest pulse is: four motors at full speed begin together; a request of 1024 bytes comes; three begin
+    compounds of ten segments while one runs."""
+    set_program(board, FULL)
+    board.run(500_000)
+    ends = [board.powers[-1].now]
+    set_program(board, ("F16000000 V16000 A60000 " * 43)[:1010].rsplit(" ", 1)[0])
+    board.run(100_000)
+    ends.append(board.powers[-1].now)
+    set_program(board, "\\ S137")
+    set_program(board, FULL, 4)
+    board.run(300_000)
+    speeds = (9973, 15013, 501, 7013, 16000, 99, 12007, 1999, 15991, 777)
+    for motor in (1, 2, 3):
+        set_program(board, " ".join(f"F{1000 + i} V{speed} A{1000 + 997 * i} Y" for i, speed in enumerate(speeds)) + " R", motor)
+    board.run(300_000)
+    ends.append(board.powers[-1].now)
+    found = [0, 0, 0]
+    (wanted,) = expected(board, replay)
+    for key in wanted:
+        if key[0] == "step":
+            seen = [tick for tick, value in board.powers[-1].pins[key] if value == 1]
+            for (due, _), tick in zip(wanted[key], seen):
+                phase = next((number for number, end in enumerate(ends) if due < end), 2)
+                found[phase] = max(found[phase], tick - due)
+    print("late", *found)
+
+
+TASKS = {"manual": manual, "store": store, "figures": figures, "late": late}
 
 if __name__ == "__main__":
     task, elf, *rest = sys.argv[1:]
-    its = Board(elf)
+    its = Board(elf, *(int(rest.pop(0)) for _ in range(task == "late")))
     try:
         TASKS[task](its, *rest)
     except Wrong as wrong:

@@ -14,7 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..
 
 from link import Hdlc  # noqa: E402
 
-INIT, ADVANCE, BYTE, RECEIVE, INPUTS, SEND, PLAY, CUT = range(8)
+INIT, ADVANCE, BYTE, RECEIVE, INPUTS, SEND, PLAY, CUT, NOW, IDLE, INTERRUPTS, WORST = range(12)
 WRITE = re.compile(rb"(\w+): unimplemented device write \(size 4, offset 0x(\w+), value 0x(\w+)\)")
 LIMIT = 60  # seconds of ours in which QEMU has to do anything at all
 
@@ -31,18 +31,19 @@ class Power:
 
 
 class Board:
-    """Its time stands but in run() and the like."""
+    """Its time stands but in run() and the like. An instruction takes 2 ^ shift ns."""
 
-    def __init__(self, elf):
+    def __init__(self, elf, shift=3):
         self.folder = tempfile.TemporaryDirectory()
         self.powers, self.bytes, self.rest, self.outputs, self.elapsed = [], bytearray(), b"", 0, 0
+        self.figures = {}
         self.heard, self.got, self.inputs, self.cut = b"", 0, None, None  # bytes offered to the unit; what the hand has done
         words = ["-monitor", f"unix:{self.name('monitor')},server=on,wait=off"]
         for name in ("bus", "hand"):
             words += ["-serial", f"unix:{self.name(name)},server=on,wait=off"]
         self.process = subprocess.Popen(
             ["qemu-system-arm", "-M", "netduinoplus2", "-kernel", elf, "-display", "none", "-d", "unimp,guest_errors", "-D",
-             self.name("log"), "-icount", "shift=3,sleep=off", "-S", *words], stdin=subprocess.DEVNULL)
+             self.name("log"), "-icount", f"shift={shift},sleep=off", "-S", *words], stdin=subprocess.DEVNULL)
         self.monitor, self.bus, self.hand = map(self.connect, ("monitor", "bus", "hand"))
         self.log = open(self.name("log"), "rb")  # exists: QEMU opens it before its sockets
         self.heard_from_monitor()
@@ -110,6 +111,8 @@ class Board:
             self.bytes.append(value)
         elif what == CUT:
             self.cut = value
+        elif what >= NOW:
+            self.figures[what] = value
         elif what == PLAY:
             power.now = value
         elif what == RECEIVE:
@@ -162,6 +165,13 @@ class Board:
         """In the middle of the operation of the flash with this number, 1 for the next one."""
         self.hand.sendall(b"c" + bytes([operation]))
         self.start(lambda: self.cut == operation)
+
+    def count(self):
+        """{ NOW, IDLE, INTERRUPTS, WORST: ns }, the last one of the longest interrupt."""
+        self.figures = {}
+        self.hand.sendall(b"f\0")
+        self.start(lambda: NOW in self.figures)
+        return self.figures
 
     def power(self):
         """Off and on again; the flash stays."""

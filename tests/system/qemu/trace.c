@@ -2,7 +2,8 @@
 /* trace.c: linked into the firmware of src/port/stm32f405 for tests (make TRACE=...): what the board does with the unit and when
  * it plays pulses, as words written to a device that QEMU lacks, so that they are in its log between those written to the pins.
  * From the second serial port come two bytes each: `i' and the levels of the inputs, or `c' and the number of the operation of
- * the flash in whose middle the power fails, 1 for the next one. See stm32.py. */
+ * the flash in whose middle the power fails, 1 for the next one, or `f' and anything: what interrupts and idleness have taken
+ * is logged. See stm32.py. */
 #include <string.h>
 
 #include <rkm04/unit.h>
@@ -12,8 +13,10 @@
 #include "stm32f405.h"
 
 #define LOG ((volatile uint32_t *)0x50050000) /* DCMI */
-enum { LOG_INIT, LOG_ADVANCE, LOG_BYTE, LOG_RECEIVE, LOG_INPUTS, LOG_SEND, LOG_PLAY, LOG_CUT };
+enum { LOG_INIT, LOG_ADVANCE, LOG_BYTE, LOG_RECEIVE, LOG_INPUTS, LOG_SEND, LOG_PLAY, LOG_CUT, LOG_NOW, LOG_IDLE,
+       LOG_INTERRUPTS, LOG_WORST };
 
+#define TIM5 ((struct stm32_tim *)0x40000c00) /* counts ns here */
 #define USART2 ((struct stm32_usart *)0x40004400)
 
 /* The linker calls __wrap_f for f, and f for __real_f. */
@@ -38,8 +41,43 @@ int __real_flash_program(void *, unsigned, unsigned, const void *, unsigned);
 int __wrap_flash_program(void *, unsigned, unsigned, const void *, unsigned);
 int flash_read(void *, unsigned, unsigned, void *, unsigned);
 
+/* ns, of the interrupts that play pulses. The vectors are in RAM. */
+static uint32_t idle, in_interrupts, worst;
+static handler *plays, *plays_in_qemu;
+
+static void count(handler *interrupt)
+{
+    uint32_t begin = TIM5->cnt;
+    interrupt();
+    uint32_t took = TIM5->cnt - begin;
+    in_interrupts += took;
+    worst = took > worst ? took : worst;
+}
+
+static void count_timer(void)
+{
+    count(plays);
+}
+
+static void count_systick(void)
+{
+    count(plays_in_qemu);
+}
+
+static void start_counting(void)
+{
+    handler **vectors = (handler **)(uintptr_t)SCB_VTOR, **timer = &vectors[16 + IRQ_TIM2], **systick = &vectors[15];
+    plays = *timer;
+    plays_in_qemu = *systick;
+    *timer = count_timer;
+    *systick = count_systick;
+    TIM5->arr = UINT32_MAX;
+    TIM5->cr1 = TIM_ON;
+}
+
 void __wrap_rkm04_init(struct rkm04_unit *unit, const struct rkm04_config *config, const struct rkm04_port *port, void *context)
 {
+    start_counting();
     USART2->cr1 = USART_ON & ~(1u << 5); /* without an interrupt */
     LOG[LOG_INIT] = config->node;
     __real_rkm04_init(unit, config, port, context);
@@ -81,9 +119,12 @@ uint32_t __wrap_pulses_play(struct pulses *pulses, const struct pulse_pins *pins
 /* QEMU 7.2 does not know how late it is after WFI, if it counts instructions. It does these in no time, and counts them. */
 void __wrap_board_wait(void)
 {
+    uint32_t before = in_interrupts, begin = TIM5->cnt;
     interrupts_on();
-    __asm__ volatile(".rept 400\n nop\n .endr");
+    for (unsigned i = 0; i < 10; i++)
+        __asm__ volatile(".rept 400\n nop\n .endr");
     interrupts_off();
+    idle += TIM5->cnt - begin - (in_interrupts - before);
 }
 
 static uint8_t inputs, operations_left; /* 0: the power does not fail */
@@ -93,6 +134,11 @@ static void obey(uint8_t what, uint8_t value)
     if (what == 'i') {
         inputs = value;
         EXTI->swier = 0xff; /* as a change of the pins would do */
+    } else if (what == 'f') {
+        LOG[LOG_IDLE] = idle;
+        LOG[LOG_INTERRUPTS] = in_interrupts;
+        LOG[LOG_WORST] = worst;
+        LOG[LOG_NOW] = TIM5->cnt;
     } else {
         LOG[LOG_CUT] = operations_left = value;
     }
