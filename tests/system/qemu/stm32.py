@@ -68,7 +68,16 @@ class Board:
     def heard_from_monitor(self):
         heard = b""
         while not heard.endswith(b"\n(qemu) "):
-            heard += self.monitor.recv(4096) or b"\n(qemu) "
+            self.hear_bus()
+            if select.select([self.monitor, self.bus], [], [], LIMIT)[0] == []:
+                raise Gone("QEMU does not answer any more")
+            if select.select([self.monitor], [], [], 0)[0]:
+                heard += self.monitor.recv(4096) or b"\n(qemu) "
+
+    def hear_bus(self):
+        """QEMU waits, and does nothing else, when some 300 bytes wait here."""
+        if select.select([self.bus], [], [], 0)[0]:
+            self.heard += self.bus.recv(65536)
 
     def command(self, text):
         """Of the monitor."""
@@ -79,8 +88,7 @@ class Board:
 
     def look(self):
         """Read what is new on the bus and in the log."""
-        if select.select([self.bus], [], [], 0)[0]:  # QEMU waits when some 300 bytes wait here
-            self.heard += self.bus.recv(65536)
+        self.hear_bus()
         data = self.rest + self.log.read()
         whole = data.rfind(b"\n") + 1
         self.rest = data[whole:]
