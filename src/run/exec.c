@@ -3,7 +3,6 @@
 #include <argp.h>
 #include <errno.h>
 #include <inttypes.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +12,7 @@
 #include "exec_report.h"
 #include "exec_run.h"
 #include "file/file.h"
+#include "interrupt.h"
 #include "options/options.h"
 #include "run.h"
 #include "text/text.h"
@@ -126,15 +126,6 @@ static void parse_options(int argc, char **argv, struct options *options)
 
 /* ---- Run ---------------------------------------------------------------------------------------------------------- */
 
-/* A second signal ends the process at once. */
-static void catch_signals(void)
-{
-    struct sigaction action = {.sa_handler = exec_run_interrupt, .sa_flags = (int)SA_RESETHAND};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    signal(SIGPIPE, SIG_IGN); /* a closed pipe is a failed write, which is reported */
-}
-
 static bool is_running(struct exec_run *run)
 {
     bool running = false;
@@ -214,7 +205,7 @@ static int run_programs(struct exec_run *run, const struct options *options, FIL
     run->progress = isatty(STDERR_FILENO) != 0;
     run->answered = report_answer;
     run->context = &report;
-    catch_signals();
+    interrupt_catch(exec_run_interrupt);
     if (!exec_run_begin(run) || !begin_trace(run, options, out, &trace)) {
         fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
         return STATUS_FAILURE;

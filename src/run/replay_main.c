@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "interrupt.h"
 #include "options/options.h"
 #include "record/record.h"
 #include "run.h"
@@ -117,15 +118,6 @@ static void on_signal(int number)
 {
     (void)number;
     interrupted = 1;
-}
-
-/* A second signal ends the process at once. */
-static void catch_signals(void)
-{
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    signal(SIGPIPE, SIG_IGN);
 }
 
 struct progress {
@@ -314,7 +306,7 @@ int replay_main(int argc, char **argv)
         fputs("rkm04 replay: out of memory\n", stderr);
         return STATUS_FAILURE;
     }
-    catch_signals();
+    interrupt_catch(on_signal);
     struct replay *replay = replay_open(name, in);
     int status = STATUS_FAILURE;
     if (replay)

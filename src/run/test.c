@@ -2,12 +2,12 @@
 /* `rkm04 test`: scenarios in virtual time. Its options and exit status; a scenario itself is the room src/scenario. */
 #include <argp.h>
 #include <errno.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "file/file.h"
+#include "interrupt.h"
 #include "options/options.h"
 #include "run.h"
 #include "test_case.h"
@@ -153,15 +153,6 @@ static void parse_options(int argc, char **argv, struct options *options)
 
 /* ---- The run -------------------------------------------------------------------------------------------------------- */
 
-/* A second signal ends the process at once. */
-static void catch_signals(void)
-{
-    struct sigaction action = {.sa_handler = test_case_interrupt, .sa_flags = (int)SA_RESETHAND};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    signal(SIGPIPE, SIG_IGN); /* a closed pipe is a failed write, which is reported */
-}
-
 /* Read all files, to report all their errors. Returns 0 or the exit status. */
 static int read_all(struct test_case *tests, const struct options *options)
 {
@@ -261,7 +252,7 @@ static int run_files(struct test_case *tests, const struct options *options)
             return STATUS_FAILURE;
         }
     }
-    catch_signals();
+    interrupt_catch(test_case_interrupt);
     int wrong = 0;
     bool ok = run_all(tests, options, &wrong);
     ok = report_all(tests, options, junit, wrong) && ok;
