@@ -301,13 +301,101 @@ START_TEST(nh2_several_axes_at_once)
 }
 END_TEST
 
+START_TEST(nh2_a_stop_ends_the_references_of_all_axes)
+{
+    rig_power(NULL, NULL);
+    set_cell("HOMING_START_REQ", 0, 7);
+    run_to(100);
+    set_bit("STOP_REQ", true);
+    run_to(300);
+    ck_assert_int_eq(cell("HOMING_START_REQ", 0), 0);
+    ck_assert(!bit("PO_F") && !bit("PO_OSXPI") && !bit("PO_OSYPI") && !bit("PO_OSZPI"));
+    ck_assert_int_eq(at(300).y, at(200).y);
+    ck_assert_int_eq(at(300).z, at(200).z);
+}
+END_TEST
+
+/* Y searches, reverses, leaves its switch, and searches at FeedRef although ZPRY is 0. */
+START_TEST(nh2_another_axis_reverses)
+{
+    rig_power(NULL, NULL);
+    set_cell("HOMING_START_REQ", 0, 2);
+    set_bit("KRRY", true); /* it is on already: no edge */
+    run_to(200);
+    ck_assert_int_eq(at(199).y - at(200).y, 2184533); /* Feed */
+    set_bit("KRRY", false);
+    run_to(201);
+    set_bit("KRRX", true); /* of another axis */
+    set_bit("KRX", true);
+    run_to(202);
+    ck_assert_int_eq(cnc.axis[1].reference.state, CNC_REFERENCE_SEARCH);
+    set_bit("KRRY", true);
+    run_to(203);
+    ck_assert_int_eq(cnc.axis[1].reference.state, CNC_REFERENCE_TO_BACK);
+    run_to(500);
+    ck_assert_int_eq(at(500).y - at(499).y, 2184533); /* back at Feed */
+    ck_assert(!bit("SM_POYPI"));
+    set_bit("KRRY", false); /* not looked at in BACK */
+    run_to(501);
+    set_bit("KRRY", true);
+    run_to(502);
+    set_bit("ZPRY", true);
+    run_to(600);
+    ck_assert_int_eq(at(600).y - at(599).y, 327680); /* FeedRef */
+    set_bit("ZPRY", false);
+    set_bit("KRY", true);
+    run_to(650);
+    ck_assert_int_eq(at(650).y - at(649).y, 327680);
+    set_bit("KRY", false);
+    run_to(800);
+    ck_assert_int_eq(at(799).y - at(800).y, 327680);
+    ck_assert(bit("SM_POYPI"));
+    set_bit("KRY", true);
+    run_to(900);
+    ck_assert_int_eq(cell("HOMING", 0), 2);
+}
+END_TEST
+
+START_TEST(nh2_bits_of_a_reference_after_a_block)
+{
+    rig_begin("G1 X1 F1000");
+    run_to(150);
+    ck_assert(bit("AUTPI") && bit("SF_BLOCKFINISHED"));
+    set_cell("HOMING_START_REQ", 0, 2);
+    run_to(200);
+    ck_assert(!bit("AUTPI") && bit("REFPI") && !bit("SF_BLOCKFINISHED") && bit("SF_BLOCKINPROGR") && bit("SF_RUN"));
+    cnc_reset(&cnc);
+    run_to(400);
+    ck_assert(bit("CAPI") && !bit("REFPI"));
+    set_cell("HOMING_START_REQ", 0, 2);
+    run_to(401);
+    ck_assert(!bit("CAPI") && bit("REFPI"));
+}
+END_TEST
+
+/* A new position changes no following error. */
+START_TEST(nh1_following_error_stays)
+{
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\" MachineNullPoint=\"50\" Lag=\"1000\"/></ChannelConfig>", "G1 X10 F1000");
+    run_to(300);
+    set_bit("STOP_REQ", true);
+    run_to(399);
+    const int64_t error = cnc.axis[0].position - cnc.axis[0].actual;
+    set_cell("HOMING_REQ", 0, 1);
+    run_to(400);
+    ck_assert_int_eq(cnc_position(&cnc, 0, 5), 50 * MM);
+    ck_assert_int_eq(cnc.axis[0].position - cnc.axis[0].actual, error - error / 1000);
+    ck_assert_int_gt(error, MM);
+}
+END_TEST
+
 START_TEST(nh2_waits_for_the_end_of_a_block)
 {
     rig_begin("G1 X1 F1000");
     run_to(10);
-    set_cell("HOMING_START_REQ", 0, 2);
+    cnc_home(&cnc, 1);
     run_to(95);
-    ck_assert(!bit("REFPI") && !bit("PO_F"));
+    ck_assert(!bit("REFPI") && !bit("PO_F") && bit("HOMING_SINGLE"));
     run_to(200);
     ck_assert(bit("REFPI") && bit("PO_F"));
     ck_assert_int_lt(at(200).y, 0);
@@ -436,6 +524,10 @@ int main(void)
     tcase_add_test(all, nh2_ends_of_a_reference);
     tcase_add_test(all, nh2_enable_holds_a_reference);
     tcase_add_test(all, nh2_several_axes_at_once);
+    tcase_add_test(all, nh2_a_stop_ends_the_references_of_all_axes);
+    tcase_add_test(all, nh2_another_axis_reverses);
+    tcase_add_test(all, nh2_bits_of_a_reference_after_a_block);
+    tcase_add_test(all, nh1_following_error_stays);
     tcase_add_test(all, nh2_waits_for_the_end_of_a_block);
     tcase_add_test(all, ne4_start_disable_drops_references);
     tcase_add_test(all, nh3_key_home);

@@ -90,7 +90,10 @@ START_TEST(nf3_actual_speed)
     begin_in_gear("S1000\nM4\nM5", 3);
     run_to(2);
     ck_assert_int_eq(cell("REQ_SPEED_PM", 0), 999969);
-    ck_assert_int_eq(cell("ACT_SPEED_PM", 0), 0); /* neither M3 nor M4 */
+    static const char *const standing[] = {"ACT_SPEED_PM", "ACT_SPEED_PT", "AVG_SPEED_PM", "AVG_SPEED_PT",
+                                           "ACT_SPEED2_PM", "ACT_SPEED2_PT", "AVG_SPEED2_PM", "AVG_SPEED2_PT"};
+    for (unsigned i = 0; i < 8; i++)
+        ck_assert_int_eq(cell(standing[i], 0), 0); /* neither M3 nor M4 */
     run_to(3);
     ck_assert_int_eq(cell("ACT_SPEED_PM", 0), 999969);
     set_cell("SIM_SPEED_PT", 0, 600);
@@ -204,6 +207,30 @@ START_TEST(nf5_gears)
 }
 END_TEST
 
+START_TEST(nf5_blocks_that_are_not_refused)
+{
+    rig_begin_with(gears, "M43 S1500\nM41 G96 S100 L400\nM8"); /* the limits are of G97 */
+    run_to(3);
+    ck_assert(bit("PO_F") && bit("M41PI"));
+    run_to(5);
+    ck_assert(bit("PO_F") && bit("M08PI"));
+    rig_begin_with(gears, "M43 S1500\nM8\nS1600"); /* neither S nor a gear */
+    run_to(2);
+    set_cell("SPINDLE_GEAR_ACT_1", 0, 1);
+    run_to(3);
+    ck_assert(bit("PO_F") && bit("M08PI"));
+    set_bit("REQ_EXT_SPINDLE_GEAR", true); /* the PLC program writes the gear */
+    set_bit("REQ_MAN_SPINDLE_GEAR", true);
+    run_to(5);
+    ck_assert(bit("PO_F"));
+    rig_power(gears, "M41 S1500"); /* its technology is off */
+    cnc_select(&cnc, 0, false);
+    cnc_start(&cnc);
+    run_to(1);
+    ck_assert(bit("PO_F"));
+}
+END_TEST
+
 START_TEST(nf5_the_automatic_gear_beyond_all_gears)
 {
     rig_begin_with("<ChannelConfig><Gear No=\"2\" MaxSpeed=\"1000\"/></ChannelConfig>", "M40 S100\nM40 S2000");
@@ -285,8 +312,11 @@ START_TEST(w35_spindle_axis)
     run_to(8000);
     ck_assert_int_eq(cnc.axis[3].position, 0);
     cnc_position_spindle(&cnc, 0); /* not a rotary axis */
+    cnc.axis[0].position = cnc.axis[0].actual = MM;
+    cnc_position_spindle(&cnc, 5); /* not configured */
     run_to(8001);
-    ck_assert(!bit("POLOHV_X") && !bit("PO_OSXPI"));
+    ck_assert(!bit("POLOHV_X") && !bit("PO_OSXPI") && !bit("POLOHV_6"));
+    ck_assert_int_eq(cnc.axis[0].position, MM);
 }
 END_TEST
 
@@ -387,6 +417,7 @@ int main(void)
     tcase_add_test(all, w46_threading);
     tcase_add_test(all, nf4_threading_waits_for_the_spindle);
     tcase_add_test(all, nf5_gears);
+    tcase_add_test(all, nf5_blocks_that_are_not_refused);
     tcase_add_test(all, nf5_the_automatic_gear_beyond_all_gears);
     tcase_add_test(all, nf5_gears_of_the_plc);
     tcase_add_test(all, nf5_speed_outside_of_the_gear);
