@@ -157,6 +157,19 @@ START_TEST(K3_pulses_that_nobody_sees_cost_nothing_each)
 }
 END_TEST
 
+/* As a bus goes, from byte to byte. */
+START_TEST(K3_steps_of_a_byte_cost_little_while_nobody_sees_the_pulses)
+{
+    const uint64_t steps = 1000, most = 183;
+    begin(&unwatched, "\\ S100 V16000 A20000 G+");
+    rkm04_advance(&unit, 2 * SECOND);
+    uint64_t spent = 0;
+    for (uint64_t i = 0; i < steps; i++)
+        spent += blocks_of_advance(521);
+    ck_assert_msg(spent <= most * steps, "%" PRIu64 " blocks, expected at most %" PRIu64, spent, most * steps);
+}
+END_TEST
+
 /* ---- Time in which nothing happens ---- */
 
 static const struct {
@@ -185,6 +198,7 @@ int main(void)
     tcase_add_loop_test(one, K3_slot_by_slot_a_pulse_costs_little_more, 0, COUNT(slotwise));
     tcase_add_loop_test(one, K3_no_pulse_and_no_slot_costs_much_more_than_others, 0, COUNT(worst));
     tcase_add_loop_test(one, K3_pulses_that_nobody_sees_cost_nothing_each, 0, COUNT(leaps));
+    tcase_add_test(one, K3_steps_of_a_byte_cost_little_while_nobody_sees_the_pulses);
     tcase_add_loop_test(one, K3_an_hour_of_waiting_costs_no_more_than_a_slot, 0, COUNT(waits));
     suite_add_tcase(suite, one);
     SRunner *runner = srunner_create(suite);
