@@ -74,7 +74,7 @@ START_TEST(each_name_is_there_once)
     for (unsigned axis = 0; axis < CNC_AXES; axis++) { /* no bit of an axis has the name of another cell */
         for (unsigned i = 0; i < cnc_row_count; i++) {
             unsigned index;
-            char name[CNC_NAME_MAX + 2];
+            char name[80];
             if (cnc_rows[i].numbering != CNC_BY_AXIS || axis >= cnc_rows[i].count)
                 continue;
             int before = (int)strcspn(cnc_rows[i].name, "x");

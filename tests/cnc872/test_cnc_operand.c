@@ -157,6 +157,7 @@ static const struct {
     {"DIFCIT_X[16]", "there is no such element", "[16]"},
     {"DIFCIT_X[", "expected a number and `]'", ""},
     {"DIFCIT_X[1", "expected a number and `]'", ""},
+    {"LIMIT_Y[1]", "there is no such element", "[1]"},
     {"SYST_TIME_INFO[0]", "there is no such element", "[0]"},
     {"SYST_TIME_INFO", "expected a field, or a type before the structure", "SYST_TIME_INFO"},
     {"SYST_TIME_INFO.DATE_DAY", "the cell has no field", "DATE_DAY"},

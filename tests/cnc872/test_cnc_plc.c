@@ -179,6 +179,8 @@ START_TEST(errors_licences_and_the_spindle_reach_the_surroundings)
     ck_assert_int_eq(rig.event_value, 0x15);
     ck_assert_int_eq(rig_value("PLC_ERROR"), 0x15);
     ck_assert_int_eq(rig_value("A"), 1);
+    ck_assert_int_eq(rig_value("MPXPI"), 1); /* what is in the first place is as it was */
+    ck_assert_int_eq(rig_value("B_POL"), 0);
     ck_assert_uint_eq(rig.axes, 1u << 3 | 1u << 15);
     rig_load("DATA\nA BIT 0\nB BIT 0\nDATA_END\n"
              "MODULE_MAIN\nLDR_LIC FeaturePlc9\nWR A\nLDR_LIC FeaturePlc8\nWR B\nMODULE_MAIN_END");
