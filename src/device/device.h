@@ -335,6 +335,11 @@ struct device_kind {
     /* The bus. `receive` NULL: the device has none; then none of these is called, nor framing(), and all may be NULL. */
     size_t (*receive)(struct device_unit *unit, const uint8_t *bytes, size_t length); /* returns how many it took */
     size_t (*send)(struct device_unit *unit, uint8_t *bytes, size_t room); /* bytes of its answer; 0: nothing now */
+    /* At the present us a byte came whose stop bit was missing. NULL: the unit does not notice. */
+    void (*lose_byte)(struct device_unit *unit);
+    /* Has the line a pair of wires for each direction, as RS-232 has, with these settings: what the host sends and what a unit
+     * answers do not collide? NULL: it has one, as RS485 has. */
+    bool (*is_full_duplex)(const struct device_config *config);
     /* Requests that end with a silence: the us at which the silence that the unit waits for is over, if no byte comes before;
      * DEVICE_NEVER: it waits for none. At that us, before anything else happens in it, `receive` is called with 0 bytes: now it
      * is over, and silence_end() must be later. NULL: a byte ends each request. */

@@ -187,6 +187,17 @@ static size_t send(struct device_unit *unit, uint8_t *bytes, size_t room)
     return pmc_in(unit)->config.face->send(pmc_of(unit), bytes, room);
 }
 
+static void lose_byte(struct device_unit *unit)
+{
+    pmc_lose_byte(pmc_of(unit));
+}
+
+/* AS1; frames of Modbus are those of one pair of wires (AB1). */
+static bool is_full_duplex(const struct device_config *config)
+{
+    return !pmc_own_of(config).is_modbus;
+}
+
 static uint64_t silence_end(const struct device_unit *unit)
 {
     const struct pmc_face *face = pmc_in(unit)->config.face;
@@ -374,7 +385,8 @@ static const char *const outputs_2hs[] = {"x.out0", "x.out1", "y.out0", "y.out1"
     .is_program_whole = true, .flash_blocks = PMC_FLASH_BLOCKS, .flash_block_size = PMC_FLASH_BLOCK_SIZE, \
     .request_max = PMC_FRAME_MAX, \
     .answer_max = PMC_FRAME_MAX, .attach = attach, .now = now, .advance = advance, .next_event = next_event, \
-    .next_report = next_report, .pulse_ticks = pulse_ticks, .receive = receive, .send = send, .silence_end = silence_end, \
+    .next_report = next_report, .pulse_ticks = pulse_ticks, .receive = receive, .send = send, .lose_byte = lose_byte, \
+    .is_full_duplex = is_full_duplex, .silence_end = silence_end, \
     .has_answer = has_answer, .answer_wait = answer_wait, .counters = counters_of, .has_check_value = has_check_value, \
     .find_check_value = find_check_value, .exchange = exchange, .set_inputs = set_inputs, .inputs_of = inputs_of, \
     .outputs_of = outputs_of, .variables_of = variables_of, .node = node, .axis = axis, .plan = pmc_device_plan, \

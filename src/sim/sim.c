@@ -555,10 +555,12 @@ static bool add_unit(struct sim *sim, unsigned at)
 
 bool sim_begin(struct sim *sim, const struct sim_config *config)
 {
+    const struct device_kind *kind = config->device ? config->device : device_kind_at(0);
     struct segment_config segment = {
-        .kind = config->device,
+        .kind = kind,
         .timed = config->timed,
-        .baud = device_baud(config->device ? config->device : device_kind_at(0), &config->unit),
+        .is_full_duplex = kind->is_full_duplex && kind->is_full_duplex(&config->unit),
+        .baud = device_baud(kind, &config->unit),
         .turnaround = config->turnaround,
         .out = on_out,
         .monitor = on_byte,

@@ -149,6 +149,23 @@ static bool has_more(const struct segment *segment, unsigned station)
     return segment->more[station].at < segment->more[station].count;
 }
 
+/* Does a station send on the wires on which the host alone listens? */
+static bool is_on_back(const struct segment *segment, unsigned station)
+{
+    return segment->config.is_full_duplex && station != WIRE_HOST;
+}
+
+/* When (parts) the next byte will have been received; DEVICE_NEVER: none is under way. */
+static uint64_t wires_due(const struct segment *segment)
+{
+    return earlier(wire_due(&segment->wire), wire_due(&segment->back));
+}
+
+static bool receive_byte(struct segment *segment, uint64_t until, struct wire_byte *received)
+{
+    return wire_receive(&segment->wire, until, received) || wire_receive(&segment->back, until, received);
+}
+
 /* When (parts) the next start bit of the host is due; DEVICE_NEVER: none. */
 static uint64_t next_host_time(const struct segment *segment)
 {
@@ -189,7 +206,7 @@ static void send_more(struct segment *segment, unsigned station, uint64_t start)
 {
     struct segment_more *more = &segment->more[station];
     if (has_more(segment, station))
-        wire_send(&segment->wire, station, more->byte[more->at++], start);
+        wire_send(is_on_back(segment, station) ? &segment->back : &segment->wire, station, more->byte[more->at++], start);
 }
 
 static void host_start(struct segment *segment, uint64_t start)
@@ -257,6 +274,18 @@ static void end_byte(struct segment *segment, const struct wire_byte *received)
     }
 }
 
+/* Tell the units of the bytes that have come to them since without a stop bit. */
+static void report_lost_bytes(struct segment *segment)
+{
+    for (unsigned i = 0; segment->config.kind->lose_byte && i < segment->units; i++) {
+        struct segment_unit *unit = &segment->unit[i];
+        const uint64_t lost = segment->wire.receiver[i + 1u].framing_errors;
+        if (unit->lost != lost && unit->powered && is_receiving(segment, i + 1u, UINT32_C(1) << WIRE_HOST))
+            segment->config.kind->lose_byte(unit->unit);
+        unit->lost = lost;
+    }
+}
+
 /* Do what the silence leads to that is over before anything else happens, at `tick` at the latest. Returns false if none is. */
 static bool end_silence(struct segment *segment, uint64_t tick)
 {
@@ -275,7 +304,7 @@ static void advance_timed(struct segment *segment, uint64_t until)
 {
     for (;;) {
         unsigned station;
-        uint64_t start = next_start(segment, &station), end = wire_due(&segment->wire), next = earlier(start, end);
+        uint64_t start = next_start(segment, &station), end = wires_due(segment), next = earlier(start, end);
         if (end_silence(segment, earlier(tick_of(next), until / WIRE_TICK)))
             continue;
         if (next > until)
@@ -283,7 +312,9 @@ static void advance_timed(struct segment *segment, uint64_t until)
         advance_units(segment, tick_of(next));
         struct wire_byte received;
         if (end <= start) {
-            if (wire_receive(&segment->wire, end, &received))
+            const bool is_byte = receive_byte(segment, end, &received);
+            report_lost_bytes(segment);
+            if (is_byte)
                 end_byte(segment, &received);
         } else {
             start_byte(segment, station, start);
@@ -292,6 +323,16 @@ static void advance_timed(struct segment *segment, uint64_t until)
 }
 
 /* ---- Bytes that take no time ---------------------------------------------------------------------------------------- */
+
+/* While the line is disturbed a byte has no stop bit. */
+static void pass_to_unit(struct segment *segment, struct segment_unit *unit, uint8_t byte)
+{
+    const struct device_kind *kind = segment->config.kind;
+    if (!segment->disturbed)
+        deliver_to_unit(segment, unit, byte);
+    else if (kind->lose_byte)
+        kind->lose_byte(unit->unit);
+}
 
 /* Let the byte of a unit be received by the units in `receivers` (bit n: unit n), the monitor, and the host if it is a
  * unit's. */
@@ -302,9 +343,9 @@ static void pass_byte(struct segment *segment, unsigned station, uint32_t receiv
     if (!segment->disturbed && is_receiving(segment, WIRE_HOST, sender) &&
         (station != WIRE_HOST || has_echo(segment, sender, byte)))
         deliver_to_host(segment, &byte, 1);
-    for (unsigned i = 0; i < segment->units && !segment->disturbed; i++)
+    for (unsigned i = 0; i < segment->units; i++)
         if (segment->unit[i].powered && (receivers >> (i + 1u) & 1u) != 0 && is_receiving(segment, i + 1u, sender))
-            deliver_to_unit(segment, &segment->unit[i], byte);
+            pass_to_unit(segment, &segment->unit[i], byte);
     report_to_monitor(segment, &(struct segment_byte){segment->now, segment->now, sender, byte, segment->disturbed});
 }
 
@@ -423,6 +464,9 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
     for (unsigned station = 0; station < WIRE_STATIONS; station++)
         segment->more[station] = (struct segment_more){0};
     wire_begin(&segment->wire, config->baud > 0 ? config->baud : DEVICE_BAUD);
+    segment->back = segment->wire;
+    if (config->is_full_duplex)
+        wire_leave(&segment->wire, WIRE_HOST, 0);
 }
 
 void segment_end(struct segment *segment)
@@ -434,77 +478,18 @@ void segment_end(struct segment *segment)
     segment->units = 0;
 }
 
-static void power_up(struct segment *segment, unsigned number)
+/* Hold all wires at 0, or let them go. */
+static void hold_all(struct segment *segment, bool on)
 {
-    struct segment_unit *unit = &segment->unit[number - 1u];
-    segment->config.kind->begin(unit->unit, &unit->config, unit->port, unit->context);
-    unit->since = segment->now;
-    unit->powered = true;
-    unit->in_frame = false;
-    unit->frames = 0;
-    unit->begun = false;
-    unit->next = DEVICE_NEVER;
-    unit->heard = 0;
-    wire_join(&segment->wire, number, parts_of(segment->now));
-}
-
-unsigned segment_add_unit(struct segment *segment, const struct device_config *config, const struct device_port *port,
-                          void *context)
-{
-    if (segment->units == SEGMENT_UNITS)
-        return 0;
-    struct segment_unit *unit = &segment->unit[segment->units];
-    unit->unit = calloc(1, segment->config.kind->size);
-    if (!unit->unit)
-        return 0;
-    unit->config = *config;
-    unit->port = port;
-    unit->context = context;
-    power_up(segment, ++segment->units);
-    return segment->units;
-}
-
-const struct device_kind *segment_kind(const struct segment *segment)
-{
-    return segment->config.kind;
-}
-
-struct device_unit *segment_unit(struct segment *segment, unsigned number)
-{
-    return segment->unit[number - 1u].unit;
-}
-
-void segment_port_changed(struct segment *segment, unsigned number)
-{
-    struct segment_unit *unit = &segment->unit[number - 1u];
-    segment->config.kind->attach(unit->unit, &unit->config, unit->port, unit->context);
-}
-
-void segment_set_node(struct segment *segment, unsigned number, uint8_t node)
-{
-    segment->unit[number - 1u].config.node = node;
-}
-
-uint64_t segment_since(const struct segment *segment, unsigned number)
-{
-    return segment->unit[number - 1u].since;
-}
-
-void segment_power(struct segment *segment, unsigned number, bool on)
-{
-    struct segment_unit *unit = &segment->unit[number - 1u];
-    unit->powered = unit->in_frame = false;
-    unit->next = DEVICE_NEVER;
-    segment->more[number].count = 0;
-    wire_leave(&segment->wire, number, parts_of(segment->now));
-    if (on)
-        power_up(segment, number);
+    wire_hold(&segment->wire, WIRE_NOISE, on, parts_of(segment->now));
+    if (segment->config.is_full_duplex)
+        wire_hold(&segment->back, WIRE_NOISE, on, parts_of(segment->now));
 }
 
 void segment_set_timed(struct segment *segment, bool timed)
 {
     segment->config.timed = timed;
-    wire_hold(&segment->wire, WIRE_NOISE, timed && segment->disturbed, parts_of(segment->now));
+    hold_all(segment, timed && segment->disturbed);
     wire_hold(&segment->wire, WIRE_HOST, timed && segment->held, parts_of(segment->now));
     segment->host_free = parts_of(segment->now);
 }
@@ -549,7 +534,7 @@ void segment_disturb(struct segment *segment, bool on)
 {
     segment->disturbed = on;
     if (segment->config.timed)
-        wire_hold(&segment->wire, WIRE_NOISE, on, parts_of(segment->now));
+        hold_all(segment, on);
 }
 
 uint64_t segment_now(const struct segment *segment)
@@ -575,5 +560,5 @@ uint64_t segment_due(const struct segment *segment)
     unsigned station;
     uint64_t start = next_start(segment, &station);
     uint64_t sent = start == DEVICE_NEVER ? DEVICE_NEVER : start + wire_byte_parts(&segment->wire);
-    return earlier(silence, tick_of(earlier(wire_due(&segment->wire), sent)));
+    return earlier(silence, tick_of(earlier(wires_due(segment), sent)));
 }

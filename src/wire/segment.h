@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* segment.h: one RS485 line in virtual time: a host and up to sixteen units on one pair of wires. Pure: no file, no clock.
+/* segment.h: one RS485 line in virtual time: a host and up to sixteen units on one pair of wires; or, where the kind of device is
+ * full duplex, on a pair for each direction. Pure: no file, no clock.
  *
  *     static struct segment segment;                              // large, zero-initialised
  *     segment_begin(&segment, &config);
@@ -78,6 +79,7 @@ struct segment_hooks {
 
 struct segment_config {
     bool timed;             /* false: bytes take no time (--baud 0) */
+    bool is_full_duplex;    /* with `timed`: a pair of wires for each direction */
     uint32_t baud;          /* 0: DEVICE_BAUD */
     bool echo;              /* the host receives its own bytes, too (a two-wire adapter with local echo) */
     uint32_t turnaround;    /* ticks, 0..SEGMENT_TURNAROUND_MAX, from the end of a request to the start bit of the answer */
@@ -101,6 +103,7 @@ struct segment_unit {
     uint32_t frames;        /* seen by the unit */
     bool begun;             /* its answer has begun to go out: the hook has been asked */
     uint64_t heard;         /* parts: end of the last byte that it has received */
+    uint64_t lost;          /* bytes without a stop bit that have come to it, as wire.receiver[].framing_errors has them */
     uint64_t next;          /* parts (wire.h): start bit of the next byte of its answer; DEVICE_NEVER: no answer goes out */
 };
 
@@ -127,7 +130,7 @@ struct segment {
     struct segment_unit unit[SEGMENT_UNITS]; /* unit n is unit[n - 1] */
 
     /* Inside. */
-    struct wire wire;
+    struct wire wire, back;  /* back: on which units send to the host alone if the line is full duplex */
     uint64_t quiet_bytes;    /* sent, without time */
     uint64_t overruns;
     unsigned unasked;         /* answers without time since the host's last byte */

@@ -68,4 +68,5 @@ void segment_shift(struct segment *segment, uint64_t ticks)
         postpone(&segment->unit[i].next, parts);
     }
     wire_shift(&segment->wire, parts);
+    wire_shift(&segment->back, parts);
 }

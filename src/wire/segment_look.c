@@ -40,9 +40,10 @@ bool segment_idle(const struct segment *segment)
 struct segment_counters segment_counters(const struct segment *segment)
 {
     return (struct segment_counters){
-        .bytes = segment->wire.sent + segment->quiet_bytes,
-        .collisions = segment->wire.collisions,
-        .framing_errors = segment->wire.receiver[WIRE_MONITOR].framing_errors,
+        .bytes = segment->wire.sent + segment->back.sent + segment->quiet_bytes,
+        .collisions = segment->wire.collisions + segment->back.collisions,
+        .framing_errors =
+            segment->wire.receiver[WIRE_MONITOR].framing_errors + segment->back.receiver[WIRE_MONITOR].framing_errors,
         .overruns = segment->overruns,
         .cuts = segment->cuts,
         .cut_ticks = segment->cut_ticks,
