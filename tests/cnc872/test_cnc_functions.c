@@ -123,6 +123,46 @@ START_TEST(ng2_bytes_of_groups)
 }
 END_TEST
 
+START_TEST(ng1_bits_of_the_block_end_with_it)
+{
+    rig_begin_with(config_text, "M0 M10 M60 M95 T12 H3");
+    run_to(1);
+    ck_assert_str_eq(ones(decoded), "M00_PID M10PID M60PI ");
+    ck_assert_str_eq(ones(changes), "ZMM1PI ZMM7PI ZMM9PI ZMM11PI ZMSHPI ZMSTPI ");
+    ck_assert_int_eq(cell("PB13", 0), 0x95);
+    run_to(3);
+    ck_assert(!bit("PO_F"));
+    ck_assert_str_eq(ones(decoded), "");
+    ck_assert_str_eq(ones(changes), "");
+}
+END_TEST
+
+START_TEST(ng1_t_and_h_on_their_own)
+{
+    rig_begin("T5\nH7\nM8");
+    run_to(1);
+    ck_assert_str_eq(ones(changes), "ZMSTPI ");
+    run_to(3);
+    ck_assert_str_eq(ones(changes), "ZMSHPI ");
+    ck_assert_int_eq(cell("PB05", 0), 0x07);
+    ck_assert_int_eq(cell("PB07", 0), 0x05);
+    run_to(5);
+    ck_assert_str_eq(ones(changes), "ZMM5PI ");
+}
+END_TEST
+
+START_TEST(nq1_functions_in_force)
+{
+    rig_begin_with(config_text, "M95 M3\nM8\nM5");
+    run_to(3);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_M, 11), 0x95);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_M, 5), 0x08);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_M, 2), 0x03);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_M, 2), 0x05);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_M, 14), 0);
+}
+END_TEST
+
 START_TEST(ng2_a_new_function_of_group_8_leaves_the_override)
 {
     rig_begin_with(config_text, "M48\nM73 G1 X10 F1000");
@@ -174,6 +214,9 @@ int main(void)
     tcase_add_test(all, w47_t_h_and_bits_of_the_block);
     tcase_add_test(all, ng2_table_of_groups);
     tcase_add_test(all, ng2_bytes_of_groups);
+    tcase_add_test(all, ng1_bits_of_the_block_end_with_it);
+    tcase_add_test(all, ng1_t_and_h_on_their_own);
+    tcase_add_test(all, nq1_functions_in_force);
     tcase_add_test(all, ng2_a_new_function_of_group_8_leaves_the_override);
     tcase_add_test(all, ng1_a_function_in_a_stop_and_restart);
     tcase_add_test(all, nq2_a_block_without_technology);

@@ -191,7 +191,7 @@ END_TEST
 
 START_TEST(nf5_gears)
 {
-    rig_begin_with(gears, "M43 S1500\nM40 S300\nM40 S900\nM40 S4000\nM41 S100");
+    rig_begin_with(gears, "M43 S1500\nM40 S500\nM40 S1000\nM40 S4000\nM41 S100");
     run_to(1);
     ck_assert_int_eq(cell("SPINDLE_GEAR_ACT_1", 0), 3);
     ck_assert(bit("M43PI") && bit("ZMM3PI"));
@@ -357,6 +357,21 @@ START_TEST(nf6_waits_for_other_motions_of_its_axis)
 }
 END_TEST
 
+START_TEST(nf6_while_other_axes_move)
+{
+    power_rotary();
+    rig_load_nc("G1 X10 F1000");
+    cnc_start(&cnc);
+    run_to(20);
+    cnc_position_spindle(&cnc, 3);
+    const int64_t x = cnc.axis[0].position;
+    run_to(30);
+    ck_assert_int_gt(cnc.axis[0].position, x);
+    ck_assert_int_gt(cnc.axis[3].position, INT64_C(90000) * CNC_U_PER_UM);
+    ck_assert(bit("POLOHV_4") && bit("PO_OS4PI") && bit("PO_OSXPI"));
+}
+END_TEST
+
 START_TEST(nf6_a_block_waits_for_a_spindle_axis)
 {
     power_rotary();
@@ -424,6 +439,7 @@ int main(void)
     tcase_add_test(all, w35_spindle_axis);
     tcase_add_test(all, nf6_holds_of_a_spindle_axis);
     tcase_add_test(all, nf6_waits_for_other_motions_of_its_axis);
+    tcase_add_test(all, nf6_while_other_axes_move);
     tcase_add_test(all, nf6_a_block_waits_for_a_spindle_axis);
     tcase_add_test(all, nf6_central_annulment_ends_it);
     suite_add_tcase(suite, all);
