@@ -18,8 +18,7 @@ function(use_windows target)
   target_include_directories(${target} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}
     ${RKM04_WINDOWS_LIBRARIES}/include)
   target_compile_definitions(${target} PRIVATE _GNU_SOURCE __USE_MINGW_ANSI_STDIO=1 _FILE_OFFSET_BITS=64 WIN32_LEAN_AND_MEAN YAML_DECLARE_STATIC)
-  # The compiler takes the formats of messages for those of Windows, whose write() takes no size_t; both are checked elsewhere.
-  target_compile_options(${target} PRIVATE -include ${posix}/posix.h -Wno-format -Wno-format-extra-args -Wno-conversion)
+  target_compile_options(${target} PRIVATE -include ${posix}/posix.h)
 endfunction()
 
 add_rooms(rkm04-sim ${SIM_ROOMS} plot run line bus control serve windows)

@@ -42,7 +42,7 @@ static bool write_private(struct control_place *place, const char *line)
     int fd = open(place->path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
     bool made = fd >= 0 && control_place_record(place);
     errno = made ? ENOSPC : errno; /* of a file that is only half written */
-    bool written = made && write(fd, line, length) == (ssize_t)length;
+    bool written = made && write(fd, line, (unsigned)length) == (ssize_t)length;
     int why = errno;
     if (fd >= 0)
         close(fd);

@@ -34,7 +34,7 @@ static void release(struct delivery *delivery)
 int delivery_write(int fd, const char *text, size_t length)
 {
     while (length > 0) {
-        ssize_t written = write(fd, text, length);
+        ssize_t written = write(fd, text, (unsigned)length);
         if (written > 0) {
             text += written;
             length -= (size_t)written;

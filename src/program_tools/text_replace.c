@@ -12,7 +12,7 @@
 static bool write_all(int file, const char *text, size_t length)
 {
     while (length > 0) {
-        ssize_t written = write(file, text, length);
+        ssize_t written = write(file, text, (unsigned)length);
         if (written < 0 && errno == EINTR)
             continue;
         if (written <= 0)

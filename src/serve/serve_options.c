@@ -160,25 +160,25 @@ static const char doc[] =
     "Exit status: 0 ended by a signal or --exit-when-idle, 1 failure at run time, 2 usage, 4 less than --min-coverage.";
 
 /* A whole number up to `high`, digits only. Returns -1 if it is none. */
-static long read_number(const char *text, long high)
+static int64_t read_number(const char *text, int64_t high)
 {
     uint64_t value;
-    return number_read(text, 0, (uint64_t)high, &value) ? (long)value : -1;
+    return number_read(text, 0, (uint64_t)high, &value) ? (int64_t)value : -1;
 }
 
 /* A number from 0 to `high`, or a usage error that says what was expected. */
 static unsigned read_bounded_number(const char *name, const char *text, unsigned low, unsigned high, const char *unit,
                                     struct argp_state *state)
 {
-    long value = read_number(text, high);
-    if (value < (long)low)
+    int64_t value = read_number(text, high);
+    if (value < low)
         argp_error(state, "--%s: `%s' is wrong: expected a number%s from %u to %u", name, text, unit, low, high);
     return (unsigned)value;
 }
 
 static unsigned read_baud(const char *text, struct argp_state *state)
 {
-    long value = read_number(text, 115200);
+    int64_t value = read_number(text, 115200);
     if (value < 0)
         argp_error(state, "--baud: `%s' is wrong: expected the rate of the unit, or 0 for no pacing", text);
     return (unsigned)value;
@@ -199,7 +199,7 @@ static int read_percent(const char *text, struct argp_state *state)
 {
     char whole[4] = "";
     size_t digits = strspn(text, "0123456789");
-    long value = -1, tenths = 0;
+    int64_t value = -1, tenths = 0;
     if (digits > 0 && digits < sizeof whole) {
         memcpy(whole, text, digits);
         value = read_number(whole, 100);

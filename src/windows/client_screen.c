@@ -131,7 +131,7 @@ static enum client_key key_of(const KEY_EVENT_RECORD *key)
     case 'Q':
         return CLIENT_KEY_QUIT;
     case VK_TAB:
-        return key->dwControlKeyState & SHIFT_PRESSED ? CLIENT_KEY_BEFORE : CLIENT_KEY_NEXT;
+        return (key->dwControlKeyState & SHIFT_PRESSED) != 0 ? CLIENT_KEY_BEFORE : CLIENT_KEY_NEXT;
     case 'N':
     case VK_RIGHT:
     case VK_DOWN:

@@ -85,7 +85,7 @@ int windows_open(const char *path, int flags, ...)
         mode = va_arg(values, unsigned);
         va_end(values);
     }
-    DWORD how = flags & O_EXCL ? CREATE_NEW : flags & O_CREAT ? OPEN_ALWAYS : OPEN_EXISTING;
+    DWORD how = (flags & O_EXCL) ? CREATE_NEW : (flags & O_CREAT) ? OPEN_ALWAYS : OPEN_EXISTING;
     HANDLE file = CreateFileA(native(path), accesses[flags & (O_WRONLY | O_RDWR)],
                               FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
                               (mode & 077) == 0 ? private_attributes() : NULL, how, FILE_ATTRIBUTE_NORMAL, NULL);

@@ -2,31 +2,43 @@
 /* other_programs.c: programs that ours run: diff of `rkm04 fmt --diff', rsvg-convert of `rkm04 plot -o FILE.png'. */
 #include <errno.h>
 #include <process.h>
+#include <windows.h>
 
 #include "plot/raster.h"
 #include "program_tools/text_diff.h"
 
+#define PATH_SIZE (MAX_PATH + 32)
+
 /* A temporary file with this text; its name is in `path`. Returns whether it is there. */
-static bool make_file(char path[32], const char *text, size_t length)
+static bool make_file(char path[PATH_SIZE], const char *text, size_t length)
 {
-    strcpy(path, "rkm04-XXXXXX");
+    DWORD folder = GetTempPathA(MAX_PATH, path); /* ends with a \ */
+    strcpy(path + (folder < MAX_PATH ? folder : 0), "rkm04-XXXXXX");
     int fd = mkostemp(path, 0);
     if (fd < 0)
         return false;
-    bool written = write(fd, text, length) == (ssize_t)length;
+    bool written = write(fd, text, (unsigned)length) == (ssize_t)length;
     close(fd);
     return written;
 }
 
+/* Folders of users may have blanks. */
+static const char *quote(const char *path, char quoted[PATH_SIZE + 2])
+{
+    snprintf(quoted, PATH_SIZE + 2, "\"%s\"", path);
+    return quoted;
+}
+
 bool text_diff(const char *name, const char *before, size_t before_length, const char *after, size_t after_length)
 {
-    char left[32] = "", right[32] = "", label[2][512];
+    char left[PATH_SIZE] = "", right[PATH_SIZE] = "", quoted[2][PATH_SIZE + 2], label[2][512];
     snprintf(label[0], sizeof label[0], "--label=\"%s\"", name);
     snprintf(label[1], sizeof label[1], "--label=\"%s (formatted)\"", name);
     fflush(stdout);
     intptr_t status = -1;
     if (make_file(left, before, before_length) && make_file(right, after, after_length))
-        status = _spawnlp(_P_WAIT, "diff", "diff", "-u", label[0], label[1], left, right, NULL);
+        status = _spawnlp(_P_WAIT, "diff", "diff", "-u", label[0], label[1], quote(left, quoted[0]), quote(right, quoted[1]),
+                          NULL);
     int error = errno;
     unlink(left);
     unlink(right);

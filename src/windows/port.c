@@ -88,7 +88,7 @@ static bool connect_to(const struct addrinfo *address, unsigned timeout_ms)
     tcp = socket(address->ai_family, SOCK_STREAM, 0);
     if (tcp == INVALID_SOCKET)
         return false;
-    ioctlsocket(tcp, FIONBIO, &on);
+    ioctlsocket(tcp, (long)FIONBIO, &on);
     setsockopt(tcp, IPPROTO_TCP, TCP_NODELAY, (const char *)&on, sizeof on);
     if (connect(tcp, address->ai_addr, (int)address->ai_addrlen) == 0 || poll_tcp(PORT_OUT, (int)timeout_ms) == PORT_OUT)
         return true;

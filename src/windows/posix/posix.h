@@ -7,6 +7,7 @@
 
 #include <fcntl.h>
 #include <io.h>
+#include <jansson.h>
 #include <signal.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -95,6 +96,12 @@ void *memrchr(const void *bytes, int wanted, size_t length);
 void *memmem(const void *bytes, size_t length, const void *wanted, size_t wanted_length);
 
 #define strerror windows_strerror
+
+/* Formats are those of the GNU C library, which __USE_MINGW_ANSI_STDIO gives; in __attribute__((format(printf, 1, 2))) the
+ * compiler would take them for those of Windows. */
+#define format(function, text, values) format(gnu_##function, text, values)
+#undef JSON_INTEGER_FORMAT
+#define JSON_INTEGER_FORMAT "lld"
 
 /* ---- The process ---------------------------------------------------------------------------------------------------- */
 
