@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 # rkm04 check on texts of a CNC872: configuration, NC program, PLC program.
 . "${0%/*}/lib.sh"
+documents=$(cd "${0%/*}/../../docs" && pwd)/CNC872.md
 
 texts() {
     cd "$folder" || exit 1
@@ -46,6 +47,18 @@ test_errors_as_json() {
     same "1 a.plc 1 1 plc-error" "$(python3 -c 'import json, sys
 all = json.load(sys.stdin); one = all["diagnostics"][0]
 print(all["errors"], one["file"], one["line"], one["column"], one["name"])' <<<"$said")" "json"
+}
+
+test_programs_of_the_documentation_have_no_errors() {
+    python3 - "$documents" "$folder" <<'END'
+import re, sys
+blocks = re.findall(r"^```\n(.*?)^```", open(sys.argv[1], encoding="utf-8").read(), re.M | re.S)
+programs = [block for block in blocks if "MODULE_" in block]
+assert programs
+for number, program in enumerate(programs):
+    open(f"{sys.argv[2]}/{number}.plc", "w", encoding="utf-8").write(program)
+END
+    exits 0 "$RKM04" check "$folder"/*.plc
 }
 
 run_cases "$@"
