@@ -532,7 +532,7 @@ bool cnc_config_read(const char *text, size_t length, struct cnc_config *config,
     if (cnc_xml_next_is(&reader.xml, "\xEF\xBB\xBF"))
         reader.xml.at = reader.xml.line_begin = 3;
     while (read_next(&reader))
-        continue;
+        ;
     complete_config(config);
     return reader.xml.errors.count == 0;
 }
