@@ -133,7 +133,7 @@ struct cnc_machine {
     uint8_t stop;              /* enum cnc_hold, the kind of that stop */
     uint8_t start;             /* enum cnc_start_state */
     uint8_t annulment;         /* enum cnc_annulment_state (NB8) */
-    bool stop_requested, emergency_requested; /* to be taken in the next T */
+    bool stop_requested;       /* by the panel, to be taken in the next T */
     bool was_stoppi, was_stop; /* STOPPI, PO_STOP in the last T */
     uint16_t stoppi_turns;     /* T's since its rising edge, 200 at most */
     bool has_stop_position;

@@ -69,9 +69,6 @@ int64_t cnc_block_line(const struct cnc *cnc);
 /* The present block of the NC program; NULL: none. */
 const struct cnc_nc_block *cnc_present_block(const struct cnc *cnc);
 
-/* Stop as STOP_EMERGENCY_REQ does. */
-void cnc_stop_emergency(struct cnc *cnc);
-
 /* ---- PLC program: program.c -------------------------------------------------------------------------------------------- */
 
 /* Step 2: the pass under way, of the PLC text and, while EXT_PLC is 1, of the program outside (NB4). */

@@ -111,9 +111,9 @@ static bool watch_stoppi(struct cnc *cnc)
 bool cnc_take_stop(struct cnc *cnc)
 {
     struct cnc_machine *machine = &cnc->machine;
-    const bool emergency = machine->emergency_requested || cnc_is_set(cnc, CNC_BIT_STOP_EMERGENCY_REQ);
+    const bool emergency = cnc_is_set(cnc, CNC_BIT_STOP_EMERGENCY_REQ);
     const bool stop = watch_stoppi(cnc) || machine->stop_requested || cnc_is_set(cnc, CNC_BIT_STOP_REQ);
-    machine->stop_requested = machine->emergency_requested = false;
+    machine->stop_requested = false;
     cnc_set(cnc, CNC_BIT_STOP_REQ, false);
     cnc_set(cnc, CNC_BIT_STOP_EMERGENCY_REQ, false);
     if (!stop && !emergency)
@@ -137,11 +137,6 @@ void cnc_stop(struct cnc *cnc)
     if (cnc->machine.start == CNC_START_ASKED) /* it came before the stop */
         refuse(cnc, CNC_STOPPED);
     cnc->machine.stop_requested = true;
-}
-
-void cnc_stop_emergency(struct cnc *cnc)
-{
-    cnc->machine.emergency_requested = true;
 }
 
 void cnc_reset(struct cnc *cnc)

@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The block machine of a CNC872: worked examples of docs/CNC872.md (W...), starts, stops, annulment. */
+/* The block machine of a CNC872: worked examples of docs/CNC872.md (W...), blocks and sections. */
 #include "cnc_rig.h"
 
 #define PARABOLIC "<ChannelConfig AccelerationType=\"1\"/>"
-
-static void set_in(uint64_t turn, const char *name, bool value)
-{
-    run_to(turn - 1);
-    set_bit(name, value);
-}
 
 static void start_in(uint64_t turn)
 {
@@ -264,273 +258,42 @@ START_TEST(block_by_block_within_a_section_stops_at_its_end)
 }
 END_TEST
 
+START_TEST(a_section_of_two_blocks_that_is_annulled)
+{
+    rig_begin("G23 G1 X1 F1000\nX2");
+    run_to(20);
+    ck_assert(bit("G23ACT"));
+    ck_assert_int_gt(cell("TIME_DIST", 0), 0);
+    cnc_reset(&cnc);
+    run_to(100);
+    ck_assert(!bit("PO_F") && !bit("G23ACT"));
+    ck_assert_int_eq(cell("TIME_DIST", 0), 0);
+}
+END_TEST
+
 START_TEST(a_section_that_does_not_end)
 {
-    begin_section(NULL);
+    begin_section(_i == 0 ? NULL : PARABOLIC);
     run_to(99);
     cnc.panel.feed = 0;
     run_to(300);
     ck_assert_int_eq(cell("TIME_DIST", 0), INT32_MAX);
     ck_assert(bit("G23ACT"));
     cnc.panel.feed = 100;
-    run_to(301);
+    run_to(351);
+    cnc.panel.feed = 90; /* worked out anew within a ramp */
+    run_to(352);
     const int64_t time = cell("TIME_DIST", 0);
-    run_to(301 + (uint64_t)time);
+    run_to(352 + (uint64_t)time);
     ck_assert_int_eq(at(cnc.turn).x, 30 * MM);
     ck_assert_int_lt(at(cnc.turn - 1).x, 30 * MM);
-}
-END_TEST
-
-/* ---- Starts and stops ---------------------------------------------------------------------------------------------------- */
-
-START_TEST(W36_a_program_outside)
-{
-    rig_power(NULL, "G1 X1 F1000");
-    set_bit("EXT_PLC", true);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
-    run_to(29);
-    ck_assert_int_eq(cell("PLC_PASS", 0), CNC_INIT);
-    set_bit("PLC_PASS_DONE", true);
-    run_to(30);
-    ck_assert(!bit("PLC_PASS_DONE"));
-    ck_assert_int_eq(cell("PLC_PASS", 0), 0);
-    run_to(199);
-    ck_assert_int_eq(cell("PLC_PASS", 0), CNC_DONE);
-    set_bit("PLC_PASS_DONE", true);
-    run_to(220);
-    ck_assert_int_eq(at(29).x, 0);
-    ck_assert_int_eq(at(30).x, 32768);
-    ck_assert_uint_eq(first_reached(1), 122);
-    ck_assert_uint_eq(first_end(1), 200);
-}
-END_TEST
-
-START_TEST(W37_central_annulment)
-{
-    rig_begin("G1 X10 F1000");
-    run_to(199);
-    cnc_reset(&cnc);
-    run_to(216);
-    ck_assert(!bit("CAPI") && bit("PO_F"));
-    run_to(217);
-    ck_assert(bit("CAPI") && !bit("AUTPI") && !bit("PO_STOP") && bit("PO_F") && !bit("PO_OSXPI"));
-    ck_assert_int_eq(cnc_start(&cnc), CNC_UNDER_WAY);
-    run_to(300);
-    ck_assert_uint_eq(first_rest(200), 216);
-    ck_assert_uint_eq(first_end(1), 219);
-    ck_assert_int_eq(at(300).x, 207170098);
-    ck_assert(bit("CAPI") && bit("SF_STOP"));
-    start_in(301);
-    run_to(302);
-    ck_assert(!bit("CAPI") && bit("AUTPI"));
-    ck_assert_uint_eq(cnc.machine.block, 0);
-}
-END_TEST
-
-START_TEST(annulment_at_rest)
-{
-    rig_begin("G1 X10 F1000\nG1 X20");
-    run_to(640);
-    cnc_stop(&cnc);
-    run_to(700);
-    cnc_reset(&cnc);
-    run_to(701);
-    ck_assert(bit("CAPI"));
-    run_to(703);
-    ck_assert(!bit("PO_F"));
-    ck_assert_uint_eq(cnc.machine.next, 0);
-    cnc_reset(&cnc); /* with nothing under way: its passes are passed */
-    run_to(704);
-    ck_assert(bit("PO_F") && bit("CAPI"));
-    run_to(706);
-    ck_assert(!bit("PO_F"));
-}
-END_TEST
-
-START_TEST(annulment_while_a_pass_waits)
-{
-    rig_power(NULL, "G1 X1 F1000");
-    set_bit("EXT_PLC", true);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
-    run_to(10);
-    cnc_reset(&cnc);
-    run_to(11);
-    ck_assert(bit("CAPI"));
-    run_to(20);
-    ck_assert_int_eq(cell("PLC_PASS", 0), CNC_INIT); /* it runs on */
-    set_bit("PLC_PASS_DONE", true);
-    run_to(21);
-    ck_assert_int_eq(cell("PLC_PASS", 0), CNC_DONE);
-    set_bit("PLC_PASS_DONE", true);
-    run_to(22);
-    ck_assert(!bit("PO_F"));
-    ck_assert_int_eq(at(22).x, 0);
-}
-END_TEST
-
-START_TEST(annulment_with_an_open_position_loop)
-{
-    rig_begin("G1 X1 F1000");
-    set_bit("VAZBA_X", false);
-    run_to(200);
-    ck_assert(bit("PO_F") && !bit("PO_POL"));
-    cnc_reset(&cnc);
-    run_to(203);
-    ck_assert(!bit("PO_F") && bit("SF_STOP"));
-}
-END_TEST
-
-START_TEST(W40_starts_that_are_dropped)
-{
-    rig_begin("G1 X10 F1000");
-    set_in(200, "STOP_REQ", true);
-    run_to(204);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_UNDER_WAY);
-    run_to(400);
-    ck_assert_uint_eq(first_rest(200), 216);
-    ck_assert(bit("PO_STOP"));
-    ck_assert_int_eq(at(400).x - at(199).x, 8563360);
-    ck_assert_uint_eq(count_events(CNC_EVENT_START_REFUSED), 1);
-    rig_begin("G1 X10 F1000");
-    run_to(99);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_UNDER_WAY);
-    set_in(200, "STOP_REQ", true);
-    run_to(400);
-    ck_assert_uint_eq(first_rest(200), 216);
-    ck_assert(bit("PO_STOP"));
-}
-END_TEST
-
-START_TEST(W39_starts_that_are_disabled_or_held_back)
-{
-    rig_power(NULL, "G1 X1 F1000");
-    set_bit("START_DISABLE", true);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_DISABLED);
-    ck_assert_int_eq(last_event(CNC_EVENT_START_REFUSED), CNC_DISABLED);
-    set_bit("START_DISABLE", false);
-    set_bit("STOPPI", true);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_STOPPI);
-    set_bit("STOPPI", false);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
-    set_bit("START_DISABLE", true); /* comes after it, but before the T */
-    run_to(5);
-    ck_assert(!bit("PO_F"));
-    ck_assert_uint_eq(count_events(CNC_EVENT_START_REFUSED), 3);
-    set_bit("START_DISABLE", false);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
-    cnc_stop(&cnc);
-    run_to(10);
-    ck_assert(!bit("PO_F"));
-    ck_assert_int_eq(last_event(CNC_EVENT_START_REFUSED), CNC_STOPPED);
-}
-END_TEST
-
-START_TEST(an_axis_without_reference)
-{
-    static const char xml[] = "<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"Y\" NeedRef=\"1\"/></ChannelConfig>";
-    rig_power(xml, "G1 X1 F1000");
-    ck_assert_int_eq(cnc_start(&cnc), CNC_OK); /* Y is not in the program */
-    run_to(200);
-    rig_load_nc("G1 X2 F1000\nY1");
-    ck_assert_int_eq(cnc_start(&cnc), CNC_NO_REFERENCE);
-    set_cell("HOMING", 0, 2);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
-}
-END_TEST
-
-START_TEST(W41_the_same_program_twice)
-{
-    rig_begin("G1 X1 F1000");
-    start_in(300);
-    run_to(310);
-    ck_assert_uint_eq(first_end(1), 95);
-    ck_assert(at(300).po_f && at(301).po_f && !at(302).po_f);
-    ck_assert_int_eq(at(310).x, 1 * MM);
-}
-END_TEST
-
-START_TEST(W44_permission_to_move)
-{
-    static const struct {
-        const char *name;
-        bool value, may;
-    } row[] = {{"MPXPI", false, false}, {"MPXPI", true, true}, {"KHX1", true, false}, {"KHX1", false, true},
-               {"VAZBA_X", false, true}};
-    rig_power(NULL, NULL);
-    ck_assert(bit("MPX"));
-    for (unsigned i = 0; i < sizeof row / sizeof *row; i++) {
-        set_bit(row[i].name, row[i].value);
-        run_to(i + 1);
-        ck_assert_int_eq(bit("MPX"), row[i].may);
-    }
-    cnc_set_critical(&cnc, 7);
-    run_to(10);
-    ck_assert(!bit("MPX"));
-    ck_assert_int_eq(last_event(CNC_EVENT_CRITICAL), 7);
-}
-END_TEST
-
-START_TEST(pulses_of_STOPPI)
-{
-    rig_power(NULL, NULL);
-    set_in(10, "STOPPI", true);
-    set_in(210, "STOPPI", false);
-    run_to(220);
-    ck_assert_uint_eq(count_events(CNC_EVENT_SHORT_STOPPI), 0);
-    set_in(300, "STOPPI", true);
-    set_in(499, "STOPPI", false);
-    run_to(520);
-    ck_assert_int_eq(last_event(CNC_EVENT_SHORT_STOPPI), 199);
-    ck_assert(!bit("PO_STOP"));
-}
-END_TEST
-
-START_TEST(STOPPI_counts_by_its_edge)
-{
-    rig_begin("G04 P1");
-    set_in(10, "STOPPI", true);
-    run_to(20);
-    ck_assert(bit("PO_STOP") && bit("STOPPI"));
-    set_bit("STOPPI", false);
-    start_in(21);
-    run_to(30);
-    ck_assert(!bit("PO_STOP"));
-    ck_assert_uint_eq(cnc.machine.phase, CNC_DELAY);
-}
-END_TEST
-
-START_TEST(a_stop_in_the_first_pass_moves_nothing)
-{
-    rig_begin("G1 X1 F1000");
-    run_to(1);
-    cnc_stop(&cnc);
-    run_to(100);
-    ck_assert_uint_eq(first_stop(1), 2);
-    ck_assert_int_eq(cell("STATUS_RESTART", 0), CNC_INIT);
-    ck_assert_int_eq(at(100).x, 0);
-    start_in(101);
-    run_to(102);
-    ck_assert_int_eq(at(102).x, 32768);
-}
-END_TEST
-
-START_TEST(a_program_is_not_changed_under_way)
-{
-    rig_begin("G1 X1 F1000");
-    run_to(10);
-    ck_assert_int_eq(cnc_load(&cnc, NULL), CNC_UNDER_WAY);
-    ck_assert_int_eq(cnc_select(&cnc, 0, true), CNC_UNDER_WAY);
-    run_to(200);
-    ck_assert_int_eq(cnc_load(&cnc, NULL), CNC_OK);
-    ck_assert_int_eq(cnc_start(&cnc), CNC_NO_PROGRAM);
-    ck_assert_int_eq(cnc_select(&cnc, 0, true), CNC_NO_SUCH_BLOCK);
 }
 END_TEST
 
 static Suite *block_suite(void)
 {
     Suite *suite = suite_create("cnc_block");
-    TCase *blocks = tcase_create("blocks"), *sections = tcase_create("sections"), *starts = tcase_create("starts");
+    TCase *blocks = tcase_create("blocks"), *sections = tcase_create("sections");
     tcase_add_test(blocks, power_up);
     tcase_add_test(blocks, W30_delay);
     tcase_add_test(blocks, W30_stop_in_a_delay);
@@ -543,24 +306,10 @@ static Suite *block_suite(void)
     tcase_add_test(sections, what_ends_a_section);
     tcase_add_test(sections, block_by_block_makes_no_section);
     tcase_add_test(sections, block_by_block_within_a_section_stops_at_its_end);
-    tcase_add_test(sections, a_section_that_does_not_end);
-    tcase_add_test(starts, W36_a_program_outside);
-    tcase_add_test(starts, W37_central_annulment);
-    tcase_add_test(starts, annulment_at_rest);
-    tcase_add_test(starts, annulment_while_a_pass_waits);
-    tcase_add_test(starts, annulment_with_an_open_position_loop);
-    tcase_add_test(starts, W40_starts_that_are_dropped);
-    tcase_add_test(starts, W39_starts_that_are_disabled_or_held_back);
-    tcase_add_test(starts, an_axis_without_reference);
-    tcase_add_test(starts, W41_the_same_program_twice);
-    tcase_add_test(starts, W44_permission_to_move);
-    tcase_add_test(starts, pulses_of_STOPPI);
-    tcase_add_test(starts, STOPPI_counts_by_its_edge);
-    tcase_add_test(starts, a_stop_in_the_first_pass_moves_nothing);
-    tcase_add_test(starts, a_program_is_not_changed_under_way);
+    tcase_add_test(sections, a_section_of_two_blocks_that_is_annulled);
+    tcase_add_loop_test(sections, a_section_that_does_not_end, 0, 2);
     suite_add_tcase(suite, blocks);
     suite_add_tcase(suite, sections);
-    suite_add_tcase(suite, starts);
     return suite;
 }
 

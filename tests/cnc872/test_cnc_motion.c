@@ -404,6 +404,19 @@ START_TEST(W45_following_error)
 }
 END_TEST
 
+START_TEST(the_smallest_MaxLag)
+{
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\" MaxLag=\"1\"/></ChannelConfig>", "G1 X-10 F1000");
+    set_in(2, "VAZBA_X", false);
+    run_to(2);
+    ck_assert_int_eq(cell("DIFCIT_X", 0), -1); /* -0.5 um, rounded down */
+    ck_assert_int_eq(cell("BZH13", 0), 0);
+    run_to(3);
+    ck_assert_int_eq(cell("DIFCIT_X", 0), -2);
+    ck_assert_int_eq(cell("BZH13", 0), 1);
+}
+END_TEST
+
 START_TEST(W49_cells_of_the_configuration)
 {
     rig_power(NULL, NULL);
@@ -513,6 +526,7 @@ static Suite *motion_suite(void)
     tcase_add_loop_test(stops, W16_limit_switch, 0, 2);
     tcase_add_test(stops, W45_critical_error);
     tcase_add_test(stops, W45_following_error);
+    tcase_add_test(stops, the_smallest_MaxLag);
     tcase_add_test(cells, W26_open_position_loop);
     tcase_add_test(cells, W26_lag);
     tcase_add_test(cells, W49_cells_of_the_configuration);
