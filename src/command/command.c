@@ -27,12 +27,24 @@ static const struct device_method *find_own(const struct sim *sim, const char *n
     return method && method->name ? method : NULL;
 }
 
+#define PARAMETERS_MAX 8u /* of a method of a device */
+
+static bool own_params_known(const struct device_method *method, const json_t *params, struct refusal *refusal)
+{
+    const char *names[PARAMETERS_MAX + 2u] = {0};
+    size_t count = 0;
+    for (; method->parameters && method->parameters[count] && count < PARAMETERS_MAX; count++)
+        names[count] = method->parameters[count];
+    names[count] = "unit";
+    return !method->parameters || params_known(params, names, refusal);
+}
+
 /* A method of the device, for one unit. */
 static json_t *call_own(struct sim *sim, const struct device_method *method, const json_t *params, struct refusal *refusal)
 {
     struct device_refusal own = {.is_state = false};
     unsigned number = param_unit(sim, params, refusal);
-    if (number == 0)
+    if (number == 0 || !own_params_known(method, params, refusal))
         return NULL;
     if (!sim_powered(sim, number))
         return refuse(refusal, REFUSED_STATE, "unit %s has no power: switch it on with power", sim->unit[number - 1].name);

@@ -181,13 +181,16 @@ static json_t *call_apply(struct device_unit *unit, const json_t *params, struct
     return configuration(core_of(unit));
 }
 
+#define NAMES(...) (const char *const[]){__VA_ARGS__, NULL}
+#define NO_NAMES (const char *const[]){NULL}
+
 const struct device_method cib_methods[] = {
-    {"cib.status", call_status, false},
-    {"cib.command", call_command, true},
-    {"cib.do", call_do, true},
-    {"cib.pwm", call_pwm, true},
-    {"cib.config", call_config, false},
-    {"cib.config.put", call_config_put, true},
-    {"cib.apply", call_apply, true},
-    {NULL, NULL, false},
+    {"cib.status", call_status, false, NAMES("drive")},
+    {"cib.command", call_command, true, NAMES("drive", "command", "p1", "p2")},
+    {"cib.do", call_do, true, NAMES("outputs")},
+    {"cib.pwm", call_pwm, true, NAMES("output", "duty")},
+    {"cib.config", call_config, false, NO_NAMES},
+    {"cib.config.put", call_config_put, true, NAMES("setup")},
+    {"cib.apply", call_apply, true, NO_NAMES},
+    {NULL, NULL, false, NULL},
 };

@@ -236,6 +236,7 @@ struct device_method {
      * reference; NULL: refused, nothing has changed. */
     json_t *(*call)(struct device_unit *unit, const json_t *params, struct device_refusal *refusal);
     bool changes; /* anything: then recordings have it */
+    const char *const *parameters; /* the names of all but `unit`; ends with NULL. NULL: any */
 };
 
 /* ---- Servers ------------------------------------------------------------------------------------------------------------ */

@@ -134,12 +134,14 @@ static json_t *call_run(struct device_unit *unit, const json_t *params, struct d
 static json_t *call_jog(struct device_unit *unit, const json_t *params, struct device_refusal *refusal)
 {
     struct pmc_request request = {.kind = PMC_JOG};
-    for (unsigned axis = 0; axis < pmc_of(unit)->config.axes; axis++) {
+    for (unsigned axis = 0; axis < PMC_AXES; axis++) {
         const json_t *value = json_object_get(params, axis_names[axis]);
         const char *text = json_string_value(value);
         bool is_plus = text && strcmp(text, "+") == 0;
         if (!value)
             continue;
+        if (axis >= pmc_of(unit)->config.axes)
+            return refuse(refusal, false, "%s: the unit has axis x alone", axis_names[axis]);
         if (!is_plus && (!text || strcmp(text, "-") != 0))
             return refuse(refusal, false, "%s: expected \"+\" or \"-\"", axis_names[axis]);
         request.axes |= (uint8_t)(1u << axis);
@@ -304,22 +306,25 @@ static json_t *call_register_position(struct device_unit *unit, const json_t *pa
     return result_of(pmc_register_position(pmc_of(unit), axes >> 1, (unsigned)reg), refusal);
 }
 
+#define NAMES(...) (const char *const[]){__VA_ARGS__, NULL}
+#define NO_NAMES (const char *const[]){NULL}
+
 const struct device_method pmc_methods[] = {
-    {"pmc.run", call_run, true},
-    {"pmc.jog", call_jog, true},
-    {"pmc.move", call_move, true},
-    {"pmc.speed", call_speed, true},
-    {"pmc.stop", call_stop, true},
-    {"pmc.end", call_end, true},
-    {"pmc.home", call_home, true},
-    {"pmc.reset", call_reset, true},
-    {"pmc.position", call_position, false},
-    {"pmc.errors", call_errors, false},
-    {"pmc.clear_errors", call_clear_errors, true},
-    {"pmc.clear_counters", call_clear_counters, true},
-    {"pmc.program", call_program, true},
-    {"pmc.parameters", call_parameters, true},
-    {"pmc.store", call_store, true},
-    {"pmc.register_position", call_register_position, true},
-    {NULL, NULL, false},
+    {"pmc.run", call_run, true, NAMES("axes", "reg")},
+    {"pmc.jog", call_jog, true, NAMES("x", "y")},
+    {"pmc.move", call_move, true, NAMES("x", "y", "relative")},
+    {"pmc.speed", call_speed, true, NAMES("x", "y")},
+    {"pmc.stop", call_stop, true, NAMES("axes", "at_once")},
+    {"pmc.end", call_end, true, NAMES("axes")},
+    {"pmc.home", call_home, true, NAMES("axes")},
+    {"pmc.reset", call_reset, true, NO_NAMES},
+    {"pmc.position", call_position, false, NO_NAMES},
+    {"pmc.errors", call_errors, false, NO_NAMES},
+    {"pmc.clear_errors", call_clear_errors, true, NAMES("axes")},
+    {"pmc.clear_counters", call_clear_counters, true, NAMES("axes", "actual")},
+    {"pmc.program", call_program, true, NAMES("text")},
+    {"pmc.parameters", call_parameters, true, NAMES("text")},
+    {"pmc.store", call_store, true, NAMES("axes")},
+    {"pmc.register_position", call_register_position, true, NAMES("axes", "reg")},
+    {NULL, NULL, false, NULL},
 };

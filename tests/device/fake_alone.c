@@ -264,9 +264,9 @@ static json_t *call_level(struct device_unit *unit, const json_t *params, struct
 }
 
 static const struct device_method methods[] = {
-    {"alone.level", call_level, true},
-    {"alone.obey", call_obey, true},
-    {NULL, NULL, false},
+    {"alone.level", call_level, true, NULL},
+    {"alone.obey", call_obey, true, NULL},
+    {NULL, NULL, false, NULL},
 };
 
 static void put_settings(const struct device_config *config, json_t *object)

@@ -497,8 +497,8 @@ static json_t *call_rate(struct device_unit *unit, const json_t *params, struct 
 }
 
 static const struct device_method methods[] = {
-    {"fake.rate", call_rate, true},
-    {NULL, NULL, false},
+    {"fake.rate", call_rate, true, NULL},
+    {NULL, NULL, false, NULL},
 };
 
 static const char *unlike(const struct device_config *a, const struct device_config *b)

@@ -90,7 +90,7 @@ START_TEST(AS2_numbers_of_a_line)
     } cases[] = {{"SPD 1,2", "SPD 1,2\n\r"},           {"SPD +3", "SPD 3,10\n\r"},          {"SPD ,4", "SPD 10,4\n\r"},
                  {"SPD 5 , 6 x", "SPD 5,6\n\r"},      {"SPD 007,8,9", "SPD 7,8\n\r"},     {"SPD 0000000000009", "SPD 9,10\n\r"},
                  {"SPD ,", "SPD 10,10\n\r"},          {"SPD -1", "SPD 10,10\n\r"},        {"SPD 1,-", "SPD 10,10\n\r"},
-                 {"SPD 4294967297", "SPD 10,10\n\r"}, {"SPD 1000000001", "SPD 10,10\n\r"}, {"SPD 8000,8001", "SPD 10,10\n\r"},
+                 {"SPD 4294967297", "SPD 10,10\n\r"}, {"SPD 30000000001", "SPD 10,10\n\r"}, {"SPD 8000,8001", "SPD 10,10\n\r"},
                  {"SPD 8000.5", "SPD 8000,10\n\r"},   {"SPD x", "SPD 10,10\n\r"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         face_begin(&rig, &lines);
@@ -155,6 +155,20 @@ START_TEST(AB4_counters_are_cleared_both_or_not_at_all)
 }
 END_TEST
 
+/* 257 bytes and more are no frame, whatever stands in them. */
+START_TEST(AB1_a_frame_that_is_too_long_is_dropped_as_a_whole)
+{
+    uint8_t bytes[300] = {1, 3, 4, 0x4E, 0, 8, 0x25, 0x2B};
+    face_begin(&rig, &bus);
+    ck_assert_uint_eq(pmc_modbus_face.receive(&rig.unit, bytes, sizeof bytes), sizeof bytes);
+    ck_assert_uint_eq(pmc_modbus_face.receive(&rig.unit, bytes, 8), 8);
+    face_wait(&rig, 6);
+    ck_assert_uint_eq(rig.unit.face.reply.counters.dropped, 1);
+    ck_assert(!pmc_modbus_face.has_answer(&rig.unit));
+    expect("01 03 04 4E 00 01", "01 03 02 00 0A");
+}
+END_TEST
+
 START_TEST(AB4_counters_and_stops_of_single_axes)
 {
     face_begin(&rig, &bus);
@@ -167,6 +181,8 @@ START_TEST(AB4_counters_and_stops_of_single_axes)
     expect("01 06 00 00 0A 40", "01 86 03");
     expect("01 06 00 00 01 02", "01 06 00 00 01 02"); /* Y+ */
     expect("01 06 00 00 0A 21", "01 86 06");
+    face_wait(&rig, 2);
+    expect("01 04 00 14 00 02", "01 04 04 00 00 00 64");
     expect("01 06 00 00 0A 01", "01 06 00 00 0A 01");
     expect("01 06 00 00 05 20", "01 06 00 00 05 20");
     face_wait(&rig, 2);
@@ -275,6 +291,8 @@ START_TEST(AF3_numbers_that_are_none)
     expect_program_error("5 REP -1", 8, "1:7: expected a count from 1 to 255");
     expect_program_error("-1 END", 6, "1:1: expected a register from 0 to 63");
     expect_program_error("1x END", 6, "1:1: expected a register from 0 to 63");
+    expect_program_error("1 \t  # x", 8,
+                         "1:2: expected a command: ABS, INC, HOM, IJP, OUT, OTP, JMP, REP, RPE, END, TIM or NOP");
     expect_program_error("X:", 2, "1:3: expected a register from 0 to 63");
     expect_program_error("5 END\0", 6,
                          "1:3: expected a command: ABS, INC, HOM, IJP, OUT, OTP, JMP, REP, RPE, END, TIM or NOP");
@@ -330,6 +348,7 @@ int main(void)
     tcase_add_test(text, a_message_of_more_than_a_line_is_nothing);
     tcase_add_test(text, AS2_numbers_of_a_line);
     tcase_add_test(text, AB2_a_full_queue_refuses_a_frame_as_a_whole);
+    tcase_add_test(text, AB1_a_frame_that_is_too_long_is_dropped_as_a_whole);
     tcase_add_test(text, AB4_counters_are_cleared_both_or_not_at_all);
     tcase_add_test(text, AB4_counters_and_stops_of_single_axes);
     tcase_add_test(text, AB5_a_block_has_nine_words_at_most_and_its_own);

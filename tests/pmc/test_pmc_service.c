@@ -169,6 +169,26 @@ START_TEST(the_line_is_not_disturbed)
 }
 END_TEST
 
+static void expect_refusal(const char *method, const char *text, const char *expected)
+{
+    struct refusal refusal;
+    json_t *params = json_loads(text, 0, NULL), *result = sim_command(&sim, method, params, &refusal);
+    json_decref(params);
+    ck_assert_msg(!result && strstr(refusal.text, expected), "%s %s: %s", method, text, result ? "accepted" : refusal.text);
+}
+
+/* A word that is spelt wrongly would be left out: all axes, or a position instead of a distance. */
+START_TEST(methods_refuse_parameters_that_they_do_not_have)
+{
+    expect_refusal("pmc.move", "{\"x\": 1, \"relativ\": true}", "unknown parameter `relativ': expected x, y, relative, unit");
+    expect_refusal("pmc.home", "{\"axis\": \"y\"}", "unknown parameter `axis': expected axes, unit");
+    expect_refusal("pmc.reset", "{\"axes\": \"y\"}", "unknown parameter `axes': expected unit");
+    expect_refusal("pmc.stop", "{\"axes\": \"z\"}", "axes: expected");
+    do_it("pmc.move", "{\"unit\": 1, \"x\": 5, \"relative\": true}");
+    do_it("pmc.position", "{\"unit\": 1}");
+}
+END_TEST
+
 static Suite *service_suite(void)
 {
     Suite *suite = suite_create("pmc_service");
@@ -180,6 +200,7 @@ static Suite *service_suite(void)
     tcase_add_test(tcp, a_wrong_head_ends_the_connection);
     tcase_add_test(tcp, the_longest_and_the_shortest_request);
     tcase_add_test(tcp, the_line_is_not_disturbed);
+    tcase_add_test(tcp, methods_refuse_parameters_that_they_do_not_have);
     suite_add_tcase(suite, tcp);
     return suite;
 }

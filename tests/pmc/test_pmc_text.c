@@ -92,6 +92,7 @@ START_TEST(ax53_wrong_lines_are_refused)
         {"5 REP 256", "1:7: error: expected a count from 1 to 255\n"},
         {"5 REP 0", "1:7: error: expected a count from 1 to 255\n"},
         {"7 ABS 1 3", "1:9: error: expected a speed, V1 to V4\n"},
+        {"7 ABS 1 V0", "1:9: error: expected a speed, V1 to V4\n"},
         {"7 ABS 1 V5", "1:9: error: expected a speed, V1 to V4\n"},
         {"7 ABS 1.25 V3", "1:7: error: expected a value from -8388608 to 8388607, with one decimal place at most\n"},
         {"7 ABS 8388608 V1", "1:7: error: expected a value from -8388608 to 8388607, with one decimal place at most\n"},
