@@ -193,9 +193,10 @@ static bool read_part(struct reader *reader, bool in_queue, struct target *targe
 {
     size_t begin = reader->at;
     unsigned value;
+    bool has_element = take(reader, '[');
 
     *type = target->type;
-    if (take(reader, '[')) {
+    if (has_element) {
         if (!take_number(reader, UINT16_MAX, &value) || !take(reader, ']'))
             return refuse(reader, "expected a number and `]'", reader->at, 0);
         if (value >= target->count || target->type == CNC_STRUCTURE)
@@ -206,7 +207,7 @@ static bool read_part(struct reader *reader, bool in_queue, struct target *targe
     }
     if (in_queue)
         return true;
-    if (take(reader, '.')) {
+    if (!has_element && take(reader, '.')) {
         size_t letters = word_length(reader);
         const struct cnc_field *field = cnc_fields;
         while (field < cnc_fields + cnc_field_count &&
@@ -214,7 +215,7 @@ static bool read_part(struct reader *reader, bool in_queue, struct target *targe
             field++;
         if (field == cnc_fields + cnc_field_count)
             return refuse(reader, "the cell has no field", reader->at, letters);
-        target->offset += field->offset;
+        target->offset = field->offset;
         *type = field->type;
         reader->at += letters;
     }

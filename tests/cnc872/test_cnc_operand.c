@@ -160,6 +160,8 @@ static const struct {
     {"LIMIT_Y[1]", "there is no such element", "[1]"},
     {"SYST_TIME_INFO[0]", "there is no such element", "[0]"},
     {"SYST_TIME_INFO", "expected a field, or a type before the structure", "SYST_TIME_INFO"},
+    {" SYST_TIME_INFO", "expected a field, or a type before the structure", "SYST_TIME_INFO"},
+    {"DISPTOC1[2].TOC_ROW", "expected the end of the operand", ".TOC_ROW"},
     {"SYST_TIME_INFO.DATE_DAY", "the cell has no field", "DATE_DAY"},
     {"VYSOVERS.TIME_MIN", "the cell has no field", "TIME_MIN"},
     {"DWRD.UTC_TIME_INFO.TIME_HOUR", "this lies outside of the cell", "UTC_TIME_INFO.TIME_HOUR"},

@@ -130,10 +130,14 @@ START_TEST(reals_go_through_dr_real_and_cut_into_dr)
     rig_run(data, "LOD REAL.Z\nSU REAL.A\nDIVB REAL.B\nSTO REAL.R");
     ck_assert_double_eq(rig_real("R"), -2.5);
     ck_assert_int_eq(rig.plc.dr, -2); /* towards 0 */
+    ck_assert_uint_eq(rig.events, 0);
     rig_run(data, "LOD REAL.A\nLOD CNST.9\nSTO REAL.R"); /* whole operations do not change DR_REAL */
     ck_assert_double_eq(rig_real("R"), 1.25);
     ck_assert_int_eq(rig.plc.dr, 9);
+    ck_assert_uint_eq(rig.events, 0);
     ck_assert_int_eq(rig_run(data, "LOD REAL.HUGE"), INT64_MAX);
+    ck_assert_int_eq(rig_run("A DQ 43E0000000000000h", "LOD REAL.A"), INT64_MAX); /* 2^63 */
+    ck_assert_int_eq(rig_run("A DQ 43DFFFFFFFFFFFFFh", "LOD REAL.A"), 0x7FFFFFFFFFFFFC00);
     ck_assert_int_eq(rig_run(data, "LOD REAL.Z\nSU REAL.HUGE"), INT64_MIN);
     ck_assert_int_eq(rig_run(data, "LOD REAL.HUGE\nMULB REAL.HUGE\nMULB REAL.Z"), 0); /* not a number */
     rig_run(data, "LOD rAxGParabAccel\nAD REAL.A\nSTO rAxGParabAccel");
