@@ -4,14 +4,14 @@
 
 #include <string.h>
 
-int cnc_find_license(const char *name, size_t length)
+int cnc_find_license(const char *text, size_t length)
 {
     static const char feature[] = "FeaturePlc";
     const size_t size = sizeof feature - 1;
-    if (cnc_same_name("HwKeyConnected", name, length))
+    if (cnc_same_name("HwKeyConnected", text, length))
         return CNC_LICENSE_HW_KEY;
-    if (length == size + 1 && cnc_same_name(feature, name, size) && name[size] >= '0' && name[size] <= '9')
-        return CNC_LICENSE_FEATURE_PLC0 + (name[size] - '0');
+    if (length == size + 1 && cnc_same_name(feature, text, size) && text[size] >= '0' && text[size] <= '9')
+        return CNC_LICENSE_FEATURE_PLC0 + (text[size] - '0');
     return -1;
 }
 

@@ -75,7 +75,7 @@ void cnc_config_clear(struct cnc_config *config);
 bool cnc_config_read(const char *text, size_t length, struct cnc_config *config, cnc_text_report *report, void *context);
 
 /* The licence of this name, "HwKeyConnected", "FeaturePlc0" ...; -1: there is none. */
-int cnc_find_license(const char *name, size_t length);
+int cnc_find_license(const char *text, size_t length);
 
 /* Is the function in one of the groups of section 11 whatever the configuration says? Returns its group, or 0. */
 unsigned cnc_fixed_group(unsigned m);

@@ -84,6 +84,7 @@ END_TEST
 START_TEST(no2_borders_of_a_display)
 {
     static const uint8_t corner[8] = {63, 127, 'Z', 'a', 'b', 'c'}, below[8] = {64, 0, 'Q'}, beside[8] = {0, 128, 'Q'};
+    static const uint8_t begin[8] = {0, 0, 'B'};
     rig_power(NULL, NULL);
     write_display(1, corner);
     run_to(1);
@@ -94,6 +95,13 @@ START_TEST(no2_borders_of_a_display)
     write_display(1, beside);
     run_to(3);
     ck_assert_mem_eq(&before, &cnc.display[1], sizeof before);
+    set_bit("BUSY_DISPTOC2", true);
+    write_display(1, begin);
+    run_to(4);
+    ck_assert_mem_eq(&before, &cnc.display[1], sizeof before);
+    set_bit("BUSY_DISPTOC2", false);
+    run_to(5);
+    ck_assert_int_eq(cnc.display[1].text[0][0], 'B');
 }
 END_TEST
 
