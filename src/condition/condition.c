@@ -62,6 +62,8 @@ static int64_t term_value(const struct term *term, struct sim *sim)
         return sim_device(sim)->variables_of(sim_core(sim, term->unit)) >> (term->number - sim_device(sim)->first_variable) & 1;
     case TERM_POWERED:
         return sim_powered(sim, term->unit);
+    case TERM_CELL:
+        return sim_device(sim)->cell(sim_core(sim, term->unit), term->cell);
     default:
         return motor_value(term, sim);
     }
@@ -239,7 +241,7 @@ static const char *term_name(enum term_kind kind)
         [TERM_TIME] = "t", [TERM_POSITION] = "position", [TERM_TRUE_POSITION] = "true position", [TERM_STEPS] = "steps",
         [TERM_INDEX] = "index", [TERM_COMMANDS] = "commands", [TERM_STATE] = "state", [TERM_LED] = "led",
         [TERM_FAULT] = "fault", [TERM_IDLE] = "idle", [TERM_INPUT] = "DI", [TERM_OUTPUT] = "DO", [TERM_VARIABLE] = "VAR",
-        [TERM_POWERED] = "powered",
+        [TERM_POWERED] = "powered", [TERM_CELL] = "cell",
     };
     return names[kind];
 }
@@ -313,6 +315,8 @@ static void print_term(FILE *out, const struct term *term, struct sim *sim, enum
     fputs(term_name((enum term_kind)term->kind), out);
     if (bit)
         print_bit(out, term, sim_device(sim));
+    if (term->kind == TERM_CELL)
+        fprintf(out, " %s", term->cell_name);
     fputc(' ', out);
     if (part == PART_FOUND) {
         print_value(out, term, sim, term_value(term, sim));
@@ -331,7 +335,8 @@ static void print_term(FILE *out, const struct term *term, struct sim *sim, enum
 static bool has_same_subject(const struct term *left, const struct term *right)
 {
     return left->kind == right->kind && left->unit == right->unit && left->motor == right->motor &&
-           left->number == right->number && left->subs == 0 && right->subs == 0 && left->kind != TERM_MESSAGE;
+           left->number == right->number && left->cell == right->cell &&
+           left->subs == 0 && right->subs == 0 && left->kind != TERM_MESSAGE;
 }
 
 /* What is found is a list; what is wanted has its structure. */

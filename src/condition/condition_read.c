@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Conditions from JSON. */
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -118,6 +119,30 @@ static bool read_number(struct reader *r, struct term *group, struct term term, 
             return REFUSE("%s: expected %s after \"%s\"", key, what, name);
         term.relation = (uint8_t)relation;
         if (!add_term(r, group, &term))
+            return false;
+    }
+    return true;
+}
+
+/* {"PO_STOP": 1, "B_POL[0]": {">=": 8000}}: cells of the device. */
+static bool read_cells(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
+{
+    const struct device_kind *device = sim_device(r->sim);
+    char error[DEVICE_ERROR_SIZE];
+    const char *name;
+    json_t *value;
+    if (device->find_cell == NULL)
+        return REFUSE("%s: the device %s has no cells", key, device->name);
+    if (!json_is_object(json) || json_object_size(json) == 0)
+        return REFUSE("%s: expected cells, as in {\"PO_STOP\": 1}", key);
+    json_object_foreach((json_t *)json, name, value) {
+        if (strlen(name) >= TERM_CELL_SIZE)
+            return REFUSE("%s: `%.60s…': there is no cell with so long a name", key, name);
+        snprintf(term.cell_name, sizeof term.cell_name, "%s", name);
+        term.cell = device->find_cell(sim_core(r->sim, term.unit), name, error);
+        if (term.cell == 0)
+            return REFUSE("%s: %s", key, error);
+        if (!read_number(r, group, term, name, value))
             return false;
     }
     return true;
@@ -333,6 +358,7 @@ static const struct {
     {"do", TERM_OUTPUT, NEEDS_UNIT, read_bits},
     {"var", TERM_VARIABLE, NEEDS_UNIT, read_bits},
     {"powered", TERM_POWERED, NEEDS_UNIT, read_flag},
+    {"cell", TERM_CELL, NEEDS_UNIT, read_cells},
     {"message", TERM_MESSAGE, NEEDS_NOTHING, read_message},
     {"all", TERM_ALL, NEEDS_NOTHING, read_list},
     {"any", TERM_ANY, NEEDS_NOTHING, read_list},
@@ -348,7 +374,7 @@ static bool read_key(struct reader *r, struct term *group, const json_t *object,
         i++;
     if (i == KEYS)
         return REFUSE("unknown condition \"%.40s\": expected t, position, true_position, steps, index, commands, state, led, "
-                      "fault, idle, di, do, var, powered, message, all or any, with unit and motor",
+                      "fault, idle, di, do, var, powered, cell, message, all or any, with unit and motor",
                       key);
     term.kind = keys[i].kind;
     if (keys[i].needs != NEEDS_NOTHING) {

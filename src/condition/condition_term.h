@@ -22,6 +22,7 @@ enum term_kind {
     TERM_OUTPUT,
     TERM_VARIABLE,
     TERM_POWERED,
+    TERM_CELL,     /* of the device, by name: numbers */
     TERM_MESSAGE
 };
 
@@ -36,6 +37,7 @@ struct term_message {
     bool seen;
 };
 #define TERM_ANY_UNIT 17
+#define TERM_CELL_SIZE 64u /* bytes of a cell's name */
 
 struct term {
     uint8_t kind;     /* enum term_kind */
@@ -44,6 +46,8 @@ struct term {
     uint8_t motor;    /* 1..4 */
     uint8_t number;   /* of an input, output, variable, as people count */
     int64_t value;
+    uint64_t cell;    /* as find_cell() of the device has found it */
+    char cell_name[TERM_CELL_SIZE];
     struct term_message message;
     size_t subs;
     struct term *sub;

@@ -163,7 +163,9 @@ bool control_handle_line(struct control_client *client, const char *line, size_t
     json_t *result = NULL;
     bool ok = rpc_read(&request, line, length, control->lines, &refusal);
     if (ok) {
-        control_method *method = find(request.method);
+        const struct device_exchange *exchange = sim_device(bus_sim(control->buses[request.line]))->exchange_of;
+        const bool is_exchange = exchange && strcmp(request.method, exchange->name) == 0;
+        control_method *method = is_exchange ? control_exchange : find(request.method);
         if (strcmp(request.method, "restore") == 0 && json_object_get(request.params, "file"))
             method = control_restore;
         context.bus = control->buses[request.line];

@@ -239,6 +239,14 @@ struct device_method {
     const char *const *parameters; /* the names of all but `unit`; ends with NULL. NULL: any */
 };
 
+/* A method that takes time: what `set` has is given to the method `set` as {member: ...}, slots pass, the method `get` answers
+ * {member: ...} with what `get` has. For the control socket, on a stepped clock. */
+struct device_exchange {
+    const char *name, *set, *get; /* of the methods */
+    const char *member;           /* of their parameters */
+    uint64_t (*end)(const struct device_unit *unit, unsigned slots); /* us at which so many slots have passed, since power-up */
+};
+
 /* ---- Servers ------------------------------------------------------------------------------------------------------------ */
 
 #define DEVICE_BUS_UNITS 16u     /* on a bus */
@@ -403,6 +411,12 @@ struct device_kind {
     const struct device_option *options; /* NULL: none */
     const struct device_readings *readings; /* NULL: none */
     const struct device_method *methods; /* NULL: none */
+    const struct device_exchange *exchange_of; /* NULL: none */
+
+    /* Numbers that conditions may name, as cells of an interface: what find_cell() returns for a name is never 0 and valid as
+     * long as the unit's settings; 0 and a message: there is no such cell. NULL: none. */
+    uint64_t (*find_cell)(const struct device_unit *unit, const char *name, char error[DEVICE_ERROR_SIZE]);
+    int64_t (*cell)(const struct device_unit *unit, uint64_t found);
     const struct device_service *services; /* ends with a row without name; NULL: none */
     const char *const *settings;
     void (*put_settings)(const struct device_config *config, json_t *object);
@@ -498,6 +512,6 @@ void rkm04_settings_put(struct device_config *config, const struct rkm04_config 
 struct device_config rkm04_device_config(const struct rkm04_config *settings);
 
 /* The other kinds. */
-extern const struct device_kind pmc_1hs_device, pmc_2hs_device;
+extern const struct device_kind pmc_1hs_device, pmc_2hs_device, cnc872_device;
 
 #endif

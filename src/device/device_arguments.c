@@ -165,6 +165,18 @@ static void read_value(struct device_arguments *arguments, unsigned at, const st
     }
 }
 
+/* In the order of the options of the kind: what one value needs may come from another. Names that are none come first. */
+static void read_values(struct device_arguments *arguments, const struct argp_state *state)
+{
+    for (unsigned at = 0; at < arguments->count; at++)
+        if (!device_option_named(arguments->kind, arguments->name[at]))
+            read_value(arguments, at, state);
+    for (const struct device_option *option = arguments->kind->options; option && option->name; option++)
+        for (unsigned at = 0; at < arguments->count; at++)
+            if (strcmp(arguments->name[at], option->name) == 0)
+                read_value(arguments, at, state);
+}
+
 void device_arguments_add(struct device_arguments *arguments, const char *name, const char *value, struct argp_state *state)
 {
     if (arguments->count == DEVICE_ARGUMENTS_MAX) {
@@ -206,8 +218,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     else if (key >= KEY_FIRST && key < KEY_FIRST + (int)help.rows)
         device_arguments_add(arguments, help.switches[key - KEY_FIRST], text, state);
     else if (key == ARGP_KEY_END)
-        for (unsigned at = 0; at < arguments->count; at++)
-            read_value(arguments, at, state);
+        read_values(arguments, state);
     else
         return ARGP_ERR_UNKNOWN;
     return 0;

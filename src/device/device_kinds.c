@@ -6,7 +6,8 @@
 #include "device.h"
 
 /* A row for each kind; the first one is meant where none is named. */
-static const struct device_kind *const device_kinds[] = {&rkm04_device, &cib_device, &pmc_1hs_device, &pmc_2hs_device};
+static const struct device_kind *const device_kinds[] = {&rkm04_device, &cib_device, &pmc_1hs_device, &pmc_2hs_device,
+                                                          &cnc872_device};
 
 #define KINDS (sizeof device_kinds / sizeof device_kinds[0])
 

@@ -37,14 +37,18 @@ void fake_rig_begin(struct fake_rig *rig, const char *nodes, bool timed)
     fake_rig_begin_as(rig, &fake_device, NULL, nodes, timed);
 }
 
-/* The config with a setting, "end=sums". */
+/* The config with a setting, "end=sums"; of a file, its text. */
 static void set_option(struct device_config *config, const struct device_kind *kind, const char *setting)
 {
     char name[32], error[DEVICE_ERROR_SIZE];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(setting, "="), setting);
     const struct device_option *option = device_option_named(kind, name);
     ck_assert_ptr_nonnull(option);
-    ck_assert_msg(option->read(config, strchr(setting, '=') + 1, error), "%s", error);
+    const char *value = strchr(setting, '=') + 1;
+    if (option->read_file)
+        ck_assert(option->read_file(config, name, value, strlen(value), stderr));
+    else
+        ck_assert_msg(option->read(config, value, error), "%s", error);
 }
 
 void fake_rig_begin_as(struct fake_rig *rig, const struct device_kind *kind, const char *setting, const char *nodes, bool timed)

@@ -18,7 +18,7 @@ struct fake_rig {
 /* Units with these addresses ("1,2"). `timed`: bytes take their time. */
 void fake_rig_begin(struct fake_rig *rig, const char *nodes, bool timed);
 
-/* Units of this kind, with a setting ("end=sums"; NULL: none). */
+/* Units of this kind, with a setting ("end=sums", of a file its text; NULL: none). */
 void fake_rig_begin_as(struct fake_rig *rig, const struct device_kind *kind, const char *setting, const char *nodes, bool timed);
 
 void fake_rig_end(struct fake_rig *rig);

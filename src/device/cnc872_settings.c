@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT */
+/* The settings of a CNC872 (NU1): on command lines, in scenarios, in recordings. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cnc872_device.h"
+
+_Static_assert(sizeof(struct cnc_own) <= DEVICE_SETTINGS_SIZE, "the settings of a CNC872 have to fit");
+
+struct cnc_own cnc_own_of(const struct device_config *config)
+{
+    struct cnc_own own;
+    memcpy(&own, config->own.byte, sizeof own);
+    return own;
+}
+
+/* The text that one of this kind needs: an NC program is read with the axes and M functions of the configuration, a switch may be
+ * a bit of the PLC program. */
+static const struct cnc_text *needed_by(const struct cnc_own *own, enum cnc_text_kind kind)
+{
+    return kind == CNC_TEXT_NC        ? own->text[CNC_TEXT_CONFIG]
+           : kind == CNC_TEXT_MACHINE ? own->text[CNC_TEXT_PLC]
+                                      : NULL;
+}
+
+static bool take_text(struct device_config *config, enum cnc_text_kind kind, const char *name, const char *text, size_t length,
+                      FILE *errors)
+{
+    struct cnc_own own = cnc_own_of(config);
+    own.text[kind] = cnc_text_read(kind, needed_by(&own, kind), name, text, length, errors);
+    memcpy(config->own.byte, &own, sizeof own);
+    return own.text[kind] != NULL;
+}
+
+static bool read_config(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)
+{
+    return take_text(config, CNC_TEXT_CONFIG, name, text, length, errors);
+}
+
+static bool read_plc(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)
+{
+    return take_text(config, CNC_TEXT_PLC, name, text, length, errors);
+}
+
+static bool read_nc(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)
+{
+    return take_text(config, CNC_TEXT_NC, name, text, length, errors);
+}
+
+static bool read_machine(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)
+{
+    return take_text(config, CNC_TEXT_MACHINE, name, text, length, errors);
+}
+
+/* In the order in which they are read: what others need comes first. */
+const struct device_option cnc_options[] = {
+    {.name = "config", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .read_file = read_config,
+     .help = "Configuration of the machine, XML: axes, gears, M functions; without it X, Y, Z with defaults"},
+    {.name = "plc", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .read_file = read_plc,
+     .help = "PLC program, a text in the language of the CNC872"},
+    {.name = "nc", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .read_file = read_nc,
+     .help = "NC program that is loaded at the start"},
+    {.name = "machine", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .read_file = read_machine,
+     .help = "Switches of the machine, YAML: bits that follow the positions of axes"},
+    {.name = NULL}
+};
+
+/* ---- Recordings --------------------------------------------------------------------------------------------------------- */
+
+const char *const cnc_setting_names[] = {"config", "plc", "nc", "machine", NULL};
+
+static enum cnc_text_kind kind_named(const char *name)
+{
+    static const enum cnc_text_kind kinds[] = {CNC_TEXT_CONFIG, CNC_TEXT_PLC, CNC_TEXT_NC, CNC_TEXT_MACHINE};
+    unsigned at = 0;
+    while (cnc_setting_names[at] && strcmp(cnc_setting_names[at], name) != 0)
+        at++;
+    return cnc_setting_names[at] ? kinds[at] : CNC_TEXT_KINDS;
+}
+
+void cnc_put_settings(const struct device_config *config, json_t *object)
+{
+    const struct cnc_own own = cnc_own_of(config);
+    for (const char *const *name = cnc_setting_names; *name; name++) {
+        const struct cnc_text *text = own.text[kind_named(*name)];
+        if (text)
+            json_object_set_new(object, *name, json_stringn(text->text, text->length));
+    }
+}
+
+bool cnc_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE])
+{
+    char *lines = NULL;
+    size_t size = 0;
+    FILE *errors;
+    if (!value)
+        return true;
+    if (!json_is_string(value)) {
+        snprintf(error, DEVICE_ERROR_SIZE, "expected \"%s\", a text", name);
+        return false;
+    }
+    errors = open_memstream(&lines, &size);
+    const bool is_right = errors && take_text(config, kind_named(name), name, json_string_value(value),
+                                              json_string_length(value), errors);
+    if (errors)
+        fclose(errors);
+    if (!is_right)
+        snprintf(error, DEVICE_ERROR_SIZE, "%.*s", lines ? (int)strcspn(lines, "\n") : 13, lines ? lines : "out of memory");
+    free(lines);
+    return is_right;
+}
+
+const char *cnc_settings_difference(const struct device_config *a, const struct device_config *b)
+{
+    static const char *const names[] = {[CNC_TEXT_CONFIG] = "the configuration (--config)",
+                                        [CNC_TEXT_NC] = "the NC program (--nc)",
+                                        [CNC_TEXT_PLC] = "the PLC program (--plc)",
+                                        [CNC_TEXT_MACHINE] = "the switches of the machine (--machine)"};
+    const struct cnc_own here = cnc_own_of(a), there = cnc_own_of(b);
+    for (unsigned kind = 0; kind < CNC_TEXT_KINDS; kind++)
+        if (here.text[kind] != there.text[kind])
+            return names[kind];
+    return NULL;
+}
+
+bool cnc_check_text(const struct device_config *config, const char *name, const char *text, size_t length, FILE *out)
+{
+    const struct cnc_own own = cnc_own_of(config);
+    return cnc_text_read(CNC_TEXT_NC, own.text[CNC_TEXT_CONFIG], name, text, length, out) == NULL;
+}

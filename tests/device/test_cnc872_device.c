@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: MIT */
+/* test_cnc872_device.c: the CNC872 through the seam: methods, conditions, recordings, snapshots, scenarios. */
+#include <check.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "condition/condition.h"
+#include "core/rig.h"
+#include "fake_rig.h"
+#include "record/record.h"
+#include "scenario/scenario.h"
+#include "trace/trace.h"
+
+static struct fake_rig rig;
+
+static void begin(void)
+{
+    fake_rig_begin_as(&rig, &cnc872_device, NULL, "1", true);
+}
+
+static void end(void)
+{
+    fake_rig_end(&rig);
+}
+
+/* The result of a command as text. */
+static void expect_result(const char *method, const char *params, const char *wanted)
+{
+    json_t *result = fake_rig_command(&rig, method, params);
+    char *text = json_dumps(result, JSON_COMPACT);
+    ck_assert_msg(strstr(text, wanted) != NULL, "%s %s: %s, expected %s", method, params, text, wanted);
+    free(text);
+    json_decref(result);
+}
+
+/* Advance to the end of T number k. */
+static void do_turns(uint64_t k)
+{
+    sim_advance(&rig.sim, k * 1000 + 1);
+}
+
+/* ---- Cells and panel ------------------------------------------------------------------------------------------------ */
+
+START_TEST(NL1_W2_a_block_is_loaded_started_and_followed_by_its_cells)
+{
+    expect_result("cnc.load", "{\"text\": \"G1 X10 F1000\"}", "\"blocks\":1");
+    fake_rig_do(&rig, "cnc.panel", "{\"start\": true}");
+    do_turns(1);
+    expect_result("cnc.get", "{\"cells\": [\"PO_F\", \"po_osxpi\"]}", "{\"t\":1,\"cells\":{\"PO_F\":1,\"po_osxpi\":1}}");
+    do_turns(2);
+    expect_result("cnc.get", "{\"cells\": [\"B_INK_EX[0]\"]}", "32768");
+    do_turns(634);
+    expect_result("cnc.get", "{\"cells\": [\"B_INK_EX[0]\", \"PO_POL\"]}", "{\"B_INK_EX[0]\":655360000,\"PO_POL\":1}");
+    fake_rig_expect_state(&rig, "motors.0.position", "10000");
+    do_turns(635);
+    expect_result("cnc.get", "{\"cells\": [\"PO_F\"]}", "{\"PO_F\":0}");
+}
+END_TEST
+
+START_TEST(NL5_bad_access_is_refused_and_nothing_is_set)
+{
+    fake_rig_expect_refusal(&rig, "cnc.get", "{\"cells\": [\"PO_G\"]}", "`PO_G'");
+    fake_rig_expect_refusal(&rig, "cnc.get", "{\"cells\": \"PO_F\"}", "expected a list");
+    fake_rig_expect_refusal(&rig, "cnc.get", "{\"cells\": [1]}", "expected names");
+    fake_rig_expect_refusal(&rig, "cnc.get", "{\"cells\": [\"CNST.1\"]}", "not a constant");
+    fake_rig_expect_refusal(&rig, "cnc.set", "{\"cells\": {\"BZH09\": 1, \"PO_F\": 1}}", "PO_F may only be read");
+    fake_rig_expect_refusal(&rig, "cnc.set", "{\"cells\": {\"BZH09\": 1, \"BLK[0].M3\": 1}}", "may only be read");
+    fake_rig_expect_refusal(&rig, "cnc.set", "{\"cells\": {\"BZH09\": 256}}", "from 0 to 255");
+    fake_rig_expect_refusal(&rig, "cnc.set", "{\"cells\": {\"MPXPI\": 2}}", "from 0 to 1");
+    fake_rig_expect_refusal(&rig, "cnc.set", "{\"cells\": {\"rAxGParabAccel\": \"1\"}}", "expected a number");
+    expect_result("cnc.get", "{\"cells\": [\"BZH09\"]}", "{\"BZH09\":0}");
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"WORD.BZH09\": 1500, \"rAxGParabAccel\": 2.5, \"FEED_OVR\": true}}");
+    expect_result("cnc.get", "{\"cells\": [\"BZH09\", \"BZH10\", \"rAxGParabAccel\", \"FEED_OVR\"]}",
+                  "{\"BZH09\":220,\"BZH10\":5,\"rAxGParabAccel\":2.5,\"FEED_OVR\":1}");
+}
+END_TEST
+
+START_TEST(NL1_the_panel_refuses_as_a_whole_with_the_reason)
+{
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"start\": true, \"feed\": 50}", "no NC program is loaded");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"feed\": 50, \"jog\": {\"4\": \"+\"}}", "no axis `4'");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"feed\": 201}", "from 0 to 200");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"fed\": 20}", "unknown parameter `fed'");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"mode\": \"auto\"}", "\"aut\" or \"manual\"");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"start\": false}", "start: expected true");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"keys\": {\"P3\": 1}}", "`P3' is unknown");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"home\": \"4\"}", "configured axis");
+    expect_result("cnc.state", "{}", "\"feed\":100");
+    fake_rig_do(&rig, "cnc.panel", "{\"feed\": 50, \"mode\": \"manual\", \"jog\": {\"X\": \"+\"}, \"rapid\": true}");
+    do_turns(500);
+    expect_result("cnc.state", "{}", "\"state\":\"manual\"");
+    fake_rig_do(&rig, "cnc.panel", "{\"jog\": {\"X\": \"\"}}");
+    fake_rig_expect_refusal(&rig, "cnc.load", "{\"text\": \"G1 X\"}", "nc:1:");
+    fake_rig_expect_refusal(&rig, "cnc.load", "{}", "text: expected an NC program");
+}
+END_TEST
+
+START_TEST(NL2_conditions_name_cells)
+{
+    struct refusal refusal;
+    json_t *json = json_loads("{\"cell\": {\"PO_POL\": 1, \"B_INK_EX[0]\": {\">=\": 655360000}}}", 0, NULL);
+    fake_rig_do(&rig, "cnc.load", "{\"text\": \"G1 X10 F1000\"}");
+    fake_rig_do(&rig, "cnc.panel", "{\"start\": true}");
+    struct condition *condition = condition_read(&rig.sim, json, &refusal);
+    ck_assert_msg(condition != NULL, "%s", refusal.text);
+    condition_arm(condition);
+    ck_assert(condition_run(condition, 10000000));
+    ck_assert_uint_eq(sim_now(&rig.sim), 634001); /* W2 */
+    char *text = condition_wanted_text(condition);
+    ck_assert_msg(strstr(text, "cell PO_POL == 1 and cell B_INK_EX[0] >= 655360000"), "%s", text);
+    free(text);
+    condition_free(condition);
+    json_decref(json);
+    json = json_loads("{\"cell\": {\"PO_G\": 1}}", 0, NULL);
+    ck_assert_ptr_null(condition_read(&rig.sim, json, &refusal));
+    ck_assert_msg(strstr(refusal.text, "`PO_G'"), "%s", refusal.text);
+    json_decref(json);
+    json = json_loads("{\"cell\": {\"rAxGParabAccel\": 1}}", 0, NULL);
+    ck_assert_ptr_null(condition_read(&rig.sim, json, &refusal));
+    json_decref(json);
+}
+END_TEST
+
+/* ---- What is kept --------------------------------------------------------------------------------------------------- */
+
+START_TEST(recording_of_a_cnc_replays)
+{
+    char *text;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    struct record *record = record_begin(&rig.sim, out);
+    ck_assert_ptr_nonnull(record);
+    fake_rig_do(&rig, "cnc.load", "{\"text\": \"G1 X1 Y-0.5 F1000\\nG0 X0\"}");
+    fake_rig_do(&rig, "cnc.panel", "{\"start\": true}");
+    do_turns(60);
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"STOP_REQ\": 1}}");
+    do_turns(100);
+    fake_rig_do(&rig, "cnc.panel", "{\"start\": true, \"feed\": 70}");
+    sim_advance(&rig.sim, 1000000);
+    fake_rig_expect_state(&rig, "motors.1.position", "-500");
+    ck_assert_int_eq(record_end(record), 0);
+    fclose(out);
+    FILE *in = fmemopen(text, length, "r");
+    struct replay *replay = replay_open("test.record", in);
+    ck_assert_int_eq(replay_run(replay, NULL, NULL), REPLAY_SAME);
+    replay_free(replay);
+    fclose(in);
+    free(text);
+}
+END_TEST
+
+START_TEST(snapshot_of_a_cnc_goes_on_as_before)
+{
+    fake_rig_do(&rig, "cnc.load", "{\"text\": \"G1 X10 F1000\"}");
+    fake_rig_do(&rig, "cnc.panel", "{\"start\": true}");
+    do_turns(100);
+    fake_rig_do(&rig, "snapshot", "{\"name\": \"half\"}");
+    do_turns(300);
+    fake_rig_do(&rig, "cnc.panel", "{\"reset\": true}");
+    do_turns(400);
+    fake_rig_do(&rig, "cnc.load", "{\"text\": \"G0 Y5\"}");
+    fake_rig_do(&rig, "restore", "{\"name\": \"half\"}");
+    sim_advance(&rig.sim, sim_now(&rig.sim) + 534000);
+    expect_result("cnc.get", "{\"cells\": [\"PO_POL\", \"B_INK_EX[0]\"]}", "{\"PO_POL\":1,\"B_INK_EX[0]\":655360000}");
+}
+END_TEST
+
+static void run_story(const char *text, enum scenario_end wanted, const char *said)
+{
+    static const struct scenario_files files = {0};
+    struct scenario_result result = {0};
+    char *told;
+    size_t length;
+    FILE *errors = open_memstream(&told, &length);
+    struct scenario *scenario = scenario_read("test.yaml", text, strlen(text), &files, errors);
+    enum scenario_end came = scenario ? scenario_run(scenario, NULL, NULL, NULL, &result) : SCENARIO_FAILED;
+    if (scenario && came == SCENARIO_FAILED)
+        fprintf(errors, "line %zu: expected %s, seen %s", result.line, result.expected, result.seen);
+    fclose(errors);
+    ck_assert_msg(came == wanted && (!said || strstr(told, said)), "%s", told);
+    scenario_result_free(&result);
+    scenario_free(scenario);
+    free(told);
+}
+
+START_TEST(NU1_scenario_of_a_cnc)
+{
+    run_story("device: cnc872\nsteps:\n"
+              "  - call: cnc.load\n    params: {text: G1 X1 F1000}\n"
+              "  - call: cnc.panel\n    params: {start: true}\n"
+              "  - wait: {cell: {PO_POL: 1}}\n    within: 1s\n"
+              "  - expect: {motor: 1, position: 1000}\n"
+              "  - call: cnc.get\n    params: {cells: [B_INK]}\n    result: {cells: {B_INK: 8000}}\n",
+              SCENARIO_PASSED, NULL);
+    run_story("device: cnc872\nsteps:\n  - expect: {cell: {PO_F: 1}}\n", SCENARIO_FAILED, "cell PO_F == 1");
+    run_story("device: cnc872\nsteps:\n  - bytes: '04'\n", SCENARIO_FAILED, "has no bus");
+    run_story("device: rkm04\nsteps:\n  - expect: {cell: {PO_F: 1}}\n", SCENARIO_FAILED, "the device rkm04 has no cells");
+}
+END_TEST
+
+/* ---- A PLC program of its own --------------------------------------------------------------------------------------- */
+
+START_TEST(NU3_the_cells_of_a_plc_program_are_cells_like_others)
+{
+    static const char plc[] = "plc=DATA\nCOUNT DW 0\nREADY BIT 0\nDATA_END\n"
+                              "MODULE_MAIN\n LOD WORD.COUNT\n AD CNST.1\n STO WORD.COUNT\n"
+                              " LDR READY\n WR MPXPI\nMODULE_MAIN_END\n";
+    struct device_config config = {.node = 1};
+    char error[DEVICE_ERROR_SIZE];
+    fake_rig_end(&rig);
+    fake_rig_begin_as(&rig, &cnc872_device, plc, "1", true);
+    do_turns(7);
+    expect_result("cnc.get", "{\"cells\": [\"COUNT\", \"MPXPI\"]}", "{\"COUNT\":7,\"MPXPI\":0}");
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"READY\": 1}}");
+    do_turns(8);
+    expect_result("cnc.get", "{\"cells\": [\"MPXPI\"]}", "{\"MPXPI\":1}");
+    json_t *text = json_string("MODULE_MAIN\n TIM 3\nMODULE_MAIN_END\n");
+    ck_assert(!cnc872_device.read_setting(&config, "plc", text, error));
+    ck_assert_msg(strstr(error, "plc:2:"), "%s", error);
+    json_decref(text);
+}
+END_TEST
+
+static Suite *cnc872_device_suite(void)
+{
+    Suite *suite = suite_create("cnc872_device");
+    TCase *tests = tcase_create("cnc872");
+    tcase_add_checked_fixture(tests, begin, end);
+    tcase_add_test(tests, NL1_W2_a_block_is_loaded_started_and_followed_by_its_cells);
+    tcase_add_test(tests, NL5_bad_access_is_refused_and_nothing_is_set);
+    tcase_add_test(tests, NL1_the_panel_refuses_as_a_whole_with_the_reason);
+    tcase_add_test(tests, NL2_conditions_name_cells);
+    tcase_add_test(tests, recording_of_a_cnc_replays);
+    tcase_add_test(tests, snapshot_of_a_cnc_goes_on_as_before);
+    tcase_add_test(tests, NU1_scenario_of_a_cnc);
+    tcase_add_test(tests, NU3_the_cells_of_a_plc_program_are_cells_like_others);
+    suite_add_tcase(suite, tests);
+    return suite;
+}
+
+int main(void)
+{
+    return rig_run(cnc872_device_suite(), "./test_cnc872_device");
+}
