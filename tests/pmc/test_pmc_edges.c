@@ -165,6 +165,7 @@ START_TEST(AB1_a_frame_that_is_too_long_is_dropped_as_a_whole)
     face_wait(&rig, 6);
     ck_assert_uint_eq(rig.unit.face.reply.counters.dropped, 1);
     ck_assert(!pmc_modbus_face.has_answer(&rig.unit));
+    ck_assert_msg(rig.stores && rig.flash[0][0] == 0xFF, "bytes were written behind the unit");
     expect("01 03 04 4E 00 01", "01 03 02 00 0A");
 }
 END_TEST
