@@ -269,7 +269,13 @@ static json_t *call_state(struct device_unit *unit, const json_t *params, struct
     return state ? state : cnc_refuse(refusal, true, "out of memory");
 }
 
+#define NAMES(...) (const char *const[]){__VA_ARGS__, NULL}
+
 const struct device_method cnc_methods[] = {
-    {"cnc.get", call_get, false},     {"cnc.set", call_set, true},      {"cnc.panel", call_panel, true},
-    {"cnc.load", call_load, true},    {"cnc.state", call_state, false}, {NULL, NULL, false},
+    {"cnc.get", call_get, false, NAMES("cells")},
+    {"cnc.set", call_set, true, NAMES("cells")},
+    {"cnc.panel", call_panel, true, NULL}, /* it tells more about its own */
+    {"cnc.load", call_load, true, NAMES("text", "name")},
+    {"cnc.state", call_state, false, (const char *const[]){NULL}},
+    {NULL, NULL, false, NULL},
 };
