@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* operand.h: operands as a PLC text and the control socket write them (NP4):
  *
- *     [BLK[n].][BYTE. | WORD. | DWRD. | QWRD. | REAL.]name[[i]][.field][+offset]     (name+offset)     CNST.value */
+ *     [BLK[n].][BYTE. | WORD. | DWRD. | QWRD. | REAL.]name[.field][+offset]     (name+offset)     name[i]     CNST.value */
 #ifndef CNC872_OPERAND_H
 #define CNC872_OPERAND_H
 
