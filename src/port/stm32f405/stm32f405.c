@@ -62,6 +62,7 @@ uint64_t board_clock(void)
     return clock_extend(&time, TIM2->cnt);
 }
 
+/* Not before: the compare matches at 0 already. */
 void board_clock_start(void)
 {
     TIM2->egr = TIM_UPDATE; /* counter and prescaler begin at 0 */
@@ -224,7 +225,6 @@ void board_start(void)
     TIM2->arr = UINT32_MAX;
     TIM2->cr1 = TIM_ON;
     TIM2->dier = TIM_COMPARE1;
-    board_clock_start();
     pulses_start(&board_pulses, 0);
     USART1->brr = CLOCK_USART1 * 1000000u / LINE_BAUD; /* 4375, 30.3.4 */
     USART1->cr1 = USART_ON;

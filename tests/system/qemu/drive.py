@@ -7,7 +7,7 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from stm32 import IDLE, INTERRUPTS, NOW, WORST, Board  # noqa: E402
+from stm32 import IDLE, INTERRUPTS, NOW, WORST, Board, Gone  # noqa: E402
 
 LATE = 2  # us by which the interrupt may come after its tick
 PULSE = 10  # us
@@ -167,10 +167,11 @@ TASKS = {"manual": manual, "store": store, "figures": figures, "late": late}
 
 if __name__ == "__main__":
     task, elf, *rest = sys.argv[1:]
-    its = Board(elf, *(int(rest.pop(0)) for _ in range(task == "late")))
     try:
-        TASKS[task](its, *rest)
-    except Wrong as wrong:
+        its = Board(elf, *(int(rest.pop(0)) for _ in range(task == "late")))
+        try:
+            TASKS[task](its, *rest)
+        finally:
+            its.close()
+    except (Gone, Wrong) as wrong:
         sys.exit(f"drive.py: {task}: {wrong}")
-    finally:
-        its.close()

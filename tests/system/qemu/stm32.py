@@ -46,8 +46,12 @@ class Board:
              self.name("log"), "-icount", f"shift={shift},sleep=off", "-S", *words], stdin=subprocess.DEVNULL)
         self.monitor, self.bus, self.hand = map(self.connect, ("monitor", "bus", "hand"))
         self.log = open(self.name("log"), "rb")  # exists: QEMU opens it before its sockets
-        self.heard_from_monitor()
-        self.start(lambda: self.powers)
+        try:
+            self.heard_from_monitor()
+            self.start(lambda: self.powers)
+        except Gone:
+            self.close()
+            raise
 
     def name(self, name):
         return os.path.join(self.folder.name, name)
@@ -113,6 +117,8 @@ class Board:
         if what == INIT:
             self.elapsed += self.powers[-1].now if self.powers else 0
             self.powers.append(Power())
+        if not self.powers:
+            raise Gone("the firmware plays pulses before there is a unit")
         power = self.powers[-1]
         if what == BYTE:
             self.got += 1

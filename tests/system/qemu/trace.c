@@ -30,6 +30,8 @@ void __real_rkm04_set_inputs(struct rkm04_unit *, uint8_t);
 void __wrap_rkm04_set_inputs(struct rkm04_unit *, uint8_t);
 size_t __real_rkm04_send(struct rkm04_unit *, uint8_t *, size_t);
 size_t __wrap_rkm04_send(struct rkm04_unit *, uint8_t *, size_t);
+void __real_pulses_start(struct pulses *, uint32_t);
+void __wrap_pulses_start(struct pulses *, uint32_t);
 uint32_t __real_pulses_play(struct pulses *, const struct pulse_pins *, uint32_t, uint32_t);
 uint32_t __wrap_pulses_play(struct pulses *, const struct pulse_pins *, uint32_t, uint32_t);
 void __wrap_board_wait(void);
@@ -108,6 +110,13 @@ size_t __wrap_rkm04_send(struct rkm04_unit *unit, uint8_t *bytes, size_t room)
 {
     LOG[LOG_SEND] = room;
     return __real_rkm04_send(unit, bytes, room);
+}
+
+/* On the chip TIM2's compare matches at 0, before there is anything to play. */
+void __wrap_pulses_start(struct pulses *pulses, uint32_t now)
+{
+    NVIC_PEND[0] = 1u << IRQ_TIM2;
+    __real_pulses_start(pulses, now);
 }
 
 uint32_t __wrap_pulses_play(struct pulses *pulses, const struct pulse_pins *pins, uint32_t now, uint32_t latest)
