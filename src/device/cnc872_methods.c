@@ -274,7 +274,7 @@ static json_t *call_state(struct device_unit *unit, const json_t *params, struct
 const struct device_method cnc_methods[] = {
     {"cnc.get", call_get, false, NAMES("cells")},
     {"cnc.set", call_set, true, NAMES("cells")},
-    {"cnc.panel", call_panel, true, NULL}, /* it tells more about its own */
+    {"cnc.panel", call_panel, true, NULL}, /* it reports more about its own */
     {"cnc.load", call_load, true, NAMES("text", "name")},
     {"cnc.state", call_state, false, (const char *const[]){NULL}},
     {NULL, NULL, false, NULL},
