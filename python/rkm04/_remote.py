@@ -11,7 +11,7 @@ import socket
 import stat
 import subprocess
 import tempfile
-import termios
+import threading
 import time as real_time
 from types import TracebackType
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Union
@@ -175,6 +175,8 @@ class PtyHost(Host):
         self.configure()
 
     def configure(self, baudrate: int = 19200, bytesize: int = 8, parity: str = "N", stopbits: float = 1) -> None:
+        import termios
+
         speed = getattr(termios, f"B{baudrate}", None)
         sizes = {5: termios.CS5, 6: termios.CS6, 7: termios.CS7, 8: termios.CS8}
         if speed is None or bytesize not in sizes or parity not in ("N", "E", "O") or stopbits not in (1, 2):
@@ -270,6 +272,8 @@ class PtyHost(Host):
         raise Error("a pty cannot hold the wires at 0: use bus.faults.inject(\"break\", for_=time)")
 
     def reset_output_buffer(self) -> int:
+        import termios
+
         termios.tcflush(self._fd, termios.TCOFLUSH)
         return 0
 
@@ -339,15 +343,14 @@ class Process:
 
     def _await_ready(self) -> Dict[str, Any]:
         assert self.process.stdout is not None
-        line, end = b"", real_time.monotonic() + PATIENCE
-        fd = self.process.stdout.fileno()
-        while not line.endswith(b"\n"):
-            if not select.select([fd], [], [], max(0.0, end - real_time.monotonic()))[0]:
-                raise Error(f"expected READY from rkm04 serve within {PATIENCE:.0f} s, found nothing. {self._said()}")
-            part = os.read(fd, 4096)
-            if not part:
-                raise Error(f"expected READY from rkm04 serve, found that it has ended: {self._said()}")
-            line += part
+        limit = threading.Timer(PATIENCE, self.process.kill)
+        limit.start()
+        line = self.process.stdout.readline()
+        if not limit.is_alive():
+            raise Error(f"expected READY from rkm04 serve within {PATIENCE:.0f} s, found nothing. {self._said()}")
+        limit.cancel()
+        if not line.endswith(b"\n"):
+            raise Error(f"expected READY from rkm04 serve, found that it has ended: {self._said()}")
         ready: Dict[str, Any] = json.loads(line.split(b" ", 1)[1])
         return ready
 

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A bus behind the control socket of a running emulator."""
 
+import importlib.util
 import os
+import pathlib
+import shutil
+import subprocess
+import sys
 
 import pytest
 
@@ -101,6 +106,62 @@ def test_connect_with_a_control_file(tcp_bus, tmp_path):
         (tmp_path / "wrong").write_text(text, encoding="ascii")
         with pytest.raises(rkm04.Error, match=found):
             rkm04.connect(tmp_path / "wrong")
+
+
+WITHOUT_EXTENSION = """
+import socket, sys
+import serial  # which takes what the system has
+sys.modules["termios"] = None
+del socket.AF_UNIX
+import rkm04
+with rkm04.connect(sys.argv[1]) as bus:
+    bus.unit(1).di[4] = 1
+    before = bus.now
+    bus.advance("1.5ms")
+    print(bus.now - before, bus.unit(1).di[4], bus.unit(2).motor(1).position)
+    try:
+        bus.exchange(1, rkm04.request("Version"))
+    except rkm04.Error as error:
+        print(error)
+try:
+    rkm04.Bus()
+except rkm04.Error as error:
+    print(error)
+"""
+
+
+def test_without_the_extension_an_emulator_is_reached(tcp_bus, tmp_path):
+    """As on Windows: neither termios nor Unix sockets."""
+    package = tmp_path / "rkm04"
+    package.mkdir()
+    for file in pathlib.Path(rkm04.__file__).parent.glob("*.py"):
+        shutil.copy(file, package)
+    shutil.copy(tcp_bus.ready["control"], tmp_path / "there.control")  # no link beside it
+    (tmp_path / "run.py").write_text(WITHOUT_EXTENSION, encoding="utf-8")
+    done = subprocess.run([sys.executable, tmp_path / "run.py", tmp_path / "there.control"], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": str(tmp_path)}, timeout=60, check=False)
+    said = done.stdout.splitlines()
+    assert done.returncode == 0 and said[0] == f"1500 1 {tcp_bus.unit(2).motor(1).position}", done
+    assert said[1].startswith("frames need the extension") or said[1].startswith("to send and hear bytes"), said
+    assert said[2].startswith("a bus in this process needs the extension"), said
+
+
+@pytest.mark.parametrize("text, us", [("250us", 250), ("20ms", 20_000), ("1.5s", 1_500_000), ("2min", None),
+                                      ("1000000000s", 10 ** 15), ("1000000001s", None),
+                                      ("0.000001s", 1), ("1.000s", 1_000_000), ("0.0005ms", None), ("5", None), ("-1s", None),
+                                      ("1h", None), ("", None), ("1.s", None), (".5s", None), ("1e3us", None), ("5 ms", None)])
+def test_times_are_read_alike_without_the_extension(text, us):
+    from rkm04 import _sim
+
+    spec = importlib.util.spec_from_file_location("pure", pathlib.Path(rkm04.__file__).parent / "_sim.py")
+    pure = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(pure)
+    for module in (_sim, pure):
+        if us is None:
+            with pytest.raises(ValueError):
+                module.time(text)
+        else:
+            assert module.time(text) == us
 
 
 def test_a_long_path(tmp_path):
