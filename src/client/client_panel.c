@@ -2,85 +2,15 @@
 #include "client_panel.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <string.h>
 
+#include "client_panel_cnc.h"
+
 #define MOTORS 4 /* that have room */
 #define LAMPS_MAX 16
-#define TEXT_MAX 160
-
-/* ---- The grid --------------------------------------------------------------------------------------------------------- */
-
-static void put_character(struct panel *panel, int row, int column, enum panel_style style, wchar_t character)
-{
-    if (row >= 0 && row < panel->rows && column >= 0 && column < panel->columns)
-        panel->cell[row][column] = (struct panel_cell){character, (unsigned char)style};
-}
-
-static int put_text(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
-
-/* Put text, of which only printable ASCII is shown as it is. Returns the column after it. */
-static int put_text(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
-{
-    char text[TEXT_MAX];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    for (const char *at = text; *at != '\0'; at++)
-        put_character(panel, row, column++, style, *at >= 0x20 && *at < 0x7F ? (wchar_t)*at : L'?');
-    return column;
-}
-
-static int put_whole(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
-
-/* Put text if all of it has room: part of a number would be another number. Returns the column after it, beyond the last one if
- * it has none: what would follow has none, either. */
-static int put_whole(struct panel *panel, int row, int column, enum panel_style style, const char *format, ...)
-{
-    char text[TEXT_MAX];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    if (column + (int)strlen(text) > panel->columns)
-        return panel->columns + 1;
-    return put_text(panel, row, column, style, "%s", text);
-}
-
-static void fill_row(struct panel *panel, int row, enum panel_style style)
-{
-    for (int column = 0; column < panel->columns; column++)
-        put_character(panel, row, column, style, L' ');
-}
-
-static void put_lamp(struct panel *panel, const struct panel_view *view, int row, int column, bool lit)
-{
-    wchar_t on = view->round ? L'\u25CF' : L'*', off = view->round ? L'\u25CB' : L'.';
-    put_character(panel, row, column, lit ? PANEL_LIT : PANEL_DARK, lit ? on : off);
-}
 
 /* ---- Values ----------------------------------------------------------------------------------------------------------- */
-
-/* A whole number as text, "-" where there is none. */
-static const char *number_text(const json_t *object, const char *key, char text[24])
-{
-    const json_t *number = json_object_get(object, key);
-    if (json_is_integer(number))
-        snprintf(text, 24, "%" JSON_INTEGER_FORMAT, json_integer_value(number));
-    else
-        strcpy(text, "-");
-    return text;
-}
-
-static const char *string_of(const json_t *object, const char *key, const char *missing)
-{
-    const char *text = json_string_value(json_object_get(object, key));
-    return text != NULL ? text : missing;
-}
 
 static unsigned mask_of(const json_t *object, const char *key)
 {
@@ -167,11 +97,11 @@ static void put_field(struct panel *panel, int row, const int column[FIELDS], en
     if (column[field] < 0)
         return;
     if (field == FIELD_COMMAND)
-        put_whole(panel, row, column[field], style, "%s", text);
+        grid_put_whole(panel, row, column[field], style, "%s", text);
     else if (fields[field].right)
-        put_text(panel, row, column[field], style, "%*.*s", fields[field].width, fields[field].width, text);
+        grid_put(panel, row, column[field], style, "%*.*s", fields[field].width, fields[field].width, text);
     else
-        put_text(panel, row, column[field], style, "%-*.*s", fields[field].width, fields[field].width, text);
+        grid_put(panel, row, column[field], style, "%-*.*s", fields[field].width, fields[field].width, text);
 }
 
 /* What the command waits for, as far as there is room for it: "10 of 5000 steps", "10/5000", or nothing. Returns the column
@@ -183,8 +113,9 @@ static int put_wait(struct panel *panel, int row, int column, const char *waits_
     const char *done = progress != NULL ? strstr(shown, " done") : NULL, *of = done != NULL ? strstr(shown, " of ") : NULL;
     int length = done != NULL ? (int)(done - shown) : (int)strlen(shown);
     if (of == NULL || column + 2 + length <= panel->columns)
-        return put_whole(panel, row, column, PANEL_PLAIN, "  %.*s", length, shown);
-    return put_whole(panel, row, column, PANEL_PLAIN, "  %.*s/%.*s", (int)(of - shown), shown, (int)strcspn(of + 4, " "), of + 4);
+        return grid_put_whole(panel, row, column, PANEL_PLAIN, "  %.*s", length, shown);
+    return grid_put_whole(panel, row, column, PANEL_PLAIN, "  %.*s/%.*s", (int)(of - shown), shown, (int)strcspn(of + 4, " "),
+                          of + 4);
 }
 
 /* Guards that are armed, as the commands that armed them: "  X04  M01". */
@@ -194,21 +125,21 @@ static void put_guards(struct panel *panel, int row, int column, const json_t *m
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         const json_t *input = json_object_get(json_object_get(motor, "guards"), keys[i]);
         if (json_is_integer(input))
-            column = put_whole(panel, row, column, PANEL_PLAIN, "  %c%02d", keys[i][0] - 'a' + 'A',
-                               (int)json_integer_value(input));
+            column = grid_put_whole(panel, row, column, PANEL_PLAIN, "  %c%02d", keys[i][0] - 'a' + 'A',
+                                    (int)json_integer_value(input));
     }
 }
 
 static void put_command(struct panel *panel, int row, const int column[FIELDS], const json_t *motor)
 {
-    const char *fault = string_of(motor, "fault", NULL), *waits_for = string_of(motor, "waits_for", NULL);
+    const char *fault = grid_string(motor, "fault", NULL), *waits_for = grid_string(motor, "waits_for", NULL);
     int at = column[FIELD_COMMAND];
     bool wrong = fault != NULL && strcmp(fault, "none") != 0;
     if (at < 0)
         return;
-    at = put_whole(panel, row, at, wrong ? PANEL_WRONG : PANEL_PLAIN, "%s", string_of(motor, "command", "-"));
+    at = grid_put_whole(panel, row, at, wrong ? PANEL_WRONG : PANEL_PLAIN, "%s", grid_string(motor, "command", "-"));
     if (wrong) {
-        put_whole(panel, row, at, PANEL_WRONG, "  fault: %s", fault);
+        grid_put_whole(panel, row, at, PANEL_WRONG, "  fault: %s", fault);
         return;
     }
     if (waits_for != NULL)
@@ -220,18 +151,18 @@ static void put_motor(struct panel *panel, const struct panel_view *view, int ro
 {
     const json_t *motor = json_array_get(json_object_get(view->state, "motors"), number - 1);
     char text[24], signed_text[26];
-    const char *speed = number_text(motor, "speed", text);
+    const char *speed = grid_number(motor, "speed", text);
     bool back = json_is_false(json_object_get(motor, "forward")) && strspn(speed, "123456789") > 0;
     snprintf(signed_text, sizeof signed_text, "%s%s", back ? "-" : "", speed);
-    put_text(panel, row, column[FIELD_MOTOR], PANEL_PLAIN, "%u", number);
-    put_lamp(panel, view, row, column[FIELD_LED] + 1, json_is_true(json_object_get(motor, "lit")));
+    grid_put(panel, row, column[FIELD_MOTOR], PANEL_PLAIN, "%u", number);
+    grid_put_lamp(panel, view, row, column[FIELD_LED] + 1, json_is_true(json_object_get(motor, "lit")));
     put_field(panel, row, column, FIELD_SPEED, PANEL_PLAIN, signed_text);
-    const char *state = string_of(motor, "state", "-");
+    const char *state = grid_string(motor, "state", "-");
     bool wrong = strncmp(state, "fault", 5) == 0;
     put_field(panel, row, column, FIELD_STATE, wrong ? PANEL_WRONG : PANEL_PLAIN, state);
-    put_field(panel, row, column, FIELD_POSITION, PANEL_PLAIN, number_text(motor, "position", text));
-    put_field(panel, row, column, FIELD_TRUE, PANEL_PLAIN, number_text(motor, "true_position", text));
-    number_text(motor, "index", text);
+    put_field(panel, row, column, FIELD_POSITION, PANEL_PLAIN, grid_number(motor, "position", text));
+    put_field(panel, row, column, FIELD_TRUE, PANEL_PLAIN, grid_number(motor, "true_position", text));
+    grid_number(motor, "index", text);
     put_field(panel, row, column, FIELD_PLACE, PANEL_PLAIN, strcmp(text, "0") == 0 ? "-" : text);
     put_command(panel, row, column, motor);
 }
@@ -251,16 +182,16 @@ static void put_lamps(struct panel *panel, const struct panel_view *view, int ro
     char name[8] = "";
     for (size_t i = 0; key[i] != '\0'; i++)
         name[i] = (char)(key[i] - 'a' + 'A');
-    put_text(panel, row, 1, PANEL_PLAIN, "%s", name);
+    grid_put(panel, row, 1, PANEL_PLAIN, "%s", name);
     for (unsigned i = 0; i < count; i++)
-        put_lamp(panel, view, row, LAMPS_LEFT + (int)i * lamp_step(panel) + lamp_step(panel) / 2,
+        grid_put_lamp(panel, view, row, LAMPS_LEFT + (int)i * lamp_step(panel) + lamp_step(panel) / 2,
                  (mask_of(view->state, key) >> i & 1) != 0);
 }
 
 static void put_numbers(struct panel *panel, int row, unsigned first, unsigned count)
 {
     for (unsigned i = 0; i < count && lamp_step(panel) == 3; i++)
-        put_text(panel, row, LAMPS_LEFT + (int)i * 3, PANEL_DARK, "%02u", first + i);
+        grid_put(panel, row, LAMPS_LEFT + (int)i * 3, PANEL_DARK, "%02u", first + i);
 }
 
 /* ---- Rows ------------------------------------------------------------------------------------------------------------- */
@@ -303,32 +234,32 @@ static void put_title(struct panel *panel, const struct panel_view *view, int ro
     size_t i;
     json_t *unit;
     json_int_t t_us = json_integer_value(json_object_get(view->state, "t_us"));
-    const char *name = string_of(view->state, "unit", "-");
+    const char *name = grid_string(view->state, "unit", "-");
     if (row < 0)
         return;
-    fill_row(panel, row, PANEL_TITLE);
-    int column = put_whole(panel, row, 1, PANEL_TITLE, "%s unit %s",
-                           string_of(json_object_get(view->state, "device"), "name", "RKM04"), name);
+    grid_fill_row(panel, row, PANEL_TITLE);
+    int column = grid_put_whole(panel, row, 1, PANEL_TITLE, "%s unit %s",
+                                grid_string(json_object_get(view->state, "device"), "name", "RKM04"), name);
     if (!is_powered(view))
-        column = put_whole(panel, row, column, PANEL_TITLE, ": no power");
-    column = put_whole(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000),
-                       (int)(t_us % 1000000));
-    column = put_whole(panel, row, column + 2, PANEL_TITLE, "clock %s", string_of(view->state, "clock", "-"));
+        column = grid_put_whole(panel, row, column, PANEL_TITLE, ": no power");
+    column = grid_put_whole(panel, row, column + 2, PANEL_TITLE, "%" PRId64 ".%06d s", (int64_t)(t_us / 1000000),
+                            (int)(t_us % 1000000));
+    column = grid_put_whole(panel, row, column + 2, PANEL_TITLE, "clock %s", grid_string(view->state, "clock", "-"));
     if (json_is_true(json_object_get(view->state, "simulation")))
-        column = put_whole(panel, row, column + 2, PANEL_TITLE, "simulation");
+        column = grid_put_whole(panel, row, column + 2, PANEL_TITLE, "simulation");
     if (json_array_size(view->units) < 2)
         return;
-    column = put_whole(panel, row, column + 2, PANEL_TITLE, "units");
+    column = grid_put_whole(panel, row, column + 2, PANEL_TITLE, "units");
     json_array_foreach(view->units, i, unit) {
         const char *other = json_string_value(unit) != NULL ? json_string_value(unit) : "-";
-        column = put_whole(panel, row, column + 1, PANEL_TITLE, strcmp(other, name) == 0 ? "[%s]" : "%s", other);
+        column = grid_put_whole(panel, row, column + 1, PANEL_TITLE, strcmp(other, name) == 0 ? "[%s]" : "%s", other);
     }
 }
 
 static void put_count(struct panel *panel, int row, int *column, const json_t *counters, const char *key, const char *text)
 {
     char number[24];
-    *column = put_whole(panel, row, *column, PANEL_PLAIN, "%s %s", number_text(counters, key, number), text) + 3;
+    *column = grid_put_whole(panel, row, *column, PANEL_PLAIN, "%s %s", grid_number(counters, key, number), text) + 3;
 }
 
 static void put_counters(struct panel *panel, const struct panel_view *view, const int at[ROWS])
@@ -350,9 +281,14 @@ void client_panel_draw(struct panel *panel, const struct panel_view *view, int r
 {
     int at[ROWS], column[FIELDS];
     *panel = (struct panel){.columns = columns < PANEL_COLUMNS ? columns : PANEL_COLUMNS};
+    if (json_object_get(view->state, "cnc") != NULL) {
+        client_panel_draw_cnc(panel, view, rows);
+        put_title(panel, view, 0);
+        return;
+    }
     panel->rows = choose_rows(view, rows < PANEL_ROWS ? rows : PANEL_ROWS, lamp_step(panel), at);
     for (int row = 0; row < panel->rows; row++)
-        fill_row(panel, row, PANEL_PLAIN);
+        grid_fill_row(panel, row, PANEL_PLAIN);
     put_title(panel, view, at[ROW_TITLE]);
     choose_fields(view, panel->columns, column);
     for (int i = 0; i < FIELDS; i++)
@@ -367,7 +303,7 @@ void client_panel_draw(struct panel *panel, const struct panel_view *view, int r
     put_lamps(panel, view, at[ROW_VAR], "var", lamps_of(view, "variables", 16));
     put_counters(panel, view, at);
     if (view->keys != NULL)
-        put_text(panel, at[ROW_KEYS], 1, PANEL_DARK, "%s", view->keys);
+        grid_put(panel, at[ROW_KEYS], 1, PANEL_DARK, "%s", view->keys);
 }
 
 void client_panel_print(const struct panel *panel, FILE *file)

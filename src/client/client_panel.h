@@ -4,32 +4,7 @@
 #ifndef RKM04_CLIENT_PANEL_H
 #define RKM04_CLIENT_PANEL_H
 
-#include <jansson.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <wchar.h>
-
-#define PANEL_ROWS 24
-#define PANEL_COLUMNS 120
-
-enum panel_style { PANEL_PLAIN, PANEL_TITLE, PANEL_HEAD, PANEL_LIT, PANEL_DARK, PANEL_WRONG, PANEL_STYLES };
-
-struct panel_cell {
-    wchar_t character;
-    unsigned char style; /* enum panel_style */
-};
-
-struct panel {
-    int rows, columns; /* of the grid, up to PANEL_ROWS and PANEL_COLUMNS */
-    struct panel_cell cell[PANEL_ROWS][PANEL_COLUMNS];
-};
-
-struct panel_view {
-    const json_t *state; /* result of `state` */
-    const json_t *units; /* names of the units of the line; NULL: not to be shown */
-    const char *keys;    /* what can be pressed; NULL: nothing */
-    bool round;          /* lamps as circles of Unicode, otherwise * and . */
-};
+#include "client_panel_grid.h"
 
 /* Draw the panel for a terminal of this size, of which it takes as much as it needs and has. Whatever `state` lacks is shown as
  * a dash. */

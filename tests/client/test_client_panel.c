@@ -157,6 +157,80 @@ START_TEST(progress_is_short_where_there_is_little_room)
 }
 END_TEST
 
+/* A CNC872 with so many axes, as `state` shows it; `more` replaces members of `cnc`. Takes the reference to `more`. */
+static json_t *cnc_state(int count, json_t *more)
+{
+    json_t *axes = json_object();
+    for (int i = 0; i < count; i++) {
+        char name[8];
+        snprintf(name, sizeof name, i < 3 ? "%c" : "%d", i < 3 ? 'X' + i : i + 1);
+        json_object_set_new(axes, name, json_pack("{s:I, s:I, s:i, s:s, s:b, s:b}", "position", (json_int_t)-65536 * 1500 - 1,
+                                                  "actual", (json_int_t)65536 * 200000, "difference", -7, "state",
+                                                  i == 0 ? "block" : "idle", "homed", i == 1, "enabled", 1));
+    }
+    json_t *cnc = json_pack(
+        "{s:{s:s, s:i, s:i, s:i, s:i}, s:o, s:{s:b, s:b}, s:{s:s, s:i, s:i, s:b, s:b}, s:{s:i, s:i, s:i, s:s}, s:i, s:i, s:i, "
+        "s:i}", "block", "phase", "move", "block", 1, "line", 4, "next", 2, "blocks", 9, "axes", axes, "stops", "po_stop", 0,
+        "sf_stop", 0, "panel", "mode", "aut", "feed", 120, "spindle", 95, "rapid", 1, "m01", 0, "spindle", "required", 500,
+        "actual", 480, "gear", 2, "turns", "m3", "speed", 1092266, "critical", 0, "plc_error", 0, "plc_pass", 1);
+    json_object_update(cnc, more);
+    json_decref(more);
+    return json_pack("{s:i, s:s, s:s, s:[], s:o, s:{s:s}}", "t_us", 99000, "unit", "1", "clock", "x1", "motors", "cnc", cnc,
+                     "device", "name", "cnc872");
+}
+
+START_TEST(a_cnc_has_its_axes_and_what_its_block_and_its_program_do)
+{
+    draw(cnc_state(2, NULL), 24, 80);
+    assert_shown(" cnc872 unit 1  0.099000 s  clock x1\n\n"
+                 " axis  state               mm    actual mm  dif. um  homed  enabled\n"
+                 " X     block           -1.501      200.000       -7     no      yes\n"
+                 " Y     idle            -1.501      200.000       -7    yes      yes\n\n"
+                 " block    move   block 1   line 4   next 2   of 9\n"
+                 " feed     1000.0 mm/min   feed 120 %   aut   rapid\n"
+                 " stops    -\n"
+                 " PLC      pass init   error 0h\n"
+                 " spindle  m3   480 of 500 rev/min   gear 2   spindle 95 %\n");
+}
+END_TEST
+
+START_TEST(stops_and_errors_of_a_cnc_are_named)
+{
+    draw(cnc_state(1, json_pack("{s:{s:b, s:b}, s:i, s:i, s:i}", "stops", "po_stop", 1, "limit", 1, "plc_error", 0x15, "critical",
+                                12, "plc_pass", 9)), 24, 80);
+    assert_shown(" stops    po_stop   limit\n PLC      pass ?   error 15h   critical error 12\n");
+}
+END_TEST
+
+START_TEST(what_the_state_of_a_cnc_lacks_is_a_dash)
+{
+    draw(json_pack("{s:{s:{s:{}}}}", "cnc", "axes", "X"), 24, 80);
+    assert_shown(" X     -                    -            -        -     no       no\n");
+    assert_shown(" block    -   block -");
+}
+END_TEST
+
+/* Sixteen axes, head, lines and keys fill 24 rows; with less room axes stay longest, and no position is cut. */
+START_TEST(a_cnc_fits_any_size)
+{
+    draw(cnc_state(16, NULL), 24, 80);
+    assert_shown("\n 16    idle");
+    assert_shown("\n spindle  m3");
+    assert_shown("\n axis  state");
+    for (int rows = 0; rows <= 30; rows++) {
+        for (int columns = 0; columns <= 130; columns++) {
+            draw(cnc_state(3, NULL), rows, columns);
+            ck_assert_int_le(panel.rows, rows);
+            ck_assert_int_le(panel.columns, columns);
+            if (rows >= 4 && columns >= 18)
+                assert_shown("-1.501");
+            const char *cut = strstr(text, "-1.50");
+            ck_assert_msg(!cut || cut[5] == '1', "%d columns:\n%s", columns, text);
+        }
+    }
+}
+END_TEST
+
 static Suite *client_panel_suite(void)
 {
     Suite *suite = suite_create("client_panel");
@@ -167,6 +241,10 @@ static Suite *client_panel_suite(void)
     tcase_add_test(values, a_fault_is_named_and_a_unit_without_power_is_called_so);
     tcase_add_test(values, what_the_state_lacks_is_a_dash);
     tcase_add_test(values, control_characters_and_others_do_not_reach_the_terminal);
+    tcase_add_test(values, a_cnc_has_its_axes_and_what_its_block_and_its_program_do);
+    tcase_add_test(values, stops_and_errors_of_a_cnc_are_named);
+    tcase_add_test(values, what_the_state_of_a_cnc_lacks_is_a_dash);
+    tcase_add_test(sizes, a_cnc_fits_any_size);
     tcase_add_test(sizes, at_every_size_nothing_is_wider_or_higher_and_positions_stay_longest);
     tcase_add_test(sizes, no_number_is_cut_at_any_width);
     tcase_add_test(sizes, progress_is_short_where_there_is_little_room);

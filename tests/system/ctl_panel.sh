@@ -127,4 +127,18 @@ test_one_picture_is_text_for_scripts() {
     holds "$said" '"unit":"2"' "as JSON"
 }
 
+test_the_panel_of_a_CNC872_shows_axes_block_and_stops() {
+    printf 'G1 X10 F1000\nG1 X20\n' >"$folder/two.nc"
+    start bus "$RKM04" serve --device cnc872 --nc "$folder/two.nc" --clock stepped --control "$folder/bus.control"
+    soon "the unit is ready" ready bus
+    export RKM04_CONTROL=$folder/bus.control
+    exits 0 "$RKMCTL" call cnc.panel start=true feed=120
+    exits 0 "$RKMCTL" advance 100ms
+    panel "see:cnc872 unit 1  0.100000 s" "see: X     block" "see: block    move   block 0   line 1" "see:feed 120 %   aut" \
+        "see: stops    -" "run:'$RKMCTL' call cnc.panel stop=true" "run:'$RKMCTL' advance 500ms" "see: X     stopped" \
+        "see: stops    po_stop   sf_stop" colours:red keys:q status:0
+    exits 0 "$RKMCTL" watch --once
+    holds "$said" " spindle  off   0 of 0 rev/min   gear 1   spindle 100 %" "the spindle"
+}
+
 run_cases "$@"
