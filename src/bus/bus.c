@@ -389,6 +389,7 @@ bool bus_end(struct bus *bus)
     bus_ports_close(&bus->ports);
     bus_services_close(bus->services);
     bus_time_end(&bus->time);
+    sim_store(&bus->sim);
     if (!bus_files_end(&bus->files))
         ok = false;
     for (unsigned at = 0; at < NODE_LIST_MAX; at++)

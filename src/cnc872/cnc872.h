@@ -20,6 +20,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "backup.h"
 #include "cells.h"
 #include "config.h"
 #include "nc.h"
@@ -35,7 +36,6 @@
 #define CNC_DISPLAYS 2u       /* DISPTOC1, DISPTOC2 (NO2) */
 #define CNC_DISPLAY_LINES 8u
 #define CNC_DISPLAY_COLUMNS 16u
-#define CNC_BACKUP_SIZE 10000u /* bytes of PLC_MEM_BACKUP (NO3) */
 #define CNC_BACKUP_PAUSE 1000u /* T's after a save that failed, until the next one */
 #define CNC_QUEUE_MAX 15u     /* blocks behind the present one (NQ1) */
 #define CNC_NO_BLOCK UINT32_MAX

@@ -36,12 +36,19 @@ static int64_t number_at(const struct cnc *cnc, const struct cnc_operand *operan
     }
 }
 
+/* JSON has no infinite numbers, and none that are no numbers: null. */
+static json_t *real_json(double real)
+{
+    json_t *json = json_real(real);
+    return json ? json : json_null();
+}
+
 static json_t *value_of(const struct cnc *cnc, const struct cnc_operand *operand)
 {
     if (operand->kind == CNC_OPERAND_NUMBER && operand->type == CNC_REAL)
-        return json_real(cnc_read_real(&cnc->cells, operand->place));
+        return real_json(cnc_read_real(&cnc->cells, operand->place));
     if (operand->kind == CNC_OPERAND_QUEUE && operand->type == CNC_REAL)
-        return json_real(cnc_queue_real(cnc, operand->block, operand->place, operand->index));
+        return real_json(cnc_queue_real(cnc, operand->block, operand->place, operand->index));
     return json_integer(number_at(cnc, operand));
 }
 

@@ -81,6 +81,57 @@ static bool is_quiet(const struct cnc_device *device)
            device->own.text[CNC_TEXT_PLC] == NULL && cnc_bit(&device->cnc.cells, CNC_BIT_INPOS);
 }
 
+/* ---- Backup memory (NO3): in the flash of the unit ----------------------------------------------------------------------- */
+
+static int flash_program(void *context, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    const struct cnc_device *device = context;
+    return device->outer->flash_program(device->context, block, offset, data, length);
+}
+
+static int flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    const struct cnc_device *device = context;
+    return device->outer->flash_read(device->context, block, offset, data, length);
+}
+
+static int flash_erase(void *context, unsigned block)
+{
+    const struct cnc_device *device = context;
+    return device->outer->flash_erase(device->context, block);
+}
+
+static struct cnc_flash flash_of(struct cnc_device *device)
+{
+    return (struct cnc_flash){.read = flash_read, .program = flash_program, .erase = flash_erase, .context = device};
+}
+
+static bool has_flash(const struct cnc_device *device)
+{
+    return device->outer->flash_read && device->outer->flash_program && device->outer->flash_erase;
+}
+
+static bool on_save(void *context, const uint8_t *bytes, size_t size)
+{
+    struct cnc_device *device = context;
+    const struct cnc_flash flash = flash_of(device);
+    return size == CNC_BACKUP_SIZE && has_flash(device) && cnc_backup_store(&flash, bytes, &device->backup);
+}
+
+/* A regular end: what has not been saved is. */
+static void end(struct device_unit *unit)
+{
+    struct cnc_device *device = cnc_of(unit);
+    uint8_t stored[CNC_BACKUP_SIZE];
+    uint32_t number;
+    const struct cnc_flash flash = flash_of(device);
+    if (!has_flash(device))
+        return;
+    (void)cnc_backup_load(&flash, stored, &number);
+    if (memcmp(stored, cnc_backup(&device->cnc), sizeof stored) != 0)
+        (void)on_save(device, cnc_backup(&device->cnc), sizeof stored);
+}
+
 static void on_event(void *context, enum cnc_event event, int64_t value)
 {
     (void)context;
@@ -94,7 +145,7 @@ static void connect_port(struct cnc_device *device, const struct device_port *po
 {
     device->outer = port;
     device->context = context;
-    device->port = (struct cnc_port){.event = on_event};
+    device->port = (struct cnc_port){.event = on_event, .save_backup = on_save};
     device->cnc.port = &device->port;
     device->cnc.context = device;
 }
@@ -102,9 +153,13 @@ static void connect_port(struct cnc_device *device, const struct device_port *po
 static void begin(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context)
 {
     struct cnc_device *device = cnc_of(unit);
+    uint8_t backup[CNC_BACKUP_SIZE] = {0};
     memset(device, 0, sizeof *device);
     device->own = cnc_own_of(config);
     connect_port(device, port, context);
+    const struct cnc_flash flash = flash_of(device);
+    if (has_flash(device))
+        (void)cnc_backup_load(&flash, backup, &device->backup);
     const struct cnc_text *const *text = device->own.text;
     cnc_begin(&device->cnc, &(struct cnc_setup){
                                 .config = text[CNC_TEXT_CONFIG] ? text[CNC_TEXT_CONFIG]->config : cnc_default_config(),
@@ -112,6 +167,7 @@ static void begin(struct device_unit *unit, const struct device_config *config, 
                                 .plc = text[CNC_TEXT_PLC] ? text[CNC_TEXT_PLC]->plc : NULL,
                                 .switches = text[CNC_TEXT_MACHINE] ? text[CNC_TEXT_MACHINE]->machine.list : NULL,
                                 .switch_count = text[CNC_TEXT_MACHINE] ? text[CNC_TEXT_MACHINE]->machine.count : 0,
+                                .backup = backup,
                                 .port = &device->port,
                                 .context = device,
                             });
@@ -259,7 +315,10 @@ const struct device_kind cnc872_device = {
     .slot = CNC_TICKS_PER_T,
     .pulse = 1,
     .is_program_whole = true,
+    .flash_blocks = CNC_BACKUP_BLOCKS,
+    .flash_block_size = CNC_BACKUP_BLOCK,
     .begin = begin,
+    .end = end,
     .attach = attach,
     .now = now,
     .advance = advance,

@@ -55,6 +55,7 @@ struct cnc_device {
     uint64_t now;                    /* the first us that is not yet done */
     int64_t last[CNC_AXES];          /* commanded positions after the last T, u of POS0 */
     int32_t shown[CNC_AXES];         /* um of POS5 that were reported last */
+    uint32_t backup;                 /* number of the image of the backup memory that counts */
     uint16_t moving;                 /* axes whose motion has been reported as begun */
     bool is_critical;                /* BZH13 has been reported */
     bool is_quiet;                   /* nothing is to happen of itself but that time passes */

@@ -328,6 +328,9 @@ struct device_kind {
      * with pointers of its own. */
     void (*attach)(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context);
 
+    /* The emulator ends in good order, outside of time: what is kept without power is stored. NULL: nothing is to be done. */
+    void (*end)(struct device_unit *unit);
+
     uint64_t (*now)(const struct device_unit *unit);              /* the first us that is not yet done */
     void (*advance)(struct device_unit *unit, uint64_t us);       /* do the us now .. now + us - 1 */
     uint64_t (*next_event)(const struct device_unit *unit);       /* >= now: when something is due of itself; DEVICE_NEVER */

@@ -353,6 +353,7 @@ static void check_ports(struct bus_options *options, const struct argp_state *st
                         : options->tcp     ? "tcp"
                         : options->rfc2217 ? "rfc2217"
                         : options->wine    ? "wine"
+                        : options->wire[0] ? "wire"
                                            : NULL;
     bool net = options->tcp || options->rfc2217;
     for (unsigned at = 0; at < DEVICE_SERVICES_MAX && options->service_text[at]; at++)

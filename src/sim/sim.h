@@ -97,6 +97,9 @@ struct sim {
 bool sim_begin(struct sim *sim, const struct sim_config *config);
 void sim_end(struct sim *sim);
 
+/* A regular end comes: units that have power store what they keep; flash has to be there still. */
+void sim_store(struct sim *sim);
+
 /* ---- Time ------------------------------------------------------------------------------------------------------------- */
 
 /* The end of virtual time: the last tick that can be reached. Everything that has a time fits: recordings, snapshots, sums. */

@@ -65,3 +65,10 @@ int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, co
     invert(unit->memory + block * device_of(unit)->flash_block_size + offset, data, length);
     return 0;
 }
+
+void sim_store(struct sim *sim)
+{
+    for (unsigned number = 1; sim_device(sim)->end && number <= sim_units(sim); number++)
+        if (sim_powered(sim, number))
+            sim_device(sim)->end(sim_core(sim, number));
+}

@@ -221,6 +221,30 @@ START_TEST(NU3_the_cells_of_a_plc_program_are_cells_like_others)
 }
 END_TEST
 
+START_TEST(NL1_a_real_that_is_no_number_is_null)
+{
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"QWRD.rAxGParabAccel\": 9221120237041090560}}"); /* NaN */
+    expect_result("cnc.get", "{\"cells\": [\"rAxGParabAccel\", \"PO_F\"]}", "{\"rAxGParabAccel\":null,\"PO_F\":0}");
+}
+END_TEST
+
+START_TEST(NO3_the_backup_memory_outlives_power)
+{
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"PLC_MEM_BACKUP[9999]\": 7, \"REQ_BACKUP_MEM\": 1}}");
+    do_turns(1);
+    expect_result("cnc.get", "{\"cells\": [\"REQ_BACKUP_MEM\"]}", "{\"REQ_BACKUP_MEM\":0}");
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"PLC_MEM_BACKUP[0]\": 1}}");
+    fake_rig_do(&rig, "reset", "{}"); /* no regular end */
+    expect_result("cnc.get", "{\"cells\": [\"PLC_MEM_BACKUP[9999]\", \"PLC_MEM_BACKUP[0]\"]}",
+                  "{\"PLC_MEM_BACKUP[9999]\":7,\"PLC_MEM_BACKUP[0]\":0}");
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"PLC_MEM_BACKUP[0]\": 2}}");
+    sim_store(&rig.sim); /* a regular end */
+    fake_rig_do(&rig, "reset", "{}");
+    expect_result("cnc.get", "{\"cells\": [\"PLC_MEM_BACKUP[9999]\", \"PLC_MEM_BACKUP[0]\"]}",
+                  "{\"PLC_MEM_BACKUP[9999]\":7,\"PLC_MEM_BACKUP[0]\":2}");
+}
+END_TEST
+
 static Suite *cnc872_device_suite(void)
 {
     Suite *suite = suite_create("cnc872_device");
@@ -234,6 +258,8 @@ static Suite *cnc872_device_suite(void)
     tcase_add_test(tests, snapshot_of_a_cnc_goes_on_as_before);
     tcase_add_test(tests, NU1_scenario_of_a_cnc);
     tcase_add_test(tests, NU3_the_cells_of_a_plc_program_are_cells_like_others);
+    tcase_add_test(tests, NL1_a_real_that_is_no_number_is_null);
+    tcase_add_test(tests, NO3_the_backup_memory_outlives_power);
     suite_add_tcase(suite, tests);
     return suite;
 }

@@ -1,0 +1,90 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# The CNC872 as programs see it: examples/cnc872 in serve, exec, test and from Python; what is refused; its backup memory in a
+# file.
+
+. "$(dirname "$0")/lib.sh"
+
+example=$(cd "$(dirname "$0")/../../examples/cnc872" && pwd)
+
+# serve_cnc OPTION...: the emulator with the control socket $folder/control, and no bus.
+serve_cnc() {
+    start cnc "$RKM04" serve --device cnc872 --clock stepped --control "$folder/control" "$@"
+    soon "the cnc is ready" ready cnc
+}
+
+# call METHOD PARAMETER...: a method of the control socket; its answer is in $said.
+call() {
+    exits 0 "$RKMCTL" -c "$folder/control" call "$@"
+}
+
+test_NL1_the_mill_is_supervised_from_python() {
+    serve_cnc --config "$example/mill.xml" --plc "$example/mill.plc" --nc "$example/part.nc"
+    exits 0 python3 "$example/supervise.py" "$folder/control"
+    same "T 3234: X 15.005 mm, feed 50 %
+T 5229: X 25.003 mm, feed 100 %
+T 7300: X 24.995 mm, feed 50 %
+T 9295: X 14.998 mm, feed 100 %
+end after 11011 ms, X 10.000 mm" "$said" "what the supervisor prints"
+}
+
+test_NU1_the_part_passes_its_scenario() {
+    exits 0 "$RKM04" test "$example/part.yaml"
+    holds "$said" "pass " "the report"
+}
+
+test_NU1_exec_runs_an_nc_program_to_its_end() {
+    printf 'G1 X10 Y-2 F1000\nG0 Z5 M30\n' >"$folder/a.nc"
+    exits 0 "$RKM04" exec --device cnc872 "$folder/a.nc"
+    holds "$said" "10000  idle" "positions"
+    holds "$said" "-2000  idle" "positions"
+    holds "$said" "5000  idle" "positions"
+}
+
+test_NU1_what_is_about_a_bus_is_refused() {
+    local option
+    for option in "--link $folder/l" "--tcp 127.0.0.1:0" "--rfc2217 127.0.0.1:0" "--port /dev/null" "--wire $folder/w.log"; do
+        exits 2 "$RKM04" serve --device cnc872 $option
+        holds "$complained" "cnc872 has no bus" "serve $option"
+    done
+    exits 2 "$RKM04" serve --device cnc872 --framing plain
+    holds "$complained" "no such option" "serve --framing"
+}
+
+test_NP8_wrong_files_are_named_with_line_and_column() {
+    exits 2 "$RKM04" serve --device cnc872 --config "$example/part.nc"
+    holds "$complained" "part.nc:1:1: error: expected ChannelConfig" "serve --config"
+    printf 'MODULE_MAIN\n TIM 3\nMODULE_MAIN_END\n' >"$folder/bad.plc"
+    exits 2 "$RKM04" serve --device cnc872 --plc "$folder/bad.plc"
+    holds "$complained" "bad.plc:2:" "serve --plc"
+    printf 'G1 4=3\n' >"$folder/bad.nc"
+    exits 2 "$RKM04" exec --device cnc872 --nc "$folder/bad.nc"
+    holds "$complained" "bad.nc:1:" "exec --nc"
+    printf 'switches:\n  - {cell: PO_F, axis: X, at_least: 1}\n' >"$folder/bad.yaml"
+    exits 2 "$RKM04" serve --device cnc872 --machine "$folder/bad.yaml"
+    holds "$complained" "bad.yaml:2:12: error: expected a bit that may be written" "serve --machine"
+}
+
+# The PLC program is named after the NC program that needs nothing of it, the switches before the program whose bits they are.
+test_options_may_come_in_any_order() {
+    printf 'DATA\nEND_I BIT 0\nDATA_END\nMODULE_MAIN\n LDR END_I\n WR STOP_REQ\nMODULE_MAIN_END\n' >"$folder/s.plc"
+    printf 'switches: [{cell: END_I, axis: 4, at_least: 3000}]\n' >"$folder/s.yaml"
+    printf '<ChannelConfig><Axis Name="4"/></ChannelConfig>' >"$folder/s.xml"
+    printf 'G1 A4=10 F1000\n' >"$folder/s.nc"
+    serve_cnc --machine "$folder/s.yaml" --nc "$folder/s.nc" --plc "$folder/s.plc" --config "$folder/s.xml"
+    call cnc.panel start=true
+    call cnc.exchange slots=1000 'get=["PO_STOP", "B_INK_EX[3]"]'
+    holds "$said" '"PO_STOP":1' "the switch stops the axis"
+}
+
+test_NO3_the_backup_memory_is_kept_in_a_file() {
+    serve_cnc --flash "$folder/backup.img"
+    call cnc.set 'cells={"PLC_MEM_BACKUP[5]": 77}'
+    call shutdown
+    status_of "$started"
+    serve_cnc --flash "$folder/backup.img"
+    call cnc.get 'cells=["PLC_MEM_BACKUP[5]"]'
+    holds "$said" '"PLC_MEM_BACKUP[5]":77' "the memory after a regular end"
+}
+
+run_cases "$@"
