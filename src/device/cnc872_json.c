@@ -77,12 +77,22 @@ static json_t *axes_json(const struct cnc *cnc)
     return axes;
 }
 
+/* The keys that are pressed, as cnc.panel takes them. */
+static json_t *jog_json(const struct cnc *cnc)
+{
+    json_t *jog = json_object();
+    for (unsigned axis = 0; axis < CNC_AXES; axis++)
+        if (((cnc->panel.jog_plus | cnc->panel.jog_minus) >> axis & 1) != 0)
+            put(jog, cnc_axis_names[axis], json_string((cnc->panel.jog_plus >> axis & 1) != 0 ? "+" : "-"));
+    return jog;
+}
+
 static json_t *panel_json(const struct cnc *cnc)
 {
     const struct cnc_panel *panel = &cnc->panel;
-    return json_pack("{s:s, s:i, s:i, s:b, s:b, s:b, s:b, s:b, s:b, s:b, s:[i, i, i, i]}", "mode",
-                     panel->manual ? "manual" : "aut", "feed", (int)panel->feed, "spindle", (int)panel->spindle, "rapid",
-                     (int)panel->rapid, "hand",
+    return json_pack("{s:s, s:o, s:i, s:i, s:b, s:b, s:b, s:b, s:b, s:b, s:b, s:[i, i, i, i]}", "mode",
+                     panel->manual ? "manual" : "aut", "jog", jog_json(cnc), "feed", (int)panel->feed, "spindle",
+                     (int)panel->spindle, "rapid", (int)panel->rapid, "hand",
                      (int)panel->hand, "block_by_block", (int)panel->block_by_block, "m01", (int)panel->m01, "indication",
                      (int)panel->indication, "simulation", (int)panel->simulation, "high_speed",
                      (int)panel->high_speed, "keys",
@@ -144,7 +154,7 @@ json_t *cnc_json_describe(const struct device_unit *unit, uint64_t t_us)
     put(state, "node", json_integer(1));
     for (unsigned which = 0; which < CNC_DISPLAYS; which++)
         json_array_append_new(displays, display_json(&cnc->display[which]));
-    put(state, "cnc", json_pack("{s:I, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:o}", "t", (json_int_t)cnc->turn, "block",
+    put(state, "cnc", json_pack("{s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:o}", "block",
                                 block_json(cnc), "axes", axes_json(cnc), "stops", stops_json(cnc), "panel", panel_json(cnc),
                                 "spindle", spindle_json(cnc), "speed", (json_int_t)cnc->move.v, "critical",
                                 (json_int_t)number_of(cnc, CNC_CELL_BZH13), "plc_error",

@@ -265,6 +265,8 @@ static json_t *call_state(struct device_unit *unit, const json_t *params, struct
 {
     (void)params;
     json_t *all = cnc_json_describe(unit, cnc_of(unit)->cnc.tick), *state = json_incref(json_object_get(all, "cnc"));
+    if (state)
+        json_object_set_new(state, "t", json_integer((json_int_t)cnc_of(unit)->cnc.turn));
     json_decref(all);
     return state ? state : cnc_refuse(refusal, true, "out of memory");
 }

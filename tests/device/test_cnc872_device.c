@@ -95,6 +95,24 @@ START_TEST(NL1_the_panel_refuses_as_a_whole_with_the_reason)
 }
 END_TEST
 
+/* A window shows a state when it differs from the last one: that of a cnc at rest has no time in it but that of the line. */
+START_TEST(the_state_of_a_cnc_changes_as_its_panel_does_and_not_by_itself)
+{
+    json_t *before = fake_rig_command(&rig, "state", "{}");
+    do_turns(100);
+    json_t *after = fake_rig_command(&rig, "state", "{}");
+    ck_assert(json_equal(json_object_get(before, "cnc"), json_object_get(after, "cnc")));
+    json_decref(before);
+    json_decref(after);
+    expect_result("cnc.state", "{}", "\"t\":100");
+    fake_rig_expect_state(&rig, "cnc.panel.jog", "{}");
+    fake_rig_do(&rig, "cnc.panel", "{\"jog\": {\"X\": \"+\", \"Z\": \"-\"}}");
+    fake_rig_expect_state(&rig, "cnc.panel.jog", "{\"X\":\"+\",\"Z\":\"-\"}");
+    fake_rig_do(&rig, "cnc.panel", "{\"jog\": {\"X\": \"\"}}");
+    fake_rig_expect_state(&rig, "cnc.panel.jog", "{\"Z\":\"-\"}");
+}
+END_TEST
+
 START_TEST(NL2_conditions_name_cells)
 {
     struct refusal refusal;
@@ -253,6 +271,7 @@ static Suite *cnc872_device_suite(void)
     tcase_add_test(tests, NL1_W2_a_block_is_loaded_started_and_followed_by_its_cells);
     tcase_add_test(tests, NL5_bad_access_is_refused_and_nothing_is_set);
     tcase_add_test(tests, NL1_the_panel_refuses_as_a_whole_with_the_reason);
+    tcase_add_test(tests, the_state_of_a_cnc_changes_as_its_panel_does_and_not_by_itself);
     tcase_add_test(tests, NL2_conditions_name_cells);
     tcase_add_test(tests, recording_of_a_cnc_replays);
     tcase_add_test(tests, snapshot_of_a_cnc_goes_on_as_before);

@@ -32,6 +32,12 @@ test_the_panel_of_a_CIB_module_shows_drives_outputs_and_configuration() {
     serve bus --device cib
     drive_with cib "$folder/bus.control"
 }
+test_the_panel_of_a_CNC872_moves_its_axes_and_draws_their_path() {
+    printf 'G1 X3 F600\nY2\n' >"$folder/corner.nc"
+    start bus "$RKM04" serve --device cnc872 --nc "$folder/corner.nc" --control "$folder/bus.control"
+    soon "the unit is ready" ready bus
+    drive_with cnc "$folder/bus.control"
+}
 test_the_panel_of_a_PMC_does_what_its_maker_s_window_does() {
     serve bus --device pmc-2hs
     drive_with pmc "$folder/bus.control"

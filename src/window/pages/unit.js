@@ -4,6 +4,7 @@
 import { word } from "./words.js";
 import { Axis } from "./axis.js";
 import { CibPanel } from "./cib.js";
+import { CncPanel } from "./cnc.js";
 import { Graph } from "./graph.js";
 import { Listing } from "./listing.js";
 import { call } from "./link.js";
@@ -22,7 +23,7 @@ const MOTOR_SHOWN = new Set(["motor", "position", "state", "index", "led", "faul
   "memory", "slot"]);
 
 // Devices with a panel of their own; it shows what else their states tell.
-const panels = { "pmc-1hs": PmcPanel, "pmc-2hs": PmcPanel, cib: CibPanel };
+const panels = { "pmc-1hs": PmcPanel, "pmc-2hs": PmcPanel, cib: CibPanel, cnc872: CncPanel };
 
 const plain = (value) => typeof value === "string" ? value : value === null ? "–" : JSON.stringify(value);
 

@@ -172,4 +172,86 @@ export const cases = {
     }
     await page.screenshot({ path: `${pictures || folder}/window-cib.png`, fullPage: true });
   },
+
+  // Axes, keys that are held, START and STOP, pots, switches, cells, the path.
+  async cnc(page) {
+    await openPanel(page);
+    const line = (name, text) => shows(page, ".device dl.lines div",
+      `element.textContent.startsWith(${JSON.stringify(name)}) && element.textContent.includes(${JSON.stringify(text)})`);
+    const above = (row, low) => shows(page, `.device table tbody tr:nth-child(${row}) td:nth-child(3)`,
+      `Number(element.textContent) > ${low}`);
+    await reads(page, 1, 1, "X");
+    assert.equal(await page.locator(".device table tbody tr").count(), 3);
+    await line("Block", "idle, block –, line –, next 0 of 2");
+    // The program: STOP stops it, START goes on, with an override and at its end.
+    await button(page, "START").click();
+    await reads(page, 1, 2, "block");
+    await line("Block", "move, block 0, line 1");
+    await line("Feed", "600.0 mm/min, 100 %, mode aut");
+    await above(1, 0.5);
+    await button(page, "START").click();
+    await shows(page, ".device p[role=status].wrong");
+    await button(page, "STOP").click();
+    await reads(page, 1, 2, "stopped");
+    await line("Stops", "po_stop sf_stop");
+    await page.locator(".device input[aria-label='Feed %']").fill("200");
+    await line("Feed", "0.0 mm/min, 200 %");
+    await button(page, "START").click();
+    await line("Feed", "1200.0 mm/min, 200 %");
+    await reads(page, 1, 3, "3.000");
+    await reads(page, 2, 3, "2.000");
+    await reads(page, 1, 2, "idle");
+    // The path has been drawn: both legs of it.
+    await shows(page, ".device svg.path text", "element.textContent === 'X 0.000 … 3.000 mm'");
+    await shows(page, ".device svg.path text", "element.textContent === 'Y 0.000 … 2.000 mm'");
+    assert.ok((await page.locator(".device svg.path path").getAttribute("d")).split("L").length > 4);
+    await button(page, "Clear").click();
+    await shows(page, ".device svg.path text", "element.textContent === 'X 3.000 … 3.000 mm'");
+    // Manual: a key moves its axis while it is held, by mouse and by keyboard.
+    await page.selectOption(".device select[aria-label=Mode]", "manual");
+    await button(page, "Y−").hover();
+    await page.mouse.down();
+    await reads(page, 2, 2, "manual");
+    await shows(page, ".device button[aria-pressed=true]", "element.textContent === 'Y−'");
+    await page.mouse.up();
+    await reads(page, 2, 2, "idle");
+    await button(page, "Z+").focus();
+    await page.keyboard.down("Space");
+    await reads(page, 3, 2, "manual");
+    await page.keyboard.up("Space");
+    await reads(page, 3, 2, "idle");
+    // A key that the mouse leaves is not held; Stop all lets all of them go.
+    await button(page, "Z−").hover();
+    await page.mouse.down();
+    await reads(page, 3, 2, "manual");
+    await button(page, "START").hover();
+    await reads(page, 3, 2, "idle");
+    await page.mouse.up();
+    await button(page, "X+").hover();
+    await page.mouse.down();
+    await reads(page, 1, 2, "manual");
+    await page.keyboard.press("F8");
+    await reads(page, 1, 2, "idle");
+    await shows(page, "#status", "element.textContent.includes('Stop sent to units: 1')");
+    await page.mouse.up();
+    // Switches, cells.
+    await button(page, "block by block").click();
+    await shows(page, ".device button[aria-pressed=true]", "element.textContent === 'block by block'");
+    await page.fill(".device input[aria-label=Cell]", "LIMIT_FEED");
+    await page.fill(".device input[aria-label=Value]", "500");
+    await button(page, "Set").click();
+    await says(page, "cnc.set: done");
+    await button(page, "Read").click();
+    await says(page, "LIMIT_FEED = 500");
+    await page.fill(".device input[aria-label=Cell]", "NONSENSE");
+    await button(page, "Read").click();
+    await says(page, "NONSENSE");
+    await button(page, "RESET").click();
+    await line("Block", "next 0 of 2");
+    for (const language of ["cs", "en"]) {
+      await page.selectOption("#language", language);
+      await checkAccess(page, `panel of a CNC872, ${language}`);
+    }
+    await page.screenshot({ path: `${pictures || folder}/window-cnc872.png`, fullPage: true });
+  },
 };

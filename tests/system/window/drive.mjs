@@ -13,7 +13,8 @@ const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || 
 let page;
 try {
   const viewport = { width: 1366, height: 900 };
-  const context = await browser.newContext({ viewport, locale: "en-GB", bypassCSP: ["cib", "looks", "pmc"].includes(name) });
+  const bypassCSP = ["cib", "cnc", "looks", "pmc"].includes(name);
+  const context = await browser.newContext({ viewport, locale: "en-GB", bypassCSP });
   page = await openPage(context);
   await cases[name](page, context);
   assert.deepEqual(troubles, [], "errors of the page");
