@@ -130,6 +130,7 @@ export const cases = {
     await write(page, "\\ C100 T03");
     await send(page, "2", "ok");
     await openPanel(page);
+    await shows(page, "#fault select[name=kind] option");
     const kinds = await page.locator("#fault select[name=kind] option").allTextContents();
     assert.equal(kinds.length, 15);
     for (const kind of kinds) {
