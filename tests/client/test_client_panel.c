@@ -210,6 +210,52 @@ START_TEST(what_the_state_of_a_cnc_lacks_is_a_dash)
 }
 END_TEST
 
+/* The style in which the first character of the text is shown. */
+static int style_of(const char *part)
+{
+    const char *at = strstr(text, part);
+    int row = 0;
+    ck_assert_ptr_nonnull(at);
+    for (const char *before = text; before < at; before++)
+        row += *before == '\n';
+    const char *line = at;
+    while (line > text && line[-1] != '\n')
+        line--;
+    return panel.cell[row][at - line].style;
+}
+
+START_TEST(what_is_wrong_with_a_cnc_is_marked)
+{
+    draw(cnc_state(1, json_pack("{s:{s:b}, s:i, s:i, s:i}", "stops", "po_stop", 1, "plc_error", 1, "critical", 2, "plc_pass", 4)),
+         24, 80);
+    ck_assert_int_eq(style_of("po_stop"), PANEL_WRONG);
+    ck_assert_int_eq(style_of("error 1h"), PANEL_WRONG);
+    ck_assert_int_eq(style_of("critical error 2"), PANEL_WRONG);
+    ck_assert_int_eq(style_of("pass done"), PANEL_PLAIN);
+    draw(cnc_state(1, NULL), 24, 80);
+    ck_assert_int_eq(style_of("error 0h"), PANEL_PLAIN);
+}
+END_TEST
+
+/* Two axes with head, lines and keys are ten rows; gaps come all at once. */
+START_TEST(a_cnc_has_gaps_where_there_is_room)
+{
+    static const struct {
+        const char *keys;
+        int rows, shown;
+    } sizes[] = {{"q quit", 12, 10}, {"q quit", 13, 13}, {"q quit", 24, 13}, {NULL, 10, 9}, {NULL, 11, 11}};
+    json_t *shown = cnc_state(2, NULL);
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        struct panel_view view = {.state = shown, .keys = sizes[i].keys};
+        client_panel_draw(&panel, &view, sizes[i].rows, 80);
+        ck_assert_int_eq(panel.rows, sizes[i].shown);
+        if (sizes[i].keys)
+            ck_assert_int_eq((int)panel.cell[panel.rows - 1][1].character, 'q');
+    }
+    json_decref(shown);
+}
+END_TEST
+
 /* Sixteen axes, head, lines and keys fill 24 rows; with less room axes stay longest, and no position is cut. */
 START_TEST(a_cnc_fits_any_size)
 {
@@ -244,6 +290,8 @@ static Suite *client_panel_suite(void)
     tcase_add_test(values, a_cnc_has_its_axes_and_what_its_block_and_its_program_do);
     tcase_add_test(values, stops_and_errors_of_a_cnc_are_named);
     tcase_add_test(values, what_the_state_of_a_cnc_lacks_is_a_dash);
+    tcase_add_test(values, what_is_wrong_with_a_cnc_is_marked);
+    tcase_add_test(sizes, a_cnc_has_gaps_where_there_is_room);
     tcase_add_test(sizes, a_cnc_fits_any_size);
     tcase_add_test(sizes, at_every_size_nothing_is_wider_or_higher_and_positions_stay_longest);
     tcase_add_test(sizes, no_number_is_cut_at_any_width);
