@@ -46,6 +46,8 @@ static void on_event(void *context, const struct watch_event *event)
         bus_log_at(&bus->log, event->tick, "unit %s: power %s", unit, event->value ? "on" : "off");
     else if (event->kind == WATCH_PLANT)
         bus_log_at(&bus->log, event->tick, "unit %s: plant: %s", unit, event->text);
+    else if (event->kind == WATCH_NOTE)
+        bus_log_at(&bus->log, event->tick, "unit %s: %s", unit, event->text);
     else
         log_injected_fault(bus, event);
 }
@@ -54,7 +56,7 @@ static void watch_for_log(struct bus *bus)
 {
     bus->news = (struct watcher){
         .kinds = WATCH_BIT(WATCH_FAULT) | WATCH_BIT(WATCH_POWER) | WATCH_BIT(WATCH_PLANT) | WATCH_BIT(WATCH_INJECTED) |
-                 (bus->coverage ? WATCH_BIT(WATCH_MESSAGE) : 0),
+                 WATCH_BIT(WATCH_NOTE) | (bus->coverage ? WATCH_BIT(WATCH_MESSAGE) : 0),
         .on_event = on_event,
         .context = bus,
     };

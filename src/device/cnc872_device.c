@@ -3,6 +3,7 @@
  * the us 1000 k (NT1). */
 #include "cnc872_device.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -132,11 +133,46 @@ static void end(struct device_unit *unit)
         (void)on_save(device, cnc_backup(&device->cnc), sizeof stored);
 }
 
+static void note(const struct cnc_device *device, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void note(const struct cnc_device *device, const char *format, ...)
+{
+    char text[DEVICE_ERROR_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (device->outer->note)
+        device->outer->note(device->context, device->now, 0, text);
+}
+
+/* NL2. */
 static void on_event(void *context, enum cnc_event event, int64_t value)
 {
-    (void)context;
-    (void)event;
-    (void)value;
+    static const struct {
+        const char *before, *after; /* the value; without `after` there is none */
+    } texts[CNC_EVENTS] = {
+        [CNC_EVENT_BLOCK] = {"the block of line ", " begins"},
+        [CNC_EVENT_BLOCK_END] = {"the block of line ", " has ended"},
+        [CNC_EVENT_SHORT_STOPPI] = {"STOPPI was 1 for ", " ms: expected 200 or more"},
+        [CNC_EVENT_BEYOND_QUEUE] = {"a PLC program has read BLK[", "], beyond the queue"},
+        [CNC_EVENT_PLC_ERROR] = {"PLC_ERROR is ", ""},
+        [CNC_EVENT_PLC_DIVISION] = {"division by 0 in line ", " of the PLC program"},
+        [CNC_EVENT_PLC_FAULT] = {"the PLC program has halted in line ", ""},
+        [CNC_EVENT_CRITICAL] = {"critical error ", ""},
+        [CNC_EVENT_BLOCK_REFUSED] = {"the block of line ", " is refused: S is outside of the limits of the gear"},
+        [CNC_EVENT_SAVED] = {"the backup memory is saved", NULL},
+        [CNC_EVENT_NOT_SAVED] = {"the backup memory cannot be saved", NULL},
+    };
+    const struct cnc_device *device = context;
+    if (event == CNC_EVENT_START_REFUSED)
+        note(device, "start refused: %s", cnc_result_text((enum cnc_result)value));
+    else if (event == CNC_EVENT_REFERENCE_DONE || event == CNC_EVENT_REFERENCE_FAILED)
+        note(device, "reference of %s %s", cnc_axis_names[value & 15],
+             event == CNC_EVENT_REFERENCE_DONE ? "is done" : "has ended without a position");
+    else if (texts[event].after)
+        note(device, "%s%lld%s", texts[event].before, (long long)value, texts[event].after);
+    else if (texts[event].before)
+        note(device, "%s", texts[event].before);
 }
 
 /* ---- Power and time ----------------------------------------------------------------------------------------------------- */

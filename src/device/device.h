@@ -77,6 +77,8 @@ struct device_port {
     void (*direction)(void *context, uint64_t tick, unsigned axis, bool forward);
     void (*outputs)(void *context, uint64_t tick, uint32_t mask);
     void (*event)(void *context, uint64_t tick, unsigned axis, enum device_event what, uint32_t value);
+    /* What a device reports in words, one line: "start refused: no NC program is loaded". */
+    void (*note)(void *context, uint64_t tick, unsigned axis, const char *text);
     /* Flash, blocks 0..kind->flash_blocks-1; erased bytes read FF. Return 0, or another value if it failed. */
     int (*flash_read)(void *context, unsigned block, unsigned offset, void *data, unsigned length);
     int (*flash_erase)(void *context, unsigned block);

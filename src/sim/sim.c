@@ -15,27 +15,6 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 
 /* ---- Events --------------------------------------------------------------------------------------------------------- */
 
-void sim_report(struct sim *sim, enum watch_phase phase, const struct watch_event *event)
-{
-    watch_add(&sim->watch, phase, event);
-}
-
-void sim_report_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
-{
-    struct watch_event copy = *event;
-    va_list list;
-    if ((sim->watch.kinds & WATCH_BIT(event->kind)) == 0)
-        return;
-    va_start(list, format);
-    char *text;
-    int length = vasprintf(&text, format, list);
-    va_end(list);
-    if (length < 0)
-        return;
-    copy.text = text;
-    watch_add(&sim->watch, phase, &copy);
-}
-
 /* The us of the bus in which `tick` of a unit lies. */
 static uint64_t us_of(const struct sim_unit *unit, uint64_t tick)
 {
@@ -125,6 +104,14 @@ static void on_event(void *context, uint64_t tick, unsigned motor, enum device_e
         [DEVICE_EVENT_POSITION] = WATCH_POSITION, [DEVICE_EVENT_VALUE] = WATCH_VALUE,
     };
     add_unit_event(context, tick, phase_of(context), kinds[what], motor, (int32_t)value);
+}
+
+static void on_note(void *context, uint64_t tick, unsigned motor, const char *text)
+{
+    const struct sim_unit *unit = context;
+    struct watch_event event = {
+        .tick = us_of(unit, tick), .kind = WATCH_NOTE, .unit = (uint8_t)unit->number, .motor = (uint8_t)motor};
+    sim_report_text(unit->sim, phase_of(unit), &event, "%s", text);
 }
 
 static int on_flash_read(void *context, unsigned block, unsigned offset, void *data, unsigned length)
@@ -544,6 +531,7 @@ static bool add_unit(struct sim *sim, unsigned at)
         .direction = on_direction,
         .outputs = on_outputs,
         .event = on_event,
+        .note = on_note,
         .flash_read = on_flash_read,
         .flash_erase = on_flash_erase,
         .flash_program = on_flash_program,

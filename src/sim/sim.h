@@ -227,7 +227,8 @@ void sim_services_free(struct sim *sim);
 void sim_watch(struct sim *sim, struct watcher *watcher);
 void sim_unwatch(struct sim *sim, struct watcher *watcher);
 
-/* Report that something happens at `tick`. `text`: printf-like, for WATCH_PLANT and WATCH_INJECTED. */
+/* Report that something happens at `tick`. `text`: printf-like, for WATCH_PLANT, WATCH_INJECTED and
+ * WATCH_NOTE. */
 void sim_report(struct sim *sim, enum watch_phase phase, const struct watch_event *event);
 void sim_report_text(struct sim *sim, enum watch_phase phase, const struct watch_event *event, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

@@ -27,6 +27,7 @@ static const char *const names[WATCH_KINDS] = {
     [WATCH_INJECTED] = "injected",
     [WATCH_SERVICE] = "service",
     [WATCH_VALUE] = "value",
+    [WATCH_NOTE] = "note",
 };
 
 const char *watch_kind_name(enum watch_kind kind)
@@ -47,7 +48,7 @@ static void free_event(const struct watch_event *event)
 {
     if (event->kind == WATCH_MESSAGE)
         free((void *)event->message);
-    else if (event->kind == WATCH_PLANT || event->kind == WATCH_INJECTED)
+    else if (event->kind == WATCH_PLANT || event->kind == WATCH_INJECTED || event->kind == WATCH_NOTE)
         free((void *)event->text);
     else if (event->kind == WATCH_SERVICE)
         free((void *)event->service);

@@ -31,6 +31,7 @@ enum watch_kind {
     WATCH_INJECTED,  /* a fault on demand has acted; value: its number; `text` says what it did */
     WATCH_SERVICE,   /* unit 0; value: number of the client of a server; `service` says what */
     WATCH_VALUE,     /* value: what value `number` of the unit is now (device_kind.value) */
+    WATCH_NOTE,      /* value 0; `text`: what the device reports in words */
     WATCH_KINDS
 };
 
@@ -67,7 +68,7 @@ struct watch_event {
     union {
         struct segment_byte byte;           /* WATCH_BYTE */
         const struct wire_message *message; /* WATCH_MESSAGE; valid during the call */
-        const char *text;                   /* WATCH_PLANT, WATCH_INJECTED; valid during the call */
+        const char *text;                   /* WATCH_PLANT, WATCH_INJECTED, WATCH_NOTE; valid during the call */
         const struct watch_service *service; /* WATCH_SERVICE; valid during the call */
         uint32_t pulse_ns;                  /* WATCH_STEP: length of the pulse; 0: device_kind.pulse */
     };

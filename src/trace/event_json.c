@@ -23,6 +23,7 @@ size_t event_json_room(const struct watch_event *event)
         return room + text_room(event->message->dropped) + text_room(event->message->refused);
     case WATCH_PLANT:
     case WATCH_INJECTED:
+    case WATCH_NOTE:
         return room + text_room(event->text);
     case WATCH_SERVICE:
         return room + text_room(event->service->name) + 2u * event->service->length;
@@ -117,6 +118,7 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
     case WATCH_PLANT:
         return put_string(put_text(put_string(at, plant_event_name((enum plant_event)event->value)), ",\"text\":"), event->text);
     case WATCH_INJECTED:
+    case WATCH_NOTE:
         return put_string(put_text(put_signed(at, event->value), ",\"text\":"), event->text);
     case WATCH_SERVICE:
         return put_service(put_signed(at, event->value), event->service);

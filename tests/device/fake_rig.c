@@ -15,8 +15,11 @@ static void on_event(void *context, const struct watch_event *event)
     struct fake_rig *rig = context;
     if (event->kind == WATCH_BYTE || event->kind == WATCH_MESSAGE)
         return;
-    fprintf(rig->stream, "%" PRIu64 " unit %u motor %u %s %" PRId32 "\n", event->tick, event->unit, event->motor,
-            watch_kind_name((enum watch_kind)event->kind), event->value);
+    if (event->kind == WATCH_NOTE)
+        fprintf(rig->stream, "%" PRIu64 " unit %u motor %u note %s\n", event->tick, event->unit, event->motor, event->text);
+    else
+        fprintf(rig->stream, "%" PRIu64 " unit %u motor %u %s %" PRId32 "\n", event->tick, event->unit, event->motor,
+                watch_kind_name((enum watch_kind)event->kind), event->value);
 }
 
 static void hear(void *context, const uint8_t *bytes, size_t length)

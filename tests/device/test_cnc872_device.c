@@ -263,6 +263,24 @@ START_TEST(NO3_the_backup_memory_outlives_power)
 }
 END_TEST
 
+START_TEST(NL2_the_cnc_tells_what_happens)
+{
+    fake_rig_do(&rig, "cnc.load", "{\"text\": \"\\nG1 X1 F1000\"}");
+    fake_rig_seen(&rig);
+    fake_rig_do(&rig, "cnc.panel", "{\"start\": true}");
+    do_turns(200);
+    const char *seen = fake_rig_seen(&rig);
+    ck_assert_msg(strncmp(seen, "1000 unit 1 motor 0 note the block of line 2 begins\n2000 unit 1 motor 1 motion 1\n", 78) == 0,
+                  "%s", seen);
+    ck_assert_ptr_nonnull(strstr(seen, " note the block of line 2 has ended\n"));
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"home\": \"Y\", \"start\": true, \"rtm\": 300}", "rtm");
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"START_DISABLE\": 1}}");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"start\": true}", "START_DISABLE is 1");
+    do_turns(201);
+    ck_assert_str_eq(fake_rig_seen(&rig), "200001 unit 1 motor 0 note start refused: START_DISABLE is 1\n");
+}
+END_TEST
+
 static Suite *cnc872_device_suite(void)
 {
     Suite *suite = suite_create("cnc872_device");
@@ -277,6 +295,7 @@ static Suite *cnc872_device_suite(void)
     tcase_add_test(tests, snapshot_of_a_cnc_goes_on_as_before);
     tcase_add_test(tests, NU1_scenario_of_a_cnc);
     tcase_add_test(tests, NU3_the_cells_of_a_plc_program_are_cells_like_others);
+    tcase_add_test(tests, NL2_the_cnc_tells_what_happens);
     tcase_add_test(tests, NL1_a_real_that_is_no_number_is_null);
     tcase_add_test(tests, NO3_the_backup_memory_outlives_power);
     suite_add_tcase(suite, tests);
