@@ -251,7 +251,7 @@ class Bus:
     plant: path of a file, its text, or a dict.
     seed: of faults with a probability, 0 to 2^63 - 1. readings: as in docs/READINGS.md, {"hold-exit": "latch"}.
     version_text: at most 255 characters. turnaround: from the end of a request to its answer, 0 to 1 s.
-    settings: of another device, as recordings have them: {"comm_timeout": 500} of a CIB module.
+    settings: of another device, as recordings have them: {"comm_timeout": 500} of a CIB module, {"nc": TEXT} of a CNC872.
     timed: False: bytes take no time. journal: False: what comes in is not kept, and snapshots cannot be written to files.
     """
 

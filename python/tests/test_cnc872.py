@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""A CNC872 in the process of the test: its texts as settings, methods, conditions, time, a snapshot."""
+
+import pytest
+
+import rkm04
+
+CONFIG = '<ChannelConfig><Axis Name="X"/><Axis Name="Y"/></ChannelConfig>\n'
+PLC = "DATA\nPASSES DW 0\nNEAR BIT 0\nDATA_END\nMODULE_MAIN\n\tLOD PASSES\n\tAD CNST.1\n\tSTO PASSES\nMODULE_MAIN_END\n"
+MACHINE = "switches:\n  - {cell: NEAR, axis: X, at_least: 5000}\n"
+SETTINGS = {"config": CONFIG, "plc": PLC, "nc": "G1 X10 F1000\n", "machine": MACHINE}
+
+
+def test_texts_methods_and_conditions():
+    with rkm04.Bus(device="cnc872", settings=SETTINGS) as bus:
+        bus.call("cnc.panel", start=True)
+        bus.wait(cell={"NEAR": 1}, limit="1s")
+        assert 5 * 65536000 <= bus.call("cnc.get", cells=["B_INK_EX[0]"])["cells"]["B_INK_EX[0]"] < 5.1 * 65536000
+        bus.call("cnc.set", cells={"STOP_REQ": 1})
+        bus.advance("500ms")
+        values = bus.call("cnc.get", cells=["PO_STOP", "PASSES"])
+        assert values["cells"] == {"PO_STOP": 1, "PASSES": values["t"]}, "a pass of the PLC program in each ms"
+
+
+def test_what_is_wrong_is_refused():
+    with pytest.raises((ValueError, rkm04.Error), match="nc:2:4: "):
+        rkm04.Bus(device="cnc872", settings={"nc": "G1 X1 F1\nG1 Q1\n"})
+    with rkm04.Bus(device="cnc872", settings=SETTINGS) as bus:
+        with pytest.raises(rkm04.RefusedError, match="NO_CELL"):
+            bus.call("cnc.get", cells=["NO_CELL"])
+        with pytest.raises(rkm04.RefusedError, match="NO_CELL"):
+            bus.wait(cell={"NO_CELL": 1}, limit="1s")
