@@ -208,15 +208,18 @@ static json_t *call_panel(struct device_unit *unit, const json_t *params, struct
     json_object_foreach((json_t *)params, name, value)
         if (!read_member(cnc, name, value, &request, refusal))
             return NULL;
-    /* What may be refused comes first: nothing has changed then. */
+    /* What may be refused comes first, and is taken back then. */
+    const struct cnc_machine before = cnc->machine;
     if (request.has_select)
         result = cnc_select(cnc, request.select, request.technology);
     if (result == CNC_OK && request.start)
         result = cnc_start(cnc);
     if (result == CNC_OK && request.home >= 0)
         result = cnc_home(cnc, (unsigned)request.home);
-    if (result != CNC_OK)
+    if (result != CNC_OK) {
+        cnc->machine = before;
         return result_of(result, refusal);
+    }
     cnc->panel = request.panel;
     if (request.stop)
         cnc_stop(cnc);

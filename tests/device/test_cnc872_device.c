@@ -113,6 +113,19 @@ START_TEST(the_state_of_a_cnc_changes_as_its_panel_does_and_not_by_itself)
 }
 END_TEST
 
+START_TEST(NL1_a_refused_start_selects_no_block)
+{
+    fake_rig_do(&rig, "cnc.load", "{\"text\": \"G1 X1 F1000\\nG1 X2\\nG1 X3\"}");
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"START_DISABLE\": 1}}");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"select\": 2, \"start\": true}", "START_DISABLE");
+    fake_rig_expect_refusal(&rig, "cnc.panel", "{\"select\": 2, \"home\": \"X\"}", "START_DISABLE");
+    fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"START_DISABLE\": 0}}");
+    fake_rig_do(&rig, "cnc.panel", "{\"start\": true}");
+    do_turns(1);
+    expect_result("cnc.state", "{}", "\"block\":0,\"line\":1");
+}
+END_TEST
+
 START_TEST(NL2_conditions_name_cells)
 {
     struct refusal refusal;
@@ -290,6 +303,7 @@ static Suite *cnc872_device_suite(void)
     tcase_add_test(tests, NL5_bad_access_is_refused_and_nothing_is_set);
     tcase_add_test(tests, NL1_the_panel_refuses_as_a_whole_with_the_reason);
     tcase_add_test(tests, the_state_of_a_cnc_changes_as_its_panel_does_and_not_by_itself);
+    tcase_add_test(tests, NL1_a_refused_start_selects_no_block);
     tcase_add_test(tests, NL2_conditions_name_cells);
     tcase_add_test(tests, recording_of_a_cnc_replays);
     tcase_add_test(tests, snapshot_of_a_cnc_goes_on_as_before);
