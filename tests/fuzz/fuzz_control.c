@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_control.c: any lines as requests of the control socket to a line of units: each is refused with a code and a reason, or
  * obeyed with a result, and the answer is JSON on one line. A line "+N" lets N ms pass, "<HEX" are bytes of the host. Files
- * are left alone. First byte: how many units. */
+ * are left alone. First byte: how many units, and of which kind; CNC872s have a PLC program and an NC program. */
 #include <string.h>
 
 #include "condition/condition.h"
@@ -11,6 +11,7 @@
 
 #define REQUESTS_MAX 40
 #define TIME_MAX 2000000u /* ticks */
+#define MODE_CNC 0x80u    /* bit of the first byte */
 
 static struct sim sim;
 static uint64_t left;
@@ -98,6 +99,21 @@ static void pass(const uint8_t *text, size_t length)
     sim_advance(&sim, sim_now(&sim) + ticks);
 }
 
+static void set_cnc(struct sim_config *config)
+{
+    static const char plc[] = "DATA\nPASSES DW 0\nGO BIT 1\nDATA_END\nMODULE_MAIN\n LOD PASSES\n AD CNST.1\n STO PASSES\n"
+                              " LDR BLK[1].M3\n WR GO\nMODULE_MAIN_END\n";
+    static const char *const texts[][2] = {{"plc", plc}, {"nc", "G1 X10 F1000\nM3 S500\nG0 X0 Y-1\nG4 P0.1\n"}};
+    char error[DEVICE_ERROR_SIZE];
+    config->device = device_kind_named("cnc872");
+    memset(&config->unit.own, 0, sizeof config->unit.own);
+    for (unsigned i = 0; i < 2; i++) {
+        json_t *text = json_string(texts[i][1]);
+        FUZZ_CHECK(text && config->device->read_setting(&config->unit, texts[i][0], text, error), "%s", error);
+        json_decref(text);
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const char *const nodes[] = {"1", "3,3", "1,2,7", "16"};
@@ -108,6 +124,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct fuzz fuzz = {data, size};
     uint8_t mode = fuzz_byte(&fuzz);
     config.timed = mode & 4;
+    if (mode & MODE_CNC)
+        set_cnc(&config);
     left = TIME_MAX;
     memset(&sim, 0, sizeof sim);
     FUZZ_CHECK(node_list_read(&config.nodes, nodes[mode & 3]) && sim_begin(&sim, &config) && snapshots_attach(&sim), "no memory");
