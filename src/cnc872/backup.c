@@ -29,17 +29,33 @@ static uint32_t check_of(const uint8_t *head, const uint8_t *bytes)
     return crc32_update(crc32_update(0, head, HEAD - 4u), bytes, CNC_BACKUP_SIZE);
 }
 
-/* The bytes of an image from `at` on, block by block. `access` is read or program. */
-static bool pass_bytes(int (*access)(void *, unsigned, unsigned, void *, unsigned), void *context, unsigned image,
-                       uint8_t bytes[CNC_BACKUP_SIZE])
+/* Where the bytes of an image from number `done` on are. Returns how many of them are in that block. */
+static unsigned find_piece(unsigned done, unsigned *block, unsigned *offset)
 {
-    for (unsigned done = 0; done < CNC_BACKUP_SIZE;) {
-        const unsigned at = HEAD + done, offset = at % CNC_BACKUP_BLOCK;
-        unsigned length = CNC_BACKUP_BLOCK - offset;
-        length = length < CNC_BACKUP_SIZE - done ? length : CNC_BACKUP_SIZE - done;
-        if (access(context, image * IMAGE_BLOCKS + at / CNC_BACKUP_BLOCK, offset, bytes + done, length) != 0)
+    const unsigned left = CNC_BACKUP_SIZE - done;
+    *block = (HEAD + done) / CNC_BACKUP_BLOCK;
+    *offset = (HEAD + done) % CNC_BACKUP_BLOCK;
+    return CNC_BACKUP_BLOCK - *offset < left ? CNC_BACKUP_BLOCK - *offset : left;
+}
+
+static bool read_bytes(const struct cnc_flash *flash, unsigned image, uint8_t bytes[CNC_BACKUP_SIZE])
+{
+    for (unsigned done = 0, length; done < CNC_BACKUP_SIZE; done += length) {
+        unsigned block, offset;
+        length = find_piece(done, &block, &offset);
+        if (flash->read(flash->context, image * IMAGE_BLOCKS + block, offset, bytes + done, length) != 0)
             return false;
-        done += length;
+    }
+    return true;
+}
+
+static bool program_bytes(const struct cnc_flash *flash, unsigned image, const uint8_t bytes[CNC_BACKUP_SIZE])
+{
+    for (unsigned done = 0, length; done < CNC_BACKUP_SIZE; done += length) {
+        unsigned block, offset;
+        length = find_piece(done, &block, &offset);
+        if (flash->program(flash->context, image * IMAGE_BLOCKS + block, offset, bytes + done, length) != 0)
+            return false;
     }
     return true;
 }
@@ -49,7 +65,7 @@ static bool read_image(const struct cnc_flash *flash, unsigned image, uint8_t by
 {
     uint8_t head[HEAD];
     if (flash->read(flash->context, image * IMAGE_BLOCKS, 0, head, HEAD) != 0 || word_at(head) != MAGIC ||
-        word_at(head + 8) != CNC_BACKUP_SIZE || !pass_bytes(flash->read, flash->context, image, bytes))
+        word_at(head + 8) != CNC_BACKUP_SIZE || !read_bytes(flash, image, bytes))
         return false;
     *number = word_at(head + 4);
     return word_at(head + 12) == check_of(head, bytes);
@@ -70,17 +86,16 @@ bool cnc_backup_load(const struct cnc_flash *flash, uint8_t bytes[CNC_BACKUP_SIZ
 
 bool cnc_backup_store(const struct cnc_flash *flash, const uint8_t bytes[CNC_BACKUP_SIZE], uint32_t *number)
 {
-    uint8_t head[HEAD], copy[CNC_BACKUP_SIZE];
+    uint8_t head[HEAD];
     const unsigned image = (*number + 1u) & 1u; /* not the one that counts */
-    memcpy(copy, bytes, sizeof copy);
     put_word(head, MAGIC);
     put_word(head + 4, *number + 1u);
     put_word(head + 8, CNC_BACKUP_SIZE);
-    put_word(head + 12, check_of(head, copy));
+    put_word(head + 12, check_of(head, bytes));
     for (unsigned block = 0; block < IMAGE_BLOCKS; block++)
         if (flash->erase(flash->context, image * IMAGE_BLOCKS + block) != 0)
             return false;
-    if (!pass_bytes(flash->program, flash->context, image, copy) ||
+    if (!program_bytes(flash, image, bytes) ||
         flash->program(flash->context, image * IMAGE_BLOCKS, 0, head, HEAD) != 0)
         return false;
     *number += 1u;

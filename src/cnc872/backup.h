@@ -13,7 +13,7 @@
 /* Flash: erased bytes read FF. Each returns 0, or another value if it failed. */
 struct cnc_flash {
     int (*read)(void *context, unsigned block, unsigned offset, void *data, unsigned length);
-    int (*program)(void *context, unsigned block, unsigned offset, void *data, unsigned length);
+    int (*program)(void *context, unsigned block, unsigned offset, const void *data, unsigned length);
     int (*erase)(void *context, unsigned block);
     void *context;
 };

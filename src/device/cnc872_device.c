@@ -84,7 +84,7 @@ static bool is_quiet(const struct cnc_device *device)
 
 /* ---- Backup memory (NO3): in the flash of the unit ----------------------------------------------------------------------- */
 
-static int flash_program(void *context, unsigned block, unsigned offset, void *data, unsigned length)
+static int flash_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
 {
     const struct cnc_device *device = context;
     return device->outer->flash_program(device->context, block, offset, data, length);

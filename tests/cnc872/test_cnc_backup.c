@@ -30,7 +30,7 @@ static int on_read(void *context, unsigned block, unsigned offset, void *data, u
     return 0;
 }
 
-static int on_program(void *context, unsigned block, unsigned offset, void *data, unsigned length)
+static int on_program(void *context, unsigned block, unsigned offset, const void *data, unsigned length)
 {
     (void)context;
     ck_assert(block < CNC_BACKUP_BLOCKS && offset + length <= CNC_BACKUP_BLOCK);
