@@ -294,6 +294,8 @@ class Clock:
             return True
         if self._outside(get_ident()) and waited < PATIENCE:
             return False
+        if any(waiter.ready() for waiter in self._waiters.values()):
+            return True  # the last thread has done it and ended since
         for waiter in self._waiters.values():
             waiter.error = _explain(what)
             if waiter.lock.locked():

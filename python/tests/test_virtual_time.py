@@ -17,6 +17,7 @@ import serial
 
 import rkm04
 from helpers import VERSION, VERSION_ANSWER
+from rkm04._clock import Clock
 
 
 def real_seconds():
@@ -288,6 +289,18 @@ def test_asyncio_and_a_thread(now):
 
     assert asyncio.run(main()) == 5
     assert 30 <= now.now < 31
+
+
+def test_what_the_last_thread_does_before_it_ends_is_seen(monkeypatch):
+    done = []
+
+    def end(clock, me):  # between two looks of the one that waits
+        done.append(1)
+        return []
+
+    monkeypatch.setattr(Clock, "_is_alone", lambda clock: False)
+    monkeypatch.setattr(Clock, "_outside", end)
+    assert Clock().wait(None, lambda: bool(done), "a wait for a thread")
 
 
 def test_asyncio_waits_for_nothing(now):
