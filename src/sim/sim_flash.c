@@ -68,7 +68,8 @@ int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, co
 
 void sim_store(struct sim *sim)
 {
-    for (unsigned number = 1; sim_device(sim)->end && number <= sim_units(sim); number++)
+    const struct device_kind *kind = sim_device(sim); /* NULL: it has not begun */
+    for (unsigned number = 1; kind && kind->end && number <= sim_units(sim); number++)
         if (sim_powered(sim, number))
-            sim_device(sim)->end(sim_core(sim, number));
+            kind->end(sim_core(sim, number));
 }

@@ -158,12 +158,14 @@ static bool is_on_back(const struct segment *segment, unsigned station)
 /* When (parts) the next byte will have been received; DEVICE_NEVER: none is under way. */
 static uint64_t wires_due(const struct segment *segment)
 {
-    return earlier(wire_due(&segment->wire), wire_due(&segment->back));
+    const uint64_t due = wire_due(&segment->wire);
+    return segment->config.is_full_duplex ? earlier(due, wire_due(&segment->back)) : due;
 }
 
 static bool receive_byte(struct segment *segment, uint64_t until, struct wire_byte *received)
 {
-    return wire_receive(&segment->wire, until, received) || wire_receive(&segment->back, until, received);
+    return wire_receive(&segment->wire, until, received) ||
+           (segment->config.is_full_duplex && wire_receive(&segment->back, until, received));
 }
 
 /* When (parts) the next start bit of the host is due; DEVICE_NEVER: none. */
@@ -277,7 +279,7 @@ static void end_byte(struct segment *segment, const struct wire_byte *received)
 /* Tell the units of the bytes that have come to them since without a stop bit. */
 static void report_lost_bytes(struct segment *segment)
 {
-    for (unsigned i = 0; segment->config.kind->lose_byte && i < segment->units; i++) {
+    for (unsigned i = 0; i < segment->units; i++) {
         struct segment_unit *unit = &segment->unit[i];
         const uint64_t lost = segment->wire.receiver[i + 1u].framing_errors;
         if (unit->lost != lost && unit->powered && is_receiving(segment, i + 1u, UINT32_C(1) << WIRE_HOST))
@@ -300,11 +302,13 @@ static bool end_silence(struct segment *segment, uint64_t tick)
     return true;
 }
 
-static void advance_timed(struct segment *segment, uint64_t until)
+/* Advance to `until` (parts). is_plain is known to the compiler: most kinds of devices pay nothing for what others need. */
+static inline __attribute__((always_inline)) void advance_wires(struct segment *segment, uint64_t until, bool is_plain)
 {
     for (;;) {
         unsigned station;
-        uint64_t start = next_start(segment, &station), end = wires_due(segment), next = earlier(start, end);
+        uint64_t start = next_start(segment, &station), end = is_plain ? wire_due(&segment->wire) : wires_due(segment);
+        uint64_t next = earlier(start, end);
         if (end_silence(segment, earlier(tick_of(next), until / WIRE_TICK)))
             continue;
         if (next > until)
@@ -312,8 +316,10 @@ static void advance_timed(struct segment *segment, uint64_t until)
         advance_units(segment, tick_of(next));
         struct wire_byte received;
         if (end <= start) {
-            const bool is_byte = receive_byte(segment, end, &received);
-            report_lost_bytes(segment);
+            const bool is_byte =
+                is_plain ? wire_receive(&segment->wire, end, &received) : receive_byte(segment, end, &received);
+            if (!is_plain && segment->config.kind->lose_byte)
+                report_lost_bytes(segment);
             if (is_byte)
                 end_byte(segment, &received);
         } else {
@@ -322,16 +328,22 @@ static void advance_timed(struct segment *segment, uint64_t until)
     }
 }
 
+static void advance_timed(struct segment *segment, uint64_t until)
+{
+    if (segment->is_plain)
+        advance_wires(segment, until, true);
+    else
+        advance_wires(segment, until, false);
+}
+
 /* ---- Bytes that take no time ---------------------------------------------------------------------------------------- */
 
-/* While the line is disturbed a byte has no stop bit. */
-static void pass_to_unit(struct segment *segment, struct segment_unit *unit, uint8_t byte)
+/* The line is disturbed: the byte has no stop bit. */
+static void lose_at_units(struct segment *segment, uint32_t receivers, uint32_t sender)
 {
-    const struct device_kind *kind = segment->config.kind;
-    if (!segment->disturbed)
-        deliver_to_unit(segment, unit, byte);
-    else if (kind->lose_byte)
-        kind->lose_byte(unit->unit);
+    for (unsigned i = 0; i < segment->units && segment->config.kind->lose_byte; i++)
+        if (segment->unit[i].powered && (receivers >> (i + 1u) & 1u) != 0 && is_receiving(segment, i + 1u, sender))
+            segment->config.kind->lose_byte(segment->unit[i].unit);
 }
 
 /* Let the byte of a unit be received by the units in `receivers` (bit n: unit n), the monitor, and the host if it is a
@@ -343,9 +355,11 @@ static void pass_byte(struct segment *segment, unsigned station, uint32_t receiv
     if (!segment->disturbed && is_receiving(segment, WIRE_HOST, sender) &&
         (station != WIRE_HOST || has_echo(segment, sender, byte)))
         deliver_to_host(segment, &byte, 1);
-    for (unsigned i = 0; i < segment->units; i++)
+    for (unsigned i = 0; i < segment->units && !segment->disturbed; i++)
         if (segment->unit[i].powered && (receivers >> (i + 1u) & 1u) != 0 && is_receiving(segment, i + 1u, sender))
-            pass_to_unit(segment, &segment->unit[i], byte);
+            deliver_to_unit(segment, &segment->unit[i], byte);
+    if (segment->disturbed)
+        lose_at_units(segment, receivers, sender);
     report_to_monitor(segment, &(struct segment_byte){segment->now, segment->now, sender, byte, segment->disturbed});
 }
 
@@ -465,6 +479,7 @@ void segment_begin(struct segment *segment, const struct segment_config *config)
         segment->more[station] = (struct segment_more){0};
     wire_begin(&segment->wire, config->baud > 0 ? config->baud : DEVICE_BAUD);
     segment->back = segment->wire;
+    segment->is_plain = !config->is_full_duplex && !segment->config.kind->lose_byte;
     if (config->is_full_duplex)
         wire_leave(&segment->wire, WIRE_HOST, 0);
 }

@@ -130,6 +130,7 @@ struct segment {
     struct segment_unit unit[SEGMENT_UNITS]; /* unit n is unit[n - 1] */
 
     /* Inside. */
+    bool is_plain;           /* there is one pair of wires, and no unit counts lost bytes */
     struct wire wire, back;  /* back: on which units send to the host alone if the line is full duplex */
     uint64_t quiet_bytes;    /* sent, without time */
     uint64_t overruns;

@@ -157,12 +157,12 @@ test_clients_that_come_and_go_are_logged_with_verbose_only() {
 
 test_a_mistyped_command_is_answered_with_all_there_are_and_the_nearest() {
     exits 2 "$RKM04" bogus
-    holds "$complained" "expected serve, exec, check, fmt, explain, estimate, lsp, test, replay, plot or devices" "all"
+    holds "$complained" "expected serve, exec, check, fmt, explain, estimate, lsp, test, replay, plot, devices or signals" "all"
     [[ $complained != *mean* ]] || fail "nothing is near: $complained"
     exits 2 "$RKM04" reply
     holds "$complained" "did you mean \`replay'?" "the nearest"
     exits 2 "$RKM04"
-    holds "$complained" "expected serve, exec, check, fmt, explain, estimate, lsp, test, replay, plot or devices" "all"
+    holds "$complained" "expected serve, exec, check, fmt, explain, estimate, lsp, test, replay, plot, devices or signals" "all"
     exits 2 "$RKMCTL" positon
     holds "$complained" "did you mean \`position'?" "the nearest of a unit"
     exits 2 "$RKMCTL" wiat
