@@ -238,6 +238,18 @@ class InProcessHost(Host):
         return self._sim.purge()
 
 
+def _device_name(transport: Transport) -> Callable[[], str]:
+    """The name of the device, asked for once. It holds the transport alone, so that a bus is freed when nobody has it any more."""
+    names: List[str] = []
+
+    def name() -> str:
+        if not names:
+            names.append(str(transport.call("device", {})["name"]))
+        return names[0]
+
+    return name
+
+
 class Bus:
     """A bus with its units in this process, in virtual time. The same calls give the same results, always.
 
@@ -273,7 +285,7 @@ class Bus:
         self._snapshots = 0
         self._messages = Events(transport, ["message"], None, None)
         self._device: Optional[Dict[str, Any]] = None
-        self._dialogue = Dialogue(self._messages.take, device=lambda: str(self._kind["name"]))
+        self._dialogue = Dialogue(self._messages.take, device=_device_name(transport))
 
     # ---- Anything ----
 

@@ -4,6 +4,7 @@
 import gc
 import os
 import tracemalloc
+import weakref
 
 import rkm04
 
@@ -62,3 +63,15 @@ def test_a_bus_that_nobody_closes_is_freed_too():
     gc.collect()
     if not SANITIZED:
         assert resident() - before < 8 << 20
+
+
+def test_a_bus_is_freed_when_nobody_has_it_any_more():
+    gc.collect()
+    gc.disable()
+    try:
+        bus = weakref.ref(rkm04.Bus())
+        assert bus() is None
+        unit = weakref.ref(rkm04.Bus(units="1-16").unit(1))
+        assert unit() is None
+    finally:
+        gc.enable()
