@@ -239,7 +239,7 @@ class InProcessHost(Host):
 
 
 def _device_name(transport: Transport) -> Callable[[], str]:
-    """The name of the device, asked for once. It holds the transport alone, so that a bus is freed when nobody has it any more."""
+    """The name of the device, asked for once. It holds the transport alone: a bus is freed when nobody has it any more."""
     names: List[str] = []
 
     def name() -> str:
