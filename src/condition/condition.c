@@ -196,6 +196,21 @@ static bool depends_on_units(const struct term *term)
     return false;
 }
 
+/* Cells may change in each slot, also while nothing else happens: when the next slot of a unit with a cell is over. */
+static uint64_t next_slot(const struct term *term, const struct sim *sim)
+{
+    uint64_t next = DEVICE_NEVER;
+    if (term->kind == TERM_CELL) {
+        const uint64_t since = segment_since(&sim->segment, term->unit), slot = sim_device(sim)->slot;
+        next = since + (sim_now(sim) - since + slot - 1u) / slot * slot + 1u;
+    }
+    for (size_t i = 0; i < term->subs; i++) {
+        uint64_t sub = next_slot(&term->sub[i], sim);
+        next = sub < next ? sub : next;
+    }
+    return next;
+}
+
 uint64_t condition_next(const struct condition *condition)
 {
     struct sim *sim = condition->sim;
@@ -207,6 +222,8 @@ uint64_t condition_next(const struct condition *condition)
         next = event + 1; /* it is over then */
     if (due < next)
         next = due > now ? due : now + 1;
+    uint64_t slot = next_slot(&condition->root, sim);
+    next = slot < next ? slot : next;
     if (condition->messages && sim->watch.count > 0) /* a message of this tick is handed out when the tick is over */
         next = now + 1;
     return next > now ? next : now + 1;

@@ -294,6 +294,22 @@ START_TEST(NL2_the_cnc_tells_what_happens)
 }
 END_TEST
 
+/* The clock of the cnc goes on while nothing moves. */
+START_TEST(NL2_conditions_see_cells_that_change_while_nothing_happens)
+{
+    struct refusal refusal;
+    json_t *json = json_loads("{\"cell\": {\"SYST_TIME_INFO.TIME_SEC\": 5}}", 0, NULL);
+    do_turns(10);
+    struct condition *condition = condition_read(&rig.sim, json, &refusal);
+    ck_assert_msg(condition != NULL, "%s", refusal.text);
+    condition_arm(condition);
+    ck_assert(condition_run(condition, 60000000));
+    ck_assert_uint_eq(sim_now(&rig.sim), 5000001);
+    condition_free(condition);
+    json_decref(json);
+}
+END_TEST
+
 static Suite *cnc872_device_suite(void)
 {
     Suite *suite = suite_create("cnc872_device");
@@ -309,6 +325,7 @@ static Suite *cnc872_device_suite(void)
     tcase_add_test(tests, snapshot_of_a_cnc_goes_on_as_before);
     tcase_add_test(tests, NU1_scenario_of_a_cnc);
     tcase_add_test(tests, NU3_the_cells_of_a_plc_program_are_cells_like_others);
+    tcase_add_test(tests, NL2_conditions_see_cells_that_change_while_nothing_happens);
     tcase_add_test(tests, NL2_the_cnc_tells_what_happens);
     tcase_add_test(tests, NL1_a_real_that_is_no_number_is_null);
     tcase_add_test(tests, NO3_the_backup_memory_outlives_power);
