@@ -24,13 +24,29 @@ static const struct cnc_text *needed_by(const struct cnc_own *own, enum cnc_text
                                       : NULL;
 }
 
+/* The axes of all switches have to be there. */
+static bool has_axes(const struct cnc_own *own, const char *name, FILE *errors)
+{
+    const struct cnc_machine_switches *machine = &own->text[CNC_TEXT_MACHINE]->machine;
+    const struct cnc_text *config = own->text[CNC_TEXT_CONFIG];
+    const unsigned axes = config ? config->config->axes : cnc_default_config()->axes;
+    for (unsigned at = 0; at < machine->count; at++)
+        if ((axes >> machine->list[at].axis & 1u) == 0) {
+            if (errors)
+                fprintf(errors, "%s: error: switch %u: the configuration has no axis %s\n", name, at + 1u,
+                        cnc_axis_names[machine->list[at].axis]);
+            return false;
+        }
+    return true;
+}
+
 static bool take_text(struct device_config *config, enum cnc_text_kind kind, const char *name, const char *text, size_t length,
                       FILE *errors)
 {
     struct cnc_own own = cnc_own_of(config);
     own.text[kind] = cnc_text_read(kind, needed_by(&own, kind), name, text, length, errors);
     memcpy(config->own.byte, &own, sizeof own);
-    return own.text[kind] != NULL;
+    return own.text[kind] && (kind != CNC_TEXT_MACHINE || has_axes(&own, name, errors));
 }
 
 static bool read_config(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)

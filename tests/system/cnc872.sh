@@ -63,6 +63,9 @@ test_NP8_wrong_files_are_named_with_line_and_column() {
     printf 'switches:\n  - {cell: PO_F, axis: X, at_least: 1}\n' >"$folder/bad.yaml"
     exits 2 "$RKM04" serve --device cnc872 --machine "$folder/bad.yaml"
     holds "$complained" "bad.yaml:2:12: error: expected a bit that may be written" "serve --machine"
+    printf 'switches:\n  - {cell: KH40, axis: 4, at_least: 1}\n' >"$folder/bad.yaml"
+    exits 2 "$RKM04" serve --device cnc872 --machine "$folder/bad.yaml"
+    holds "$complained" "bad.yaml: error: switch 1: the configuration has no axis 4" "serve --machine"
 }
 
 # The PLC program is named after the NC program that needs nothing of it, the switches before the program whose bits they are.
