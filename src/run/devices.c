@@ -2,10 +2,10 @@
 /* rkm04 devices: the kinds of devices there are. */
 #include <argp.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "device/device.h"
 #include "options/options.h"
+#include "print_json.h"
 #include "run.h"
 #include "text/text.h"
 
@@ -51,15 +51,7 @@ static int print_json(void)
                                               (int)kind->outputs, "variables", (int)kind->variables, "addresses",
                                               (int)kind->addresses, "options", options_json(kind), "services",
                                               services_json(kind)));
-    char *text = json_dumps(list, JSON_INDENT(2));
-    json_decref(list);
-    if (!text) {
-        fputs("rkm04 devices: out of memory\n", stderr);
-        return STATUS_FAILURE;
-    }
-    puts(text);
-    free(text);
-    return arguments_printed();
+    return print_json_list(list, "rkm04 devices");
 }
 
 int devices_main(int argc, char **argv)

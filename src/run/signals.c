@@ -2,12 +2,12 @@
 /* rkm04 signals: the cells between CNC system and PLC program of a CNC872. */
 #include <argp.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include <jansson.h>
 
 #include "cnc872/cnc872.h"
 #include "options/options.h"
+#include "print_json.h"
 #include "run.h"
 
 enum { KEY_JSON = 256 };
@@ -105,15 +105,7 @@ static int print_json(void)
 {
     json_t *list = json_array();
     list_signals(add_json, list);
-    char *text = json_dumps(list, JSON_INDENT(2));
-    json_decref(list);
-    if (!text) {
-        fputs("rkm04 signals: out of memory\n", stderr);
-        return STATUS_FAILURE;
-    }
-    puts(text);
-    free(text);
-    return arguments_printed();
+    return print_json_list(list, "rkm04 signals");
 }
 
 int signals_main(int argc, char **argv)
