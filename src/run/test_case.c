@@ -33,7 +33,7 @@ bool test_case_interrupted(void)
 
 /* ---- Files ---------------------------------------------------------------------------------------------------------- */
 
-/* Read all of `file`, which is not to be overwritten. Returns a text to be freed, or NULL and the reason. */
+/* Read all of `file`, which is not to be overwritten. Returns a text with a zero after it, to be freed, or NULL and why. */
 static char *read_stream(FILE *file, const char *path, size_t *length, const char **why)
 {
     char *text = NULL;
@@ -51,6 +51,7 @@ static char *read_stream(FILE *file, const char *path, size_t *length, const cha
         }
         if (*length == room)
             continue;
+        text[*length] = '\0';
         if (output_file_spare(path))
             return text;
         *why = strerror(ENOMEM);

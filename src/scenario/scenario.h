@@ -16,7 +16,7 @@ struct scenario;
 
 /* How the files are read that a scenario names: plants and programs. */
 struct scenario_files {
-    /* Read the whole file `path`. Returns a text to be freed, or NULL and in *why the reason. */
+    /* Read the whole file `path`. Returns a text with a zero after it, to be freed, or NULL and in *why the reason. */
     char *(*read)(void *context, const char *path, size_t *length, const char **why);
     /* Map a program text in place to the bytes that a unit takes. Returns its new length. NULL: it is one already. */
     size_t (*map)(char *text, size_t length);

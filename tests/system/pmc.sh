@@ -346,6 +346,23 @@ END
     exits 0 "$RKM04" test "$folder/b.yaml"
 }
 
+test_the_files_of_a_scenario_are_in_the_flash_of_its_unit() {
+    printf 'X: 00 ABS 7 V3\nX: 01 END\n' >"$folder/a.pmc"
+    printf '[X]\nmultiplier = 20\n' >"$folder/a.parameters"
+    cat >"$folder/a.yaml" <<'END'
+device: pmc-1hs
+face: modbus
+program: a.pmc
+parameters: a.parameters
+steps:
+  - {message: '03 04 4E 00 01', answer: '03 02 00 14'}
+  - {call: pmc.run}
+  - wait: {motor: 1, position: 7}
+END
+    exits 0 "$RKM04" test "$folder/a.yaml"
+    exits 0 "$RKM04" test "$(dirname "$0")/../../examples/pmc-drill.yaml"
+}
+
 test_the_wire_log_says_what_frames_mean() {
     unit --device-option face=modbus --wire "$folder/bus.log"
     exits 0 "$RKMCTL" -p "$folder/bus" --face modbus pmc jog x+
