@@ -170,8 +170,8 @@ static struct cnc_operand find_operand(const char *name)
 {
     struct cnc_operand operand;
     struct cnc_text_fault fault;
-    ck_assert_msg(cnc_parse_operand(name, strlen(name), has_plc ? &plc_program.names : NULL, &operand, &fault), "%s: %s", name,
-                  fault.reason);
+    if (!cnc_parse_operand(name, strlen(name), has_plc ? &plc_program.names : NULL, &operand, &fault))
+        ck_abort_msg("%s: %s", name, fault.reason); /* Check writes to a file for each of its assertions */
     return operand;
 }
 

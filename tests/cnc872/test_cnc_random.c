@@ -85,7 +85,7 @@ static void disturb(void)
         set_cell("FEED_OVR_MULTIPLIER", 0, any(1500));
         break;
     case 2:
-        set_bit("MPXPI", any(2));
+        cnc_put_bit(&cnc.cells, CNC_BIT_MPxPI, any(2));
         break;
     case 3:
         set_bit("KHY1", any(2));
@@ -139,7 +139,8 @@ static void check_turn(struct past *past)
 {
     const struct cnc_path *path = &cnc.move.path;
     const int64_t v = cnc.move.v, change = v - past->v;
-    const bool is_halted = cnc_number(&cnc.cells, CNC_CELL_BZH13, 0) != 0 || (config.is_parabolic && !bit("MPXPI"));
+    const bool is_enabled = cnc_bit(&cnc.cells, CNC_BIT_MPxPI);
+    const bool is_halted = cnc_number(&cnc.cells, CNC_CELL_BZH13, 0) != 0 || (config.is_parabolic && !is_enabled);
     const bool at_end = path->done == path->length || cnc.move.section.count == 0;
     EXPECT(v >= 0);
     if (cnc.move.section.count > 0) {
@@ -235,7 +236,7 @@ START_TEST(calm_parabolic_motions)
         run_to(1);
         const int64_t a = cnc.move.section.acceleration[program.blocks[0].motion == CNC_MOTION_RAPID];
         const int64_t n = cnc.move.section.n[program.blocks[0].motion == CNC_MOTION_RAPID];
-        while (bit("PO_OSXPI")) {
+        while (cnc_bit(&cnc.cells, CNC_BIT_PO_OSxPI)) {
             run_to(cnc.turn + 1);
             if (cnc.move.path.done < cnc.move.path.length)
                 EXPECT(magnitude(cnc.move.v - v - change) <= 2 * a / n + 3);

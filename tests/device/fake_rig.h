@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "scenario/scenario.h"
 #include "sim/sim.h"
 
 struct fake_rig {
@@ -41,5 +42,9 @@ void fake_rig_expect_refusal(struct fake_rig *rig, const char *method, const cha
 
 /* A member of `state` of unit 1, written as JSON, has to be `value`. `name`: "do", "motors.0.position". */
 void fake_rig_expect_state(struct fake_rig *rig, const char *name, const char *value);
+
+/* A scenario, given as text, has to end so; its messages, and what was expected and seen, have to have `said` in them (NULL:
+ * anything). */
+void run_story(const char *text, enum scenario_end wanted, const char *said);
 
 #endif

@@ -8,7 +8,6 @@
 #include "core/rig.h"
 #include "fake_rig.h"
 #include "record/record.h"
-#include "scenario/scenario.h"
 #include "trace/trace.h"
 
 static struct fake_rig rig;
@@ -195,24 +194,6 @@ START_TEST(snapshot_of_a_cnc_goes_on_as_before)
     expect_result("cnc.get", "{\"cells\": [\"PO_POL\", \"B_INK_EX[0]\"]}", "{\"PO_POL\":1,\"B_INK_EX[0]\":655360000}");
 }
 END_TEST
-
-static void run_story(const char *text, enum scenario_end wanted, const char *said)
-{
-    static const struct scenario_files files = {0};
-    struct scenario_result result = {0};
-    char *told;
-    size_t length;
-    FILE *errors = open_memstream(&told, &length);
-    struct scenario *scenario = scenario_read("test.yaml", text, strlen(text), &files, errors);
-    enum scenario_end came = scenario ? scenario_run(scenario, NULL, NULL, NULL, &result) : SCENARIO_FAILED;
-    if (scenario && came == SCENARIO_FAILED)
-        fprintf(errors, "line %zu: expected %s, seen %s", result.line, result.expected, result.seen);
-    fclose(errors);
-    ck_assert_msg(came == wanted && (!said || strstr(told, said)), "%s", told);
-    scenario_result_free(&result);
-    scenario_free(scenario);
-    free(told);
-}
 
 START_TEST(NU1_scenario_of_a_cnc)
 {

@@ -8,7 +8,6 @@
 #include "fake_device.h"
 #include "fake_rig.h"
 #include "record/record.h"
-#include "scenario/scenario.h"
 #include "trace/trace.h"
 
 static struct fake_rig rig;
@@ -233,22 +232,6 @@ START_TEST(snapshot_in_a_file_is_restored_among_clients)
 }
 END_TEST
 
-static enum scenario_end run_story(const char *text, char **said)
-{
-    static const struct scenario_files files = {0};
-    struct scenario_result result = {0};
-    size_t length;
-    FILE *errors = open_memstream(said, &length);
-    struct scenario *scenario = scenario_read("test.yaml", text, strlen(text), &files, errors);
-    enum scenario_end came = scenario ? scenario_run(scenario, NULL, NULL, NULL, &result) : SCENARIO_FAILED;
-    if (scenario && came == SCENARIO_FAILED)
-        fprintf(errors, "line %zu: expected %s, seen %s", result.line, result.expected, result.seen);
-    fclose(errors);
-    scenario_result_free(&result);
-    scenario_free(scenario);
-    return came;
-}
-
 START_TEST(scenario_is_a_client_and_checks_results)
 {
     static const char *const head =
@@ -265,12 +248,9 @@ START_TEST(scenario_is_a_client_and_checks_results)
         {"  - {call: service.bytes, params: {client: 2, text: \"\"}}\n", "refused: client: there is no client 2"},
     };
     for (size_t i = 0; i < sizeof stories / sizeof *stories; i++) {
-        char text[500], *said;
+        char text[500];
         snprintf(text, sizeof text, "%s%s", head, stories[i].step);
-        enum scenario_end came = run_story(text, &said);
-        ck_assert_msg(came == (stories[i].said ? SCENARIO_FAILED : SCENARIO_PASSED), "%s%s", text, said);
-        ck_assert_msg(!stories[i].said || strstr(said, stories[i].said), "%s%s", text, said);
-        free(said);
+        run_story(text, stories[i].said ? SCENARIO_FAILED : SCENARIO_PASSED, stories[i].said);
     }
 }
 END_TEST

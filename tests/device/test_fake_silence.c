@@ -9,7 +9,6 @@
 #include "fake_device.h"
 #include "fake_rig.h"
 #include "record/record.h"
-#include "scenario/scenario.h"
 
 #define BYTE_US 521u /* a byte on the wires, rounded up */
 
@@ -183,26 +182,6 @@ START_TEST(snapshot_in_the_middle_of_a_request_continues_with_it)
 END_TEST
 
 /* ---- Scenarios ------------------------------------------------------------------------------------------------------ */
-
-static void run_story(const char *text, enum scenario_end wanted, const char *said)
-{
-    static const struct scenario_files files = {0};
-    struct scenario_result result = {0};
-    char *told;
-    size_t length;
-    FILE *errors = open_memstream(&told, &length);
-    struct scenario *scenario = scenario_read("test.yaml", text, strlen(text), &files, errors);
-    fflush(errors);
-    ck_assert_msg(scenario != NULL, "%s", told);
-    enum scenario_end end = scenario_run(scenario, NULL, NULL, NULL, &result);
-    ck_assert_msg(end == wanted, "line %zu: expected %s, seen %s", result.line, result.expected, result.seen);
-    if (said)
-        ck_assert_msg(strstr(result.seen, said) != NULL, "seen %s", result.seen);
-    scenario_result_free(&result);
-    scenario_free(scenario);
-    fclose(errors);
-    free(told);
-}
 
 START_TEST(host_of_a_scenario_keeps_and_waits_for_silences)
 {

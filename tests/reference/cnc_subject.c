@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "cnc872/cnc_rig.h"
+#include "subject_input.h"
 
 static char xml[4000], nc[4000];
 
@@ -53,7 +54,7 @@ static void obey(const char *what, const char *name, long long value)
         ck_abort_msg("unexpected command %s", what);
 }
 
-START_TEST(input)
+static void obey_input(void)
 {
     char line[4000];
     while (fgets(line, sizeof line, stdin) != NULL && strcmp(line, "end\n") != 0) {
@@ -75,23 +76,8 @@ START_TEST(input)
         }
     }
 }
-END_TEST
 
-/* The rig asserts: it needs a test around it. */
 int main(void)
 {
-    Suite *suite = suite_create("cnc_subject");
-    TCase *only = tcase_create("input");
-    tcase_add_test(only, input);
-    suite_add_tcase(suite, only);
-    SRunner *runner = srunner_create(suite);
-    srunner_set_fork_status(runner, CK_NOFORK);
-    srunner_run_all(runner, CK_SILENT);
-    const int failed = srunner_ntests_failed(runner);
-    TestResult **results = srunner_failures(runner);
-    for (int i = 0; i < failed; i++)
-        fprintf(stderr, "cnc_subject: %s:%d: %s\n", tr_lfile(results[i]), tr_lno(results[i]), tr_msg(results[i]));
-    free(results);
-    srunner_free(runner);
-    return failed == 0 ? 0 : 1;
+    return run_subject("cnc_subject", obey_input);
 }

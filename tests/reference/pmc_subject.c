@@ -19,6 +19,7 @@
 #include <string.h>
 
 #include "pmc/pmc_rig.h"
+#include "subject_input.h"
 
 #define WANTS_MAX 4096u
 
@@ -123,29 +124,14 @@ static void read_command(const char *what)
     }
 }
 
-START_TEST(input)
+static void obey_input(void)
 {
     char what[8];
     while (scanf("%7s", what) == 1)
         read_command(what);
 }
-END_TEST
 
-/* The rig asserts: it needs a test around it. */
 int main(void)
 {
-    Suite *suite = suite_create("pmc_subject");
-    TCase *only = tcase_create("input");
-    tcase_add_test(only, input);
-    suite_add_tcase(suite, only);
-    SRunner *runner = srunner_create(suite);
-    srunner_set_fork_status(runner, CK_NOFORK);
-    srunner_run_all(runner, CK_SILENT);
-    const int failed = srunner_ntests_failed(runner);
-    TestResult **results = srunner_failures(runner);
-    for (int i = 0; i < failed; i++)
-        fprintf(stderr, "pmc_subject: %s:%d: %s\n", tr_lfile(results[i]), tr_lno(results[i]), tr_msg(results[i]));
-    free(results);
-    srunner_free(runner);
-    return failed == 0 ? 0 : 1;
+    return run_subject("pmc_subject", obey_input);
 }
