@@ -101,7 +101,7 @@ void cnc_put_settings(const struct device_config *config, json_t *object)
     for (const char *const *name = cnc_setting_names; *name; name++) {
         const struct cnc_text *text = own.text[kind_named(*name)];
         if (text)
-            json_object_set_new(object, *name, json_stringn(text->text, text->length));
+            json_object_set_new(object, *name, json_stringn_nocheck(text->text, text->length));
     }
 }
 

@@ -161,9 +161,9 @@ void pmc_put_settings(const struct device_config *config, json_t *object)
     json_object_set_new(object, "rep_counts", json_string(own.passes ? "passes" : "jumps"));
     json_object_set_new(object, "abs_needs_home", json_string(own.refuse ? "refuse" : "warn"));
     if (own.program)
-        json_object_set_new(object, "program", json_string(own.program));
+        json_object_set_new(object, "program", json_string_nocheck(own.program));
     if (own.parameters)
-        json_object_set_new(object, "parameters", json_string(own.parameters));
+        json_object_set_new(object, "parameters", json_string_nocheck(own.parameters));
 }
 
 /* A text of a recording; it has been checked when it was recorded, and is checked by each unit that loads it. */

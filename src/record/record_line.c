@@ -66,7 +66,7 @@ static bool put_settings(json_t *head, const struct sim *sim, bool outputs)
         if (json_array_append_new(nodes, json_integer(config->nodes.node[at])) != 0)
             return json_decref(nodes), false;
     return put_member(head, "rkm04_record", json_integer(RECORD_VERSION)) &&
-           put_member(head, "program", json_string("rkm04 " RKM04_VERSION)) &&
+           put_member(head, "emulator", json_string("rkm04 " RKM04_VERSION)) &&
            (kind == device_kind_at(0) || put_member(head, "device", json_string(kind->name))) &&
            put_member(head, "nodes", nodes) &&
            put_device(head, kind, &config->unit) &&

@@ -101,7 +101,7 @@ bool replay_differs(struct replay *replay, const struct replay_difference *diffe
     struct replay_difference first = *difference;
     if (first.unit >= 1 && first.unit <= sim_units(replay->head.sim))
         memcpy(first.name, replay->head.sim->unit[first.unit - 1u].name, sizeof first.name);
-    return replay_finish_different(&replay->result, &first, replay->head.program);
+    return replay_finish_different(&replay->result, &first, replay->head.emulator);
 }
 
 static void format_bytes(char *text, size_t size, const uint8_t *bytes, size_t length)

@@ -7,7 +7,7 @@
 #include "replay_state.h"
 #include "text/text.h"
 
-#define TEXT_MAX 255u               /* bytes of a version text */
+#define EMULATOR_MAX 255u           /* bytes of its name */
 #define KEY_SIZE 64u                /* bytes of a key */
 #define KEYS_MAX 64u                /* of a head */
 #define PLANT_MAX (1u << 20)        /* bytes */
@@ -108,7 +108,7 @@ static bool read_own(struct replay *replay, struct device_config *config)
         char *text;
         snprintf(hex_name, sizeof hex_name, "%s_hex", *name);
         if (json_object_get(replay->lines.json, hex_name)) {
-            if (!replay_text_of(replay, *name, TEXT_MAX, &text))
+            if (!replay_text_of(replay, *name, RECORD_HEAD_MAX, &text))
                 return false;
             json_object_set_new_nocheck(replay->head.settings, *name, json_string_nocheck(text));
             free(text);
@@ -143,10 +143,10 @@ static bool read_settings(struct replay *replay, struct sim_config *config)
 
 static bool has_known_keys(struct replay *replay)
 {
-    const char *names[KEYS_MAX] = {"rkm04_record", "program", "device", "nodes", "timed", "turnaround", "seed", "plant",
+    const char *names[KEYS_MAX] = {"rkm04_record", "emulator", "program", "device", "nodes", "timed", "turnaround", "seed", "plant",
                                    "plant_hex", "outputs"};
     char hex[KEYS_MAX][KEY_SIZE];
-    size_t count = 10;
+    size_t count = 11;
     for (const char *const *name = replay->head.device->settings; *name && count < KEYS_MAX - 2u; name++) {
         snprintf(hex[count], KEY_SIZE, "%s_hex", *name);
         names[count + 1u] = *name;
@@ -154,6 +154,18 @@ static bool has_known_keys(struct replay *replay)
         count += 2;
     }
     return replay_keys(replay, names);
+}
+
+/* Which emulator has made the recording. Older ones call it "program", which may be a setting of the device. */
+static bool read_emulator(struct replay *replay)
+{
+    const char *name = "program";
+    for (const char *const *own = replay->head.device->settings; *own; own++)
+        if (strcmp(*own, name) == 0)
+            name = "emulator";
+    if (json_object_get(replay->lines.json, "emulator"))
+        name = "emulator";
+    return replay_text_of(replay, name, EMULATOR_MAX, &replay->head.emulator);
 }
 
 static bool read_head(struct replay *replay, struct sim_config *config, char **plant)
@@ -165,7 +177,7 @@ static bool read_head(struct replay *replay, struct sim_config *config, char **p
         return replay_wrong(replay, NULL, "expected a recording, which begins with {\"rkm04_record\":1,");
     if (!replay_number(replay, "rkm04_record", RECORD_VERSION, RECORD_VERSION, DEVICE_NEVER, &version) ||
         !read_device(replay, config) || !has_known_keys(replay) ||
-        !replay_text_of(replay, "program", TEXT_MAX, &replay->head.program) || !read_settings(replay, config))
+        !read_emulator(replay) || !read_settings(replay, config))
         return false;
     return replay_text_of(replay, "plant", PLANT_MAX, plant);
 }
@@ -218,5 +230,5 @@ void replay_head_free(struct replay *replay)
     free(replay->head.sim);
     free(replay->head.flash);
     json_decref(replay->head.settings);
-    free(replay->head.program);
+    free(replay->head.emulator);
 }

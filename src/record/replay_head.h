@@ -12,7 +12,7 @@ struct replay_head {
     uint8_t *flash;             /* of all units, inverted */
     const struct device_kind *device;
     json_t *settings;           /* of the units */
-    char *program;              /* that recorded; NULL: not known */
+    char *emulator;             /* that recorded; NULL: not known */
     bool outputs;               /* the recording has them */
 };
 

@@ -60,9 +60,20 @@ static bool read_option(struct scenario_reader *reader, const struct device_opti
     size_t length;
     char *path = NULL, *text = scenario_file(reader, node, &path, &length);
     scenario->file[scenario->files++] = text;
-    bool is_right = text != NULL && option->read_file(config, path, text, length, reader->errors);
+    bool is_right = text != NULL && (!memchr(text, '\0', length) ||
+                                     config_error(node, "cannot read %s: expected text without the character 0", path));
+    is_right = is_right && option->read_file(config, path, text, length, reader->errors);
     free(path);
     return is_right;
+}
+
+/* Is a key one of the bus? `baud` of a device with several rates is read as that. */
+static bool is_known(const char *key)
+{
+    size_t at = 0;
+    while (known[at] && strcmp(known[at], key) != 0)
+        at++;
+    return known[at] != NULL;
 }
 
 /* All keys of the scenario, which have to be known; the options of the device are read. */
@@ -85,7 +96,7 @@ static bool read_options(struct scenario_reader *reader, const struct config_nod
     if (!config_keys(root, keys))
         return false;
     for (size_t i = 0; i < options; i++) {
-        const struct config_node *node = config_get(root, own[i]);
+        const struct config_node *node = is_known(own[i]) ? NULL : config_get(root, own[i]);
         const struct device_option *option = device_option_keyed(kind, own[i]);
         is_right = (node == NULL || read_option(reader, option, own[i], node)) && is_right;
     }

@@ -24,7 +24,7 @@ struct lines {
 };
 
 static const char head[] =
-    "{\"rkm04_record\":1,\"program\":\"rkm04\",\"nodes\":[1,2],\"framing\":\"hdlc\",\"timed\":true,\"turnaround\":521,"
+    "{\"rkm04_record\":1,\"emulator\":\"rkm04\",\"nodes\":[1,2],\"framing\":\"hdlc\",\"timed\":true,\"turnaround\":521,"
     "\"seed\":\"1\",\"outputs\":false}";
 
 /* What can come in, with parameters that are obeyed: mutants of these are near to them. */

@@ -279,9 +279,25 @@ START_TEST(an_input_that_differs_shows_where_it_leads_to_something_else)
 }
 END_TEST
 
-START_TEST(a_record_of_another_program_says_so_when_it_differs)
+START_TEST(no_setting_of_a_device_is_called_as_a_key_of_the_head)
+{
+    json_error_t error;
+    json_t *head = json_loads(simple.text, JSON_DISABLE_EOF_CHECK, &error);
+    ck_assert_ptr_nonnull(head);
+    for (const char *const *name = rkm04_device.settings; *name; name++)
+        json_object_del(head, *name);
+    ck_assert_ptr_nonnull(json_object_get(head, "nodes"));
+    for (unsigned at = 0; device_kind_at(at); at++)
+        for (const char *const *name = device_kind_at(at)->settings; *name; name++)
+            ck_assert_msg(!json_object_get(head, *name), "%s: %s", device_kind_at(at)->name, *name);
+    json_decref(head);
+}
+END_TEST
+
+START_TEST(a_record_of_another_emulator_says_so_when_it_differs)
 {
     expect_changed("rkm04 0", "rkm04 9", "same: ");
+    expect_changed("\"emulator\":", "\"program\":", "same: "); /* as it was called */
     char *text = strdup(simple.text);
     memcpy(strstr(text, "rkm04 0"), "rkm04 9", 7);
     memcpy(strstr(text, "\"position\":19"), "\"position\":18", 13);
@@ -381,7 +397,8 @@ static Suite *make_suite(void)
     tcase_add_test(differences, what_comes_and_was_not_recorded_is_a_difference);
     tcase_add_test(differences, what_was_recorded_and_does_not_come_is_a_difference);
     tcase_add_test(differences, an_input_that_differs_shows_where_it_leads_to_something_else);
-    tcase_add_test(differences, a_record_of_another_program_says_so_when_it_differs);
+    tcase_add_test(differences, no_setting_of_a_device_is_called_as_a_key_of_the_head);
+    tcase_add_test(differences, a_record_of_another_emulator_says_so_when_it_differs);
     tcase_add_test(differences, a_replay_ends_where_it_is_told_to);
     tcase_add_test(differences, a_replay_can_be_interrupted);
     tcase_add_test(differences, the_flash_and_the_plant_at_the_beginning_are_part_of_a_record);

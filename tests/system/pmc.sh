@@ -361,6 +361,40 @@ steps:
 END
     exits 0 "$RKM04" test "$folder/a.yaml"
     exits 0 "$RKM04" test "$(dirname "$0")/../../examples/pmc-drill.yaml"
+    printf '\0' >>"$folder/a.pmc"
+    exits 2 "$RKM04" test "$folder/a.yaml"
+    holds "$complained" "a.yaml:3:10: error: cannot read $folder/a.pmc: expected text without the character 0" "a zero in a file"
+}
+
+test_bytes_may_take_no_time() {
+    printf 'device: pmc-1hs\nbaud: 0\nsteps:\n  - {message: %s, answer: %s, within: 1ms}\n' "'\"POS\"'" "'\"POS 00000000\"'" \
+        >"$folder/a.yaml"
+    exits 0 "$RKM04" test "$folder/a.yaml"
+    sed -i 's/baud: 0/baud: 115200/; s/1ms/2ms/' "$folder/a.yaml"
+    exits 0 "$RKM04" test "$folder/a.yaml"
+    sed -i 's/baud: 115200/baud: 19201/' "$folder/a.yaml"
+    exits 2 "$RKM04" test "$folder/a.yaml"
+    holds "$complained" "a.yaml:2:7: error" "a wrong speed"
+}
+
+# A program that is longer than a name, with a comment that is not UTF-8.
+test_a_recording_has_the_files_of_its_unit() {
+    { printf '# h\341lka\n%0300d\n' 0 | sed '2s/^/# /'; printf 'X: 00 ABS 7 V3\nX: 01 END\n'; } >"$folder/a.pmc"
+    printf '[X]\nmultiplier = 20 # h\341lka\n' >"$folder/a.parameters"
+    cat >"$folder/a.yaml" <<'END'
+device: pmc-1hs
+program: a.pmc
+parameters: a.parameters
+steps:
+  - {call: pmc.run}
+  - wait: {motor: 1, position: 7}
+  - expect: {motor: 1, position: 8}
+END
+    exits 3 "$RKM04" test --records "$folder" "$folder/a.yaml"
+    rm "$folder/a.pmc" "$folder/a.parameters"
+    exits 0 "$RKM04" replay "$folder/a.record"
+    holds "$said" "the same" "the replay"
+    holds "$said" "7 pulses" "the replay"
 }
 
 test_the_wire_log_says_what_frames_mean() {
