@@ -143,8 +143,8 @@ static bool read_settings(struct replay *replay, struct sim_config *config)
 
 static bool has_known_keys(struct replay *replay)
 {
-    const char *names[KEYS_MAX] = {"rkm04_record", "emulator", "program", "device", "nodes", "timed", "turnaround", "seed", "plant",
-                                   "plant_hex", "outputs"};
+    const char *names[KEYS_MAX] = {"rkm04_record", "emulator", "program", "device", "nodes", "timed", "turnaround", "seed",
+                                   "plant", "plant_hex", "outputs"};
     char hex[KEYS_MAX][KEY_SIZE];
     size_t count = 11;
     for (const char *const *name = replay->head.device->settings; *name && count < KEYS_MAX - 2u; name++) {

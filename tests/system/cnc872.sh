@@ -83,7 +83,7 @@ test_options_may_come_in_any_order() {
 # Texts that are not UTF-8, and together longer than a line of a recording may be otherwise.
 test_a_recording_has_the_files_of_its_machine() {
     local name
-    { printf '<?xml version="1.0"?>\n<!-- h\341lka'; printf '%0900000d' 0; printf ' -->\n'; sed 1d "$example/mill.xml"; } >"$folder/a.xml"
+    { printf '<?xml version="1.0"?>\n<!-- h\341lka %0900000d -->\n' 0; sed 1d "$example/mill.xml"; } >"$folder/a.xml"
     { printf '; h\341lka %0900000d\n' 0; cat "$example/mill.plc"; } >"$folder/a.plc"
     { cat "$example/part.nc"; yes $'(h\341)' | head -n 200000; } >"$folder/a.nc"
     sed "s/mill\.plc/a.plc/; s/mill\.xml/a.xml/; s/part\.nc/a.nc/; \$a\  - expect: {motor: 1, position: 1}" "$example/part.yaml" \
