@@ -136,15 +136,19 @@ dialogue() {
     same "$wanted" "$(hear_bytes "$1" $((${#wanted} / 2)))" "$4"
 }
 
+# The end of a case: of its processes and folders. What a sanitizer has found in a process, at its end too (leaks), is a failure.
 leave() {
-    local process
+    local process found=
     for process in ${processes[@]+"${processes[@]}"}; do
         kill "$process" 2>/dev/null
     done
     for process in ${processes[@]+"${processes[@]}"}; do
         wait "$process" 2>/dev/null
+        (($? == 99)) && found+=" $process"
     done
+    [[ -z $found ]] || (fail "a sanitizer has ended:$found")
     rm -rf "$folder" "$folder.runtime"
+    [[ -z $found ]] || exit 1
 }
 
 run_case() {
