@@ -265,6 +265,10 @@ static json_t *command_fault_inject(struct sim *sim, const json_t *params, struc
     struct fault fault = {0};
     if (!read_kind(params, &fault, refusal))
         return NULL;
+    const char *lacking = fault_lacks(fault.kind, sim_device(sim));
+    if (lacking)
+        return refuse(refusal, REFUSED_STATE, "%s: the device %s %s", fault_kind_name(fault.kind), sim_device(sim)->name,
+                      lacking);
     if (!check_names(params, fault.kind, refusal) || !read_opportunities(params, &fault, refusal) ||
         !read_window(sim, params, &fault, refusal) || !read_interval(params, &fault, refusal) ||
         !read_unit_and_direction(sim, params, &fault, refusal) || !readers[fault.kind](params, &fault, refusal))
@@ -390,8 +394,7 @@ static json_t *command_fault_list(struct sim *sim, const json_t *params, struct 
 static json_t *command_fault_kinds(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {NULL};
-    (void)sim;
-    return params_known(params, names, refusal) ? fault_kinds_json() : NULL;
+    return params_known(params, names, refusal) ? fault_kinds_json(sim_device(sim)) : NULL;
 }
 
 const struct command_method fault_methods[] = {

@@ -74,11 +74,21 @@ static json_t *list_json(const struct fault_parameter *parameter)
     return list;
 }
 
-json_t *fault_kinds_json(void)
+const char *fault_lacks(enum fault_kind kind, const struct device_kind *device)
+{
+    if (kind == FAULT_FLASH || kind == FAULT_POWER)
+        return device->flash_blocks > 0 ? NULL : "has no flash";
+    if (kind == FAULT_INPUT)
+        return device->inputs > 0 ? NULL : "has no inputs";
+    return device->receive ? NULL : "has no bus";
+}
+
+json_t *fault_kinds_json(const struct device_kind *device)
 {
     json_t *kinds = json_array();
     for (unsigned kind = 0; kind < FAULT_KINDS; kind++)
-        json_array_append_new(kinds, json_pack("{s:s, s:o}", "kind", fault_kind_name((enum fault_kind)kind), "parameters",
-                                               list_json(parameters[kind])));
+        if (!fault_lacks((enum fault_kind)kind, device))
+            json_array_append_new(kinds, json_pack("{s:s, s:o}", "kind", fault_kind_name((enum fault_kind)kind), "parameters",
+                                                   list_json(parameters[kind])));
     return json_pack("{s:o, s:o}", "kinds", kinds, "common", list_json(fault_common_parameters));
 }

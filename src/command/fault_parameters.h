@@ -7,6 +7,7 @@
 #include <jansson.h>
 #include <stdbool.h>
 
+#include "device/device.h"
 #include "fault/fault.h"
 
 struct fault_parameter {
@@ -30,7 +31,10 @@ extern const struct fault_parameter fault_common_parameters[];
 /* Has the kind a parameter of its own with this name? */
 bool fault_takes(enum fault_kind kind, const char *name);
 
-/* The answer of fault.kinds. New reference; NULL: out of memory. */
-json_t *fault_kinds_json(void);
+/* What units of this device lack, so that the kind can never act: "has no bus". NULL: it can act. */
+const char *fault_lacks(enum fault_kind kind, const struct device_kind *device);
+
+/* The answer of fault.kinds for units of this device. New reference; NULL: out of memory. */
+json_t *fault_kinds_json(const struct device_kind *device);
 
 #endif

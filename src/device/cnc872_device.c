@@ -350,6 +350,7 @@ const struct device_kind cnc872_device = {
     .ticks_per_us = 1,
     .slot = CNC_TICKS_PER_T,
     .pulse = 1,
+    .has_no_steps = true,
     .is_program_whole = true,
     .flash_blocks = CNC_BACKUP_BLOCKS,
     .flash_block_size = CNC_BACKUP_BLOCK,

@@ -312,6 +312,7 @@ struct device_kind {
     unsigned ticks_per_us;
     unsigned slot;           /* us of the period in which it reads inputs and executes commands */
     unsigned pulse;          /* us of a step pulse; see pulse_ticks */
+    bool has_no_steps;       /* its axes make no steps and drive no coils: a plant has nothing to follow */
     unsigned speed_max;      /* steps/s that an axis can reach, so that plants can follow; 0: at most 128 000 */
     /* Speed of the bus with these settings, 9600..115200 baud, a divisor of 115200. NULL: DEVICE_BAUD. */
     unsigned (*baud)(const struct device_config *config);

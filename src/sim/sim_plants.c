@@ -56,6 +56,8 @@ static bool read_plants(struct sim *sim, const struct config_node *root, struct 
     static const char *const names[] = {"units", "motors", "switches", NULL};
     static const char *const only[] = {"units", NULL};
     const struct config_node *units = config_type(root) == CONFIG_MAP ? config_get(root, "units") : NULL;
+    if (sim_device(sim)->has_no_steps)
+        return config_error(root, "the axes of a %s make no steps that a plant could follow", sim_device(sim)->name);
     if (config_type(root) != CONFIG_MAP)
         return config_error(root, "expected a plant: motors and switches");
     if (units)

@@ -203,8 +203,9 @@ static void on_ended(void *context)
 static bool is_allowed(const struct window *window, const char *method)
 {
     static const char *const methods[] = {
-        "units", "state", "ready", "motor.program", "di.set", "reset", "power", "switch", "clock", "advance", "trace.start",
-        "trace.stop", "plant.get", "plant.set", "fault.inject", "fault.clear", "fault.list", "fault.kinds", "snapshot", "restore",
+        "units", "device", "state", "ready", "motor.program", "di.set", "reset", "power", "switch", "clock", "advance",
+        "trace.start", "trace.stop", "plant.get", "plant.set", "fault.inject", "fault.clear", "fault.list", "fault.kinds",
+        "snapshot", "restore",
     };
     for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
         if (strcmp(methods[i], method) == 0)

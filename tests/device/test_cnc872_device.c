@@ -291,6 +291,38 @@ START_TEST(NL2_conditions_see_cells_that_change_while_nothing_happens)
 }
 END_TEST
 
+/* The names of the kinds of faults, as {"kinds": [{"kind": NAME, ...}]} has them. */
+static void expect_kinds(const char *wanted)
+{
+    char names[200] = "";
+    size_t at;
+    json_t *kind, *result = fake_rig_command(&rig, "fault.kinds", "{}");
+    json_array_foreach(json_object_get(result, "kinds"), at, kind) {
+        strncat(names, json_string_value(json_object_get(kind, "kind")), sizeof names - strlen(names) - 1u);
+        strncat(names, " ", sizeof names - strlen(names) - 1u);
+    }
+    ck_assert_str_eq(names, wanted);
+    json_decref(result);
+}
+
+START_TEST(NU1_a_cnc_has_neither_bus_nor_inputs_nor_steps)
+{
+    expect_result("device", "{}", "\"bus\":false,\"plant\":false");
+    expect_kinds("flash power ");
+    fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"drop\"}", "drop: the device cnc872 has no bus");
+    fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"cable\"}", "cable: the device cnc872 has no bus");
+    fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"input\", \"input\": 1, \"level\": 1}",
+                            "input: the device cnc872 has no inputs");
+    fake_rig_do(&rig, "fault.inject", "{\"kind\": \"flash\"}");
+    fake_rig_expect_refusal(&rig, "plant.set", "{\"plant\": {\"motors\": {\"1\": {\"turn\": 400}}}}",
+                            "the axes of a cnc872 make no steps that a plant could follow");
+    fake_rig_do(&rig, "plant.set", "{\"plant\": null}");
+    fake_rig_end(&rig);
+    fake_rig_begin(&rig, "1", true);
+    expect_result("device", "{}", "\"bus\":true,\"plant\":true");
+}
+END_TEST
+
 static Suite *cnc872_device_suite(void)
 {
     Suite *suite = suite_create("cnc872_device");
@@ -310,6 +342,7 @@ static Suite *cnc872_device_suite(void)
     tcase_add_test(tests, NL2_the_cnc_tells_what_happens);
     tcase_add_test(tests, NL1_a_real_that_is_no_number_is_null);
     tcase_add_test(tests, NO3_the_backup_memory_outlives_power);
+    tcase_add_test(tests, NU1_a_cnc_has_neither_bus_nor_inputs_nor_steps);
     suite_add_tcase(suite, tests);
     return suite;
 }

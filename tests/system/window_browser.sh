@@ -38,6 +38,11 @@ test_the_panel_of_a_CNC872_moves_its_axes_and_draws_their_path() {
     soon "the unit is ready" ready bus
     drive_with cnc "$folder/bus.control"
 }
+test_a_device_without_a_bus_shows_what_it_has() {
+    start bus "$RKM04" serve --device cnc872 --control "$folder/bus.control"
+    soon "the unit is ready" ready bus
+    drive_with nobus "$folder/bus.control"
+}
 test_the_panel_of_a_PMC_does_what_its_maker_s_window_does() {
     serve bus --device pmc-2hs
     drive_with pmc "$folder/bus.control"

@@ -45,6 +45,8 @@ export async function readKinds() {
     told = answer;
 }
 
+export const hasFaults = () => told.kinds.length > 0;
+
 // `emulator` gives what is attached at the time.
 export function showFaultForm(act, emulator) {
   const form = $("fault"), names = told.kinds.map((one) => one.kind);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The page: views, keys, language and colours, the connection.
-import { connect, on, ask } from "./link.js";
+import { call, connect, on, ask } from "./link.js";
 import { setLanguage, word } from "./words.js";
 import * as service from "./service.js";
 import * as panel from "./panel.js";
@@ -70,12 +70,16 @@ document.addEventListener("keydown", (event) => {
   }
 });
 
+let isOpened = false;
 on("open", async () => {
   const hello = await ask("hello");
   if (!hello.port)
     return;
   service.begin(hello);
   panel.begin(hello);
+  if (!isOpened && !hello.port.port && hello.emulator.control && (await call("device")).bus === false)
+    showTab("panel"); // there is nothing to be opened in the other view
+  isOpened = true;
 });
 on("close", () => service.say(word("lost"), true));
 history.replaceState(null, "", location.pathname); // the token does not stay in the address

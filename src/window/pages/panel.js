@@ -4,7 +4,7 @@ import { ask, call, on } from "./link.js";
 import { word } from "./words.js";
 import { UnitView } from "./unit.js";
 import { describeAnswer, describeRequest, fromHex, spaced, text } from "./decode.js";
-import { readKinds, showFaultForm, showFaults } from "./faults.js";
+import { hasFaults, readKinds, showFaultForm, showFaults } from "./faults.js";
 import { make, write } from "./make.js";
 
 const $ = (id) => document.getElementById(id);
@@ -35,6 +35,17 @@ function showEmulators() {
     : emulator.control && !emulator.connected && emulator.trouble ? `${word("ended")} ${emulator.trouble}` : "";
 }
 
+// The page shows what the units have: a bus, faults that can act, axes that a plant can follow.
+function showParts() {
+  const has = (part) => emulator.device?.[part] !== false;
+  $("dialogue-part").hidden = !has("bus");
+  for (const option of $("record-kind").options)
+    option.hidden = option.disabled = !has("bus") && ["pcapng", "log"].includes(option.value);
+  $("faults-part").hidden = !hasFaults();
+  $("plant-part").hidden = !has("plant");
+  $("made").hidden = $("faults-part").hidden && $("plant-part").hidden;
+}
+
 const identity = ({ control, bus, units, device }) => [control, bus, units.join(), device?.name].join("\n");
 
 function showEmulator(now) {
@@ -53,7 +64,10 @@ function showEmulator(now) {
   }
   if (!now.connected)
     return;
-  readKinds().then(() => showFaultForm(act, () => emulator));
+  readKinds().then(() => {
+    showFaultForm(act, () => emulator);
+    showParts();
+  });
   showFaults(act);
 }
 

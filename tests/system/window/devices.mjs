@@ -173,6 +173,19 @@ export const cases = {
     await page.screenshot({ path: `${pictures || folder}/window-cib.png`, fullPage: true });
   },
 
+  // What a device without a bus has, and what not: no dialogue, no faults of a bus, no plant; the panel is shown at first.
+  async nobus(page) {
+    await shows(page, "#inside", "!element.hidden && document.getElementById('service').hidden");
+    await shows(page, "#fault select[name=kind] option");
+    assert.deepEqual(await page.locator("#fault select[name=kind] option").allTextContents(), ["flash", "power"]);
+    for (const part of ["#dialogue", "#plant-open", "#plant-none"])
+      assert.equal(await page.locator(part).isVisible(), false, part);
+    const kinds = await page.locator("#record-kind option:not([hidden])").allTextContents();
+    assert.deepEqual(kinds, ["csv", "vcd", "jsonl"]);
+    await page.click("#tab-service"); // it stays reachable
+    await shows(page, "#service", "!element.hidden");
+  },
+
   // Axes, keys that are held, START and STOP, pots, switches, cells, the path.
   async cnc(page) {
     await openPanel(page);
