@@ -41,3 +41,24 @@ def test_messages_of_modbus_are_exchanged(timed):
         with pytest.raises(rkm04.NoAnswerError):
             bus.exchange(3, bytes.fromhex("03 04 4E 00 02"), limit="100ms")
         assert [exchange.node for exchange in bus.dialogue] == [2, 1, 3]
+
+
+def test_texts_are_in_the_flash_of_the_unit():
+    settings = {"program": "X: 00 ABS 7 V3\nX: 01 END\n", "parameters": "[X]\nmultiplier = 20\n"}
+    with rkm04.Bus(device="pmc-1hs", settings=settings) as bus:
+        bus.call("pmc.run")
+        bus.wait(motor=1, position=7, limit="1s")
+        assert "multiplier = 20\n" in bus.call("pmc.parameters")["text"]
+
+
+@pytest.mark.parametrize("name, text, said", [
+    ("program", "X: 99 NOP\n", "program:1:4: error: expected"),
+    ("program", "X: 00 END # \0\n", 'expected "program", a text without the character 0'),
+    ("program", 7, 'expected "program", a text'),
+    ("program", "Y: 00 END\n", "program:1:1: error: expected"),
+    ("parameters", "[X]\nmultiplier = 0\n", "parameters:2:"),
+])
+def test_a_wrong_text_is_refused(name, text, said):
+    with pytest.raises(rkm04.RefusedError) as error:
+        rkm04.Bus(device="pmc-1hs", settings={name: text})
+    assert said in str(error.value)

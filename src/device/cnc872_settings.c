@@ -107,24 +107,8 @@ void cnc_put_settings(const struct device_config *config, json_t *object)
 
 bool cnc_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE])
 {
-    char *lines = NULL;
-    size_t size = 0;
-    FILE *errors;
-    if (!value)
-        return true;
-    if (!json_is_string(value)) {
-        snprintf(error, DEVICE_ERROR_SIZE, "expected \"%s\", a text", name);
-        return false;
-    }
-    errors = open_memstream(&lines, &size);
-    const bool is_right = errors && take_text(config, kind_named(name), name, json_string_value(value),
-                                              json_string_length(value), errors);
-    if (errors)
-        fclose(errors);
-    if (!is_right)
-        snprintf(error, DEVICE_ERROR_SIZE, "%.*s", lines ? (int)strcspn(lines, "\n") : 13, lines ? lines : "out of memory");
-    free(lines);
-    return is_right;
+    const struct device_option *option = device_option_named(&cnc872_device, name);
+    return device_read_content(option, config, value, error);
 }
 
 const char *cnc_settings_difference(const struct device_config *a, const struct device_config *b)

@@ -476,6 +476,11 @@ const char *device_output_names(const struct device_kind *kind, char text[DEVICE
 const struct device_option *device_option_named(const struct device_kind *kind, const char *name);
 const struct device_option *device_option_keyed(const struct device_kind *kind, const char *key);
 
+/* Read a setting (`value`, NULL: it is not there) that stands for the content of the file of an option. Returns false and what
+ * is wrong: the first message of the option's read_file(). */
+bool device_read_content(const struct device_option *option, struct device_config *config, const json_t *value,
+                         char error[DEVICE_ERROR_SIZE]);
+
 /* ---- Command lines: device_arguments.c --------------------------------------------------------------------------------- */
 
 struct argp; /* argp.h */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The table of kinds of devices. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "device.h"
@@ -73,6 +74,39 @@ const struct device_option *device_option_keyed(const struct device_kind *kind, 
         if (is_key(key, option->name))
             return option;
     return NULL;
+}
+
+/* The first error among messages, warnings too, a line each. NULL: memory is short. */
+static void keep_error(const char *lines, char error[DEVICE_ERROR_SIZE])
+{
+    const char *at = lines ? strstr(lines, ": error: ") : NULL;
+    while (at && at > lines && at[-1] != '\n')
+        at--;
+    at = at ? at : lines ? lines : "out of memory";
+    snprintf(error, DEVICE_ERROR_SIZE, "%.*s", (int)strcspn(at, "\n"), at);
+}
+
+bool device_read_content(const struct device_option *option, struct device_config *config, const json_t *value,
+                         char error[DEVICE_ERROR_SIZE])
+{
+    const char *text = json_string_value(value);
+    const size_t length = json_string_length(value);
+    char *lines = NULL;
+    size_t size = 0;
+    if (!value)
+        return true;
+    if (!text || memchr(text, '\0', length)) {
+        snprintf(error, DEVICE_ERROR_SIZE, "expected \"%s\", a text%s", option->name, text ? " without the character 0" : "");
+        return false;
+    }
+    FILE *errors = open_memstream(&lines, &size);
+    const bool is_right = errors && option->read_file(config, option->name, text, length, errors);
+    if (errors)
+        fclose(errors);
+    if (!is_right)
+        keep_error(lines, error);
+    free(lines);
+    return is_right;
 }
 
 /* ---- Framing -------------------------------------------------------------------------------------------------------- */

@@ -393,7 +393,7 @@ static const char *const outputs_2hs[] = {"x.out0", "x.out1", "y.out0", "y.out1"
     .command_text = command_text, .set_text = set_text, .is_stuck = is_stuck, .state_name = pmc_state_name, \
     .fault_name = pmc_fault_name, .led_name = led_name, .state = pmc_json_state, .describe = pmc_json_describe, \
     .methods = pmc_methods, .services = pmc_services, .settings = pmc_setting_names, .put_settings = pmc_put_settings, \
-    .read_setting = pmc_read_setting, .unlike = pmc_settings_difference, .framing = pmc_framing, .words = &pmc_words, \
+    .unlike = pmc_settings_difference, .framing = pmc_framing, .words = &pmc_words, \
     .repeat_size = sizeof(struct pmc_repeat), .find_repeat = pmc_find_repeat, .is_endless = is_endless
 
 const struct device_kind pmc_1hs_device = {
@@ -408,6 +408,7 @@ const struct device_kind pmc_1hs_device = {
     .begin = begin_1hs,
     .check_text = check_text_1hs,
     .options = pmc_1hs_options,
+    .read_setting = pmc_read_setting_1hs,
 };
 
 const struct device_kind pmc_2hs_device = {
@@ -422,4 +423,5 @@ const struct device_kind pmc_2hs_device = {
     .begin = begin_2hs,
     .check_text = check_text_2hs,
     .options = pmc_2hs_options,
+    .read_setting = pmc_read_setting_2hs,
 };

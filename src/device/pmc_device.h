@@ -37,7 +37,8 @@ struct pmc_config pmc_config_of(const struct device_config *config, unsigned axe
 extern const struct device_option pmc_1hs_options[], pmc_2hs_options[];
 extern const char *const pmc_setting_names[];
 void pmc_put_settings(const struct device_config *config, json_t *object);
-bool pmc_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
+bool pmc_read_setting_1hs(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
+bool pmc_read_setting_2hs(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
 const char *pmc_settings_difference(const struct device_config *a, const struct device_config *b);
 
 /* ---- pmc_device_files.c ---------------------------------------------------------------------------------------------------- */

@@ -166,16 +166,8 @@ void pmc_put_settings(const struct device_config *config, json_t *object)
         json_object_set_new(object, "parameters", json_string_nocheck(own.parameters));
 }
 
-/* A text of a recording; it has been checked when it was recorded, and is checked by each unit that loads it. */
-static bool read_content(struct device_config *config, bool is_program, const char *text)
-{
-    struct pmc_own own = pmc_own_of(config);
-    *(is_program ? &own.program : &own.parameters) = text;
-    put_own(config, &own);
-    return text != NULL;
-}
-
-bool pmc_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE])
+static bool read_setting(const struct device_kind *kind, struct device_config *config, const char *name, const json_t *value,
+                         char error[DEVICE_ERROR_SIZE])
 {
     static const struct {
         const char *name;
@@ -184,8 +176,11 @@ bool pmc_read_setting(struct device_config *config, const char *name, const json
                    {"abs_needs_home", read_abs}};
     char number[32];
     const char *text = json_string_value(value);
+    const struct device_option *option = device_option_keyed(kind, name);
     if (!value)
         return true;
+    if (option->read_file)
+        return device_read_content(option, config, value, error);
     if (json_is_integer(value)) {
         snprintf(number, sizeof number, "%lld", (long long)json_integer_value(value));
         text = number;
@@ -193,11 +188,18 @@ bool pmc_read_setting(struct device_config *config, const char *name, const json
     for (size_t i = 0; text && i < sizeof readers / sizeof *readers; i++)
         if (strcmp(readers[i].name, name) == 0)
             return readers[i].read(config, text, error);
-    bool is_program = strcmp(name, "program") == 0;
-    if ((is_program || strcmp(name, "parameters") == 0) && json_is_string(value))
-        return read_content(config, is_program, text);
     snprintf(error, DEVICE_ERROR_SIZE, "expected \"%s\", a text or a number", name);
     return false;
+}
+
+bool pmc_read_setting_1hs(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE])
+{
+    return read_setting(&pmc_1hs_device, config, name, value, error);
+}
+
+bool pmc_read_setting_2hs(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE])
+{
+    return read_setting(&pmc_2hs_device, config, name, value, error);
 }
 
 const char *pmc_settings_difference(const struct device_config *a, const struct device_config *b)
