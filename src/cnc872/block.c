@@ -36,8 +36,7 @@ static void publish_motion(struct cnc *cnc)
 {
     struct cnc_machine *machine = &cnc->machine;
     struct cnc_move *move = &cnc->move;
-    if (move->section.count > 0 && machine->block > move->section.first &&
-        machine->block - move->section.first < move->section.count)
+    if (move->section.count > 0)
         move->segment = (uint8_t)(machine->block - move->section.first);
     else
         cnc_prepare_motion(cnc);
@@ -270,7 +269,7 @@ void cnc_run_machine(struct cnc *cnc)
     if (!started && !machine->is_stopped)
         advance_block(cnc);
     else if (machine->is_stopped && machine->annulment == CNC_ANNULMENT_NONE && machine->phase != CNC_MOVE &&
-             machine->phase != CNC_IDLE && !cnc_path_moves(cnc))
+             !cnc_path_moves(cnc))
         confirm_stop(cnc);
     if (machine->annulment == CNC_ANNULMENT_ASKED && !cnc_axes_move(cnc)) {
         begin_annulment(cnc);

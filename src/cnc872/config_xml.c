@@ -253,12 +253,13 @@ static void put_standards(union reading *reading, enum element element)
             (void)put_value(reading, &rows[i], &(struct cnc_piece){rows[i].standard, strlen(rows[i].standard), 0, 0});
 }
 
+/* The value of an attribute of the present element, which has one of this name; NULL: it is not given. */
 static const struct cnc_piece *given(const struct reader *reader, const char *name)
 {
-    for (unsigned i = 0; i < ROWS; i++)
-        if (rows[i].element == elements[reader->open[reader->depth - 1]].element && strcmp(rows[i].name, name) == 0)
-            return reader->given[i].text != NULL ? &reader->given[i] : NULL;
-    return NULL;
+    unsigned i = 0;
+    while (rows[i].element != elements[reader->open[reader->depth - 1]].element || strcmp(rows[i].name, name) != 0)
+        i++;
+    return reader->given[i].text != NULL ? &reader->given[i] : NULL;
 }
 
 /* ---- What elements say --------------------------------------------------------------------------------------------- */

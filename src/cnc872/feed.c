@@ -13,20 +13,18 @@ struct cnc_override cnc_feed_override(const struct cnc *cnc)
                                  (uint32_t)cnc_number(&cnc->cells, CNC_CELL_FEED_OVR_MULTIPLIER, 0)};
 }
 
-/* a * b / divisor, rounded down; CNC_SPEED_LIMIT at most. */
+/* a * b / divisor, which is below 2^64, rounded down; CNC_SPEED_LIMIT at most. */
 static int64_t scale(uint64_t a, uint64_t b, uint64_t divisor)
 {
-    const struct wide product = wide_product(a, b);
     uint64_t rest;
-    if (product.high >= divisor)
-        return CNC_SPEED_LIMIT;
-    const uint64_t result = wide_divide(product, divisor, &rest);
+    const uint64_t result = wide_divide(wide_product(a, b), divisor, &rest);
     return result < (uint64_t)CNC_SPEED_LIMIT ? (int64_t)result : CNC_SPEED_LIMIT;
 }
 
 int64_t cnc_feed_speed(int64_t feed, struct cnc_override override, int64_t speed)
 {
-    /* 16 384 / 15 u/T a mm/min; 10^15 = 2^15 * 5^15 of millionths and three factors of per mille. */
+    /* 16 384 / 15 u/T a mm/min; 10^15 = 2^15 * 5^15 of millionths and three factors of per mille. 10^12 (F) * 2^31 (speed) *
+     * 2^32 (overrides) / divisor is 1.1 * 10^19. */
     const uint64_t divisor = UINT64_C(30) * 30517578125;
     if (feed <= 0 || speed <= 0)
         return 0;

@@ -111,7 +111,7 @@ static void move_axis(struct cnc *cnc, unsigned i, bool may_move, bool rapid)
     const int64_t target = request == axis->direction && !is_held ? find_speed(cnc, i, rapid) : 0;
     const int64_t v = cnc_step_single(cnc, i, target, is_held || (cnc->manual_emergency & bit) != 0);
     cnc_set(cnc, CNC_BIT_PO_OSxPI + i, v > 0);
-    if (v == 0 && (target == 0 || cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) != 0))
+    if (v == 0)
         cnc_end_single(cnc, i);
 }
 

@@ -42,7 +42,7 @@ struct cnc_nc_block {
     uint8_t motion;  /* enum cnc_motion in force; CNC_MOTION_NONE in a block without axes */
     uint8_t modes;
     bool has_speed;  /* S is programmed in this block */
-    uint8_t m[CNC_M_GROUPS + 1]; /* the function of each group that is programmed here, or CNC_NC_NO_M */
+    uint8_t m[CNC_M_GROUPS + 1]; /* the function of each group that is programmed here, or CNC_NC_NO_M; so is m[0] */
 };
 
 struct cnc_nc_program {

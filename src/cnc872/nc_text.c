@@ -218,7 +218,7 @@ static bool take_g(struct reader *reader, uint32_t column, unsigned g)
         put_mode(&reader->modal, CNC_NC_PER_REVOLUTION, value);
     else if (group == G_SPEED)
         put_mode(&reader->modal, CNC_NC_CONSTANT_CUT, value);
-    else if (line->delay_column == 0)
+    else
         line->delay_column = column;
     return true;
 }
@@ -272,7 +272,7 @@ static bool read_word(struct reader *reader)
     reader->at++;
     skip_blank(reader);
     int index = row->has_index ? read_index(reader, row) : 0;
-    if (index < 0 || (letter == 'A' && index < 3))
+    if (index < 0)
         return fail(reader, column, letter == 'A'   ? "expected A4= to A16="
                                     : letter == 'I' ? "expected I0= to I4="
                                                     : "expected R0= to R4=");

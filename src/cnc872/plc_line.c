@@ -47,10 +47,10 @@ static void read_arguments(struct cnc_plc_line *line, const char *at, const char
 {
     line->arguments = 0;
     skip_blanks(&at, end);
-    while (at < end && line->arguments < CNC_ARGUMENTS_MAX) {
+    while (at < end) { /* the last one takes the rest */
         const char *comma = line->arguments + 1 < CNC_ARGUMENTS_MAX ? find_mark(at, end, ',') : end;
         line->argument[line->arguments++] = without_blanks(at, comma);
-        if (comma + 1 == end && line->arguments < CNC_ARGUMENTS_MAX) /* nothing behind the last comma */
+        if (comma + 1 == end) /* nothing behind the last comma */
             line->argument[line->arguments++] = (struct cnc_word){end, 0};
         at = comma < end ? comma + 1 : end;
     }

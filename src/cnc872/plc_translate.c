@@ -10,18 +10,8 @@ static const struct cnc_word no_word = {"", 0};
 
 static void wrong_at(struct translator *translator, unsigned line, unsigned column, const char *reason, struct cnc_word word)
 {
-    char before[100];
-    size_t length = strlen(reason);
-
-    if (!translator->is_second)
-        return;
-    if (length > sizeof before - 3)
-        length = sizeof before - 3;
-    memcpy(before, reason, length);
-    before[length] = 0;
-    if (word.length > 0)
-        memcpy(before + length, " `", 3);
-    cnc_text_fail(&translator->errors, line, column, before, word.text, word.length, word.length > 0 ? "'" : "");
+    if (translator->is_second)
+        cnc_text_fail_at(&translator->errors, line, column, reason, word.text, word.length);
 }
 
 void cnc_plc_wrong(struct translator *translator, const char *reason, struct cnc_word word)

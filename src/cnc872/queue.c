@@ -77,7 +77,7 @@ static double criterial_feed(const struct cnc *cnc, uint32_t index)
 {
     const struct cnc_section *section = &cnc->move.section;
     int64_t lowest = CNC_SPEED_LIMIT;
-    if (section->count == 0 || index <= section->first || index - section->first >= section->count)
+    if (index <= section->first || index - section->first >= section->count)
         return 0;
     for (uint32_t k = index - section->first - 1; k <= index - section->first; k++) {
         const struct cnc_nc_block *block = &cnc->program->blocks[section->first + k];
@@ -106,7 +106,7 @@ static int64_t function_in_force(const struct cnc *cnc, unsigned n, unsigned gro
         if (index != CNC_NO_BLOCK && cnc->program->blocks[index].m[group] != CNC_NC_NO_M)
             m = cnc->program->blocks[index].m[group];
     }
-    return group == 0 || m == CNC_NC_NO_M ? 0 : bcd(m);
+    return m == CNC_NC_NO_M ? 0 : bcd(m);
 }
 
 static bool moves_axis(const struct cnc *cnc, unsigned n, unsigned axis)
@@ -130,7 +130,7 @@ int64_t cnc_queue_number(const struct cnc *cnc, unsigned n, enum cnc_queue_field
     const bool is_selected = at == cnc->machine.selected;
     switch (field) {
     case CNC_QUEUE_Mn:
-        return index > 0 && block->m[index] != CNC_NC_NO_M;
+        return block->m[index] != CNC_NC_NO_M;
     case CNC_QUEUE_FirstBlock:
         return at == 0;
     case CNC_QUEUE_LastBlock:
@@ -176,7 +176,7 @@ int64_t cnc_queue_number(const struct cnc *cnc, unsigned n, enum cnc_queue_field
     }
 }
 
-/* Fields that follow from the way of BLK[n]. */
+/* Fields that follow from the way of BLK[n]: BlockLen, FeedMax, ParabAccel, LinearAccel. */
 static double way_field(const struct cnc *cnc, unsigned n, enum cnc_queue_field field)
 {
     struct cnc_segment segment;
@@ -225,12 +225,7 @@ double cnc_queue_real(const struct cnc *cnc, unsigned n, enum cnc_queue_field fi
         return (double)cnc_nc_value(program, block->speed_limit) / 1e6;
     case CNC_QUEUE_ConstCuttingSpeed: /* m/min in the text, mm/min here */
         return (double)cnc_nc_value(program, block->cutting_speed) / 1000.0;
-    case CNC_QUEUE_BlockLen:
-    case CNC_QUEUE_FeedMax:
-    case CNC_QUEUE_ParabAccel:
-    case CNC_QUEUE_LinearAccel:
-        return way_field(cnc, n, field);
     default:
-        return 0;
+        return way_field(cnc, n, field);
     }
 }

@@ -27,4 +27,8 @@ struct cnc_text_errors {
 void cnc_text_fail(struct cnc_text_errors *errors, uint32_t line, uint32_t column, const char *before, const char *piece,
                    size_t length, const char *after);
 
+/* The same with the bytes in quotes behind the reason, "unknown instruction `TIM'"; without any the reason alone. */
+void cnc_text_fail_at(struct cnc_text_errors *errors, uint32_t line, uint32_t column, const char *reason, const char *piece,
+                      size_t length);
+
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "plc_rig.h"
+#include "text_rig.h"
 
 struct plc_rig rig;
 
@@ -47,7 +48,7 @@ static void report_error(void *context, const struct cnc_text_error *error)
 bool rig_translate(const char *text)
 {
     memset(&rig, 0, sizeof rig);
-    return cnc_translate_plc(text, strlen(text), &rig.program, report_error, &rig);
+    return cnc_translate_plc(text_before_hole(text, strlen(text)), strlen(text), &rig.program, report_error, &rig);
 }
 
 void rig_load(const char *text)

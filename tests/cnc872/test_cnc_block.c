@@ -236,6 +236,43 @@ START_TEST(what_ends_a_section)
 }
 END_TEST
 
+/* The cosine is 984 807 / 1 000 000 exactly; the target 1/1 000 000 mm short makes the angle larger. */
+START_TEST(the_angle_that_ends_a_section)
+{
+    static const char five_axes[] = "<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"Y\"/><Axis Name=\"Z\"/><Axis Name=\"4\"/>"
+                                    "<Axis Name=\"5\"/></ChannelConfig>";
+    ck_assert_uint_eq(count_segments(five_axes, "G23 G1 X10 F100\nX133.100875 Y21.706375 Z0.088625 A4=0.001625 A5=0.00125"), 2);
+    ck_assert_uint_eq(count_segments(five_axes, "G23 G1 X10 F100\nX133.100874 Y21.706375 Z0.088625 A4=0.001625 A5=0.00125"), 1);
+    ck_assert_uint_eq(count_segments(NULL, "G23 G33 X1 F1\nX2"), 2);
+}
+END_TEST
+
+/* NB2: M02 and M30 rewind the program in its midst. */
+START_TEST(an_end_in_the_midst_of_a_program)
+{
+    static const char *const programs[] = {"M8\nM2\nM9", "M8\nM30\nM9"};
+    for (unsigned i = 0; i < 2; i++) {
+        rig_begin(programs[i]);
+        run_to(20);
+        ck_assert(bit("SF_STOP") && !bit("PO_F") && bit("M08PI"));
+        ck_assert_uint_eq(cnc.machine.next, 0);
+        ck_assert_uint_eq(count_events(CNC_EVENT_BLOCK), 2);
+    }
+}
+END_TEST
+
+/* TIME_DIST: the path ends in more than 2^31 T's, or its ramps take too many of them. */
+START_TEST(a_section_that_is_too_long_to_look_at)
+{
+    rig_begin("G23 G1 X100 F0.001\nX200");
+    run_to(10);
+    ck_assert_int_eq(cell("TIME_DIST", 0), INT32_MAX);
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\" Acceleration=\"0.001\"/></ChannelConfig>", "G23 G1 X100 F1000\nX200");
+    run_to(10);
+    ck_assert_int_eq(cell("TIME_DIST", 0), INT32_MAX);
+}
+END_TEST
+
 START_TEST(block_by_block_makes_no_section)
 {
     rig_power(NULL, "G23 G1 X1 F1000\nX2");
@@ -304,6 +341,9 @@ static Suite *block_suite(void)
     tcase_add_loop_test(sections, W33_stop_in_a_section, 0, 2);
     tcase_add_test(sections, W33_without_G23);
     tcase_add_test(sections, what_ends_a_section);
+    tcase_add_test(sections, the_angle_that_ends_a_section);
+    tcase_add_test(sections, an_end_in_the_midst_of_a_program);
+    tcase_add_test(sections, a_section_that_is_too_long_to_look_at);
     tcase_add_test(sections, block_by_block_makes_no_section);
     tcase_add_test(sections, block_by_block_within_a_section_stops_at_its_end);
     tcase_add_test(sections, a_section_of_two_blocks_that_is_annulled);

@@ -122,6 +122,22 @@ START_TEST(nj2_attributes)
 END_TEST
 
 /* The listing of 8.3.5 as it is printed. */
+/* Section 11 of the specification, from M0 on; what has no fixed group is in 14. */
+START_TEST(ng2_fixed_groups)
+{
+    static const uint8_t wanted[CNC_M_MAX + 1] = {
+        [0] = 1,  [1] = 1,  [2] = 1,  [30] = 1, [3] = 2,  [4] = 2,  [5] = 2,  [19] = 2, [41] = 3, [42] = 3, [43] = 3, [44] = 3,
+        [40] = 3, [7] = 5,  [8] = 5,  [9] = 5,  [17] = 5, [50] = 6, [51] = 6, [52] = 6, [53] = 6, [10] = 7, [11] = 7, [48] = 8,
+        [49] = 8, [6] = 9,  [60] = 9};
+    cnc_config_clear(&config);
+    for (unsigned m = 0; m <= CNC_M_MAX; m++) {
+        ck_assert_uint_eq(cnc_fixed_group(m), wanted[m]);
+        ck_assert_uint_eq(config.m[m].group, wanted[m] != 0 ? wanted[m] : 14);
+        ck_assert_uint_eq(config.m[m].attributes, 0);
+    }
+}
+END_TEST
+
 START_TEST(nj3_groups_of_the_documentation)
 {
     read_well(" <MFunctions> \n"
@@ -194,6 +210,12 @@ START_TEST(nj1_wrong_texts_are_refused)
         {"<ChannelConfig AccelerationType=\"&lt;\"/>", "1:34: expected a value without < and &\n"},
         {"<ChannelConfig AccelerationType=\"1\"ManualEnable=\"PI\"/>", "1:36: expected an attribute, > or />\n"},
         {"<ChannelConfig", "1:15: expected an attribute, > or />\n"},
+        {"<ChannelConfig><Axis Name=\"X\" =\"1\"/></ChannelConfig>", "1:31: expected an attribute, > or />\n"},
+        {"<ChannelConfig><Axis Name=\"X\" {=\"1\"/></ChannelConfig>", "1:31: expected an attribute, > or />\n"},
+        {"<ChannelConfig><Axis Name=\"X\" [=\"1\"/></ChannelConfig>", "1:31: expected an attribute, > or />\n"},
+        {"<ChannelConfig><Axis Name=\"X\"Feed=\"1\"/></ChannelConfig>", "1:30: expected an attribute, > or />\n"},
+        {"<ChannelConfig><Axis Name=\"X\" A_1=\"1\"/></ChannelConfig>", "1:31: expected an attribute of Axis\n"},
+        {"<ChannelConfig AccelerationType=\"<\"/>", "1:34: expected a value without < and &\n"},
         {"<!-- ", "1:6: expected --> behind a comment\n"},
         {"<?xml ", "1:7: expected ?> behind the XML line\n"},
         {"<!DOCTYPE a>", "1:1: expected ChannelConfig or MFunctions\n"},
@@ -251,7 +273,7 @@ END_TEST
 
 START_TEST(nj1_licences_and_smoothing)
 {
-    read_well("<ChannelConfig NoLicense=\" FeaturePlc0\tFeaturePlc9\r\n HwKeyConnected \">"
+    read_well("<ChannelConfig\tNoLicense=\" FeaturePlc0\tFeaturePlc9\r\n HwKeyConnected \">"
               "<Axis Name=\"X\" LinearAccel=\"1\" ParabAccel=\"4\"/></ChannelConfig>");
     ck_assert_uint_eq(config.no_license, 1u | 1u << 1 | 1u << 10);
     ck_assert_uint_eq(config.axis[0].smoothing[CNC_SET_NORMAL], 1); /* 0.25 */
@@ -281,6 +303,7 @@ int main(void)
     tcase_add_test(all, w1_conversions);
     tcase_add_test(all, nj2_what_a_text_leaves_out);
     tcase_add_test(all, nj2_attributes);
+    tcase_add_test(all, ng2_fixed_groups);
     tcase_add_test(all, nj3_groups_of_the_documentation);
     tcase_add_test(all, nj3_fragment_that_is_not_closed);
     tcase_add_test(all, nj1_wrong_texts_are_refused);

@@ -54,6 +54,24 @@ START_TEST(nn1_a_line_is_a_block)
 }
 END_TEST
 
+START_TEST(nn1_letters_in_either_case)
+{
+    ck_assert(text_read_config("<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"Z\"/><Axis Name=\"4\"/></ChannelConfig>", &config));
+    read_well("n5 g1 x1 z3 a4=4 f100 s500 l600 t7 h8 m3 i0=9 r1=10 g4 p0.5");
+    ck_assert_uint_eq(block(0)->axes, 1u | 1u << 2 | 1u << 3);
+    ck_assert_int_eq(target(0, 3), INT64_C(4) * CNC_U_PER_MM);
+    ck_assert_int_eq(cnc_nc_value(&program, block(0)->feed), 100000000);
+    ck_assert_int_eq(cnc_nc_value(&program, block(0)->speed), 500000000);
+    ck_assert_int_eq(cnc_nc_value(&program, block(0)->speed_limit), 600000000);
+    ck_assert_int_eq(word(0, CNC_NC_T), 7);
+    ck_assert_int_eq(word(0, CNC_NC_H), 8000000);
+    ck_assert_int_eq(word(0, CNC_NC_I0), 9);
+    ck_assert_int_eq(word(0, CNC_NC_R0 + 1), 10000000);
+    ck_assert_int_eq(word(0, CNC_NC_DELAY), 500000);
+    ck_assert_uint_eq(block(0)->m[2], 3);
+}
+END_TEST
+
 START_TEST(nn1_words)
 {
     text_read_config("<ChannelConfig><Axis Name=\"Z\"/><Axis Name=\"4\"/><Axis Name=\"16\"/></ChannelConfig>", &config);
@@ -132,8 +150,12 @@ START_TEST(nn2_wrong_texts_are_not_loaded)
         {"G0 G1", "1:4: expected one G function of a kind in a block\n"},
         {"G4", "1:1: expected P with G4\n"},
         {"P1", "1:1: expected G4 with P\n"},
+        {"X1 P1 G0", "1:4: expected G4 with P\n"},
+        {"G0 X99999999999999999999999.5", "1:5: expected a position from -200000 to 200000 mm, up to six decimals\n"},
+        {"G0 X9999999999999999", "1:5: expected a position from -200000 to 200000 mm, up to six decimals\n"},
         {"G4 (a", "1:4: expected ) behind a comment\n"},
         {"G0 X1\n\x80", "2:1: expected N, G, X, Y, Z, A4= to A16=, F, S, L, T, H, M, P, I0= to I4=, R0= to R4=, not ?\n"},
+        {"G0 \x7F", "1:4: expected N, G, X, Y, Z, A4= to A16=, F, S, L, T, H, M, P, I0= to I4=, R0= to R4=, not ?\n"},
         {"G0 |1", "1:4: expected N, G, X, Y, Z, A4= to A16=, F, S, L, T, H, M, P, I0= to I4=, R0= to R4=, not |\n"},
         {"G4 P1 P2", "1:7: expected each word once in a block\n"},
         {"G0 Q1", "1:4: expected N, G, X, Y, Z, A4= to A16=, F, S, L, T, H, M, P, I0= to I4=, R0= to R4=, not Q\n"},
@@ -183,15 +205,16 @@ START_TEST(nl4_blocks_beyond_the_room_are_refused)
 {
     static struct cnc_nc_block blocks[2];
     static int64_t values[3];
-    static const char three_blocks[] = "M3\nM4\nM5", four_values[] = "G0 X1 Y1\nX2\nZ5", with_rate[] = "G0 X1 Y1\nX2 F1";
-    const char *const texts[] = {three_blocks, four_values, with_rate};
+    static const char *const texts[] = {"M3\nM4\nM5", "G0 X1 Y1\nX2\n\nZ5", "G0 X1 Y1\nX2 F1", "G0 X1 Y1 Z1\nY1 Z1",
+                                        "T1 H1 I1=1\nT1 H1"};
+    static const char lines[] = "34222";
     cnc_config_clear(&config);
-    for (unsigned i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < 5; i++) {
         program = (struct cnc_nc_program){.blocks = blocks, .values = values, .block_room = 2, .value_room = 3};
         text_reported[0] = '\0';
         ck_assert(!cnc_nc_read(texts[i], strlen(texts[i]), &config, &program, text_report, NULL));
         ck_assert_str_eq(text_reported + 1, ":1: expected at most 1000000 blocks\n");
-        ck_assert_int_eq(text_reported[0], i == 2 ? '2' : '3');
+        ck_assert_int_eq(text_reported[0], lines[i]);
     }
 }
 END_TEST
@@ -226,6 +249,7 @@ int main(void)
     TCase *all = tcase_create("nc");
     tcase_set_timeout(all, 60);
     tcase_add_test(all, nn1_a_line_is_a_block);
+    tcase_add_test(all, nn1_letters_in_either_case);
     tcase_add_test(all, nn1_words);
     tcase_add_test(all, nn1_modes_and_speeds);
     tcase_add_test(all, nn2_wrong_texts_are_not_loaded);

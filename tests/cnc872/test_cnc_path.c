@@ -57,6 +57,21 @@ START_TEST(the_way_ends_before_the_ramp_does)
 }
 END_TEST
 
+/* NM4: a new n alone is another set, too. */
+START_TEST(a_change_of_n_alone)
+{
+    cnc_path_begin(&path, ring, 1000000, 100, 10);
+    for (unsigned i = 0; i < 5; i++)
+        cnc_path_step(&path, ring, 1000, 0, NULL);
+    const int64_t v = path.v;
+    ck_assert(cnc_path_change(&path, ring, 100, 4));
+    ck_assert_uint_eq(path.n, 4);
+    ck_assert_int_eq(path.u, v);
+    ck_assert_int_eq(path.sum, 4 * v);
+    ck_assert_int_eq(path.left, cnc_path_rest(&path) - (v * 3 + 1) / 2);
+}
+END_TEST
+
 START_TEST(a_change_keeps_speed_and_way)
 {
     for (unsigned n = 2; n < 60; n++) {
@@ -207,6 +222,7 @@ static Suite *path_suite(void)
     tcase_add_test(all, an_endless_motion);
     tcase_add_test(all, the_fastest_motion_there_is);
     tcase_add_test(all, the_way_ends_before_the_ramp_does);
+    tcase_add_test(all, a_change_of_n_alone);
     tcase_add_test(all, a_change_keeps_speed_and_way);
     tcase_add_test(all, a_change_that_is_refused);
     tcase_add_test(all, gliding_is_stepping);

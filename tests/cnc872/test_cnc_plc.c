@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cnc872/cnc872.h"
 #include "plc_rig.h"
 
 START_TEST(bits_go_through_rlo)
@@ -339,6 +340,9 @@ START_TEST(tex0_goes_on_if_rlo_is_1)
     ck_assert(!rig_pass(CNC_PLC_BLOCK_INIT));
     ck_assert(!rig_pass(CNC_PLC_BLOCK_INIT));
     ck_assert_int_eq(rig_value("N"), 7);
+    rig_load("DATA\nIN BIT 0\nC DB 0\nDATA_END\nMODULE_BLOCK_INIT\nLDR IN\nTEX0 C,1,L,BLOCK_DONE\nL:\nMODULE_BLOCK_INIT_END");
+    ck_assert(rig_pass(CNC_PLC_BLOCK_INIT));
+    ck_assert_int_eq(rig.plc.dr, CNC_DONE); /* a constant of the language */
     rig_load("DATA\nIN BIT 0\nC DB 0\nDATA_END\nMODULE_BLOCK_INIT\nLDR IN\nTEX0 C,2,L,9\nL:\nMODULE_BLOCK_INIT_END");
     ck_assert(!rig_pass(CNC_PLC_BLOCK_INIT));
     ck_assert(rig_pass(CNC_PLC_BLOCK_INIT));

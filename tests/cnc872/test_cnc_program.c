@@ -54,6 +54,30 @@ START_TEST(a_start_that_waits_is_disabled)
 }
 END_TEST
 
+/* NF6, W35 as the program of 8.1.10 writes it: from 90 degrees on to 360. */
+START_TEST(W35_a_spindle_axis_that_the_program_positions)
+{
+    rig_begin_plc("<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"4\" Rotary=\"1\" FeedRT=\"1000000\" FeedRef=\"3600\"/>"
+                  "</ChannelConfig>",
+                  "G0 A4=90",
+                  "DATA\nGO BIT 0\nDATA_END\nMODULE_MAIN\n LDR GO\n JL0 NO\n SPI_AX_X\n SPI_AX_4\n FL 0,GO\nNO:\n"
+                  "MODULE_MAIN_END\n");
+    run_to(2000);
+    ck_assert_int_eq(cnc.axis[3].position, 90 * MM);
+    set_bit("GO", true);
+    run_to(2001);
+    ck_assert(bit("POLOHV_4") && !bit("POLOHV_X"));
+    run_to(2000 + 4618);
+    ck_assert(bit("POLOHV_4"));
+    run_to(2000 + 4619);
+    ck_assert_int_eq(cnc.axis[3].position, 360 * MM);
+    ck_assert(!bit("POLOHV_4"));
+    set_bit("GO", true);
+    run_to(2000 + 4620);
+    ck_assert(!bit("POLOHV_4"));
+}
+END_TEST
+
 START_TEST(MODULE_INIT_before_the_first_T)
 {
     rig_power_plc(NULL, NULL, "MODULE_INIT\n FL 0,MPXPI\nMODULE_INIT_END\n");
@@ -195,6 +219,7 @@ static Suite *program_suite(void)
     tcase_add_test(all, W39_start_suspend);
     tcase_add_test(all, a_stop_drops_a_start_that_waits);
     tcase_add_test(all, a_start_that_waits_is_disabled);
+    tcase_add_test(all, W35_a_spindle_axis_that_the_program_positions);
     tcase_add_test(all, MODULE_INIT_before_the_first_T);
     tcase_add_test(all, passes_hold_the_block);
     tcase_add_test(all, a_restart_passes_from_the_beginning);

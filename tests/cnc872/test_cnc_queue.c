@@ -69,6 +69,80 @@ START_TEST(the_speed_at_a_border)
     ck_assert_double_eq(cnc_queue_real(&cnc, 0, CNC_QUEUE_FeedCriterial, 0), 0);
     ck_assert_double_eq(cnc_queue_real(&cnc, 1, CNC_QUEUE_FeedCriterial, 0), 600);
     ck_assert_double_eq(cnc_queue_real(&cnc, 2, CNC_QUEUE_FeedCriterial, 0), 600);
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\" FeedRT=\"450\"/></ChannelConfig>",
+                   "G23 G1 X10 F1000\nX20 F600\nX30 F300\nG24 X40 F1000");
+    run_to(10);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 1, CNC_QUEUE_FeedCriterial, 0), 450); /* FeedMax */
+    ck_assert_double_eq(cnc_queue_real(&cnc, 2, CNC_QUEUE_FeedCriterial, 0), 300);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 3, CNC_QUEUE_FeedCriterial, 0), 0); /* behind the section */
+    rig_begin("G1 X10 F1000\nX20 F600");
+    run_to(10);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 1, CNC_QUEUE_FeedCriterial, 0), 0); /* there is no section */
+}
+END_TEST
+
+/* F a revolution: with the actual speed of the spindle, 1000 rev/min here. */
+START_TEST(the_speed_at_a_border_with_a_feed_a_revolution)
+{
+    static const char *const programs[] = {"M3\nG95 G23 G1 X10 F0.6\nX20 F0.3", "M3\nG23 G33 X10 F0.6\nX20 F0.3"};
+    for (unsigned i = 0; i < 2; i++) {
+        rig_begin(programs[i]);
+        set_cell("SIM_SPEED_PT", 0, 6000);
+        run_to(10);
+        ck_assert_int_eq(cell("ACT_SPEED_PM", 0), 1000000);
+        ck_assert_uint_eq(cnc.machine.block, 1);
+        ck_assert_double_eq(cnc_queue_real(&cnc, 1, CNC_QUEUE_FeedCriterial, 0), 300);
+    }
+}
+END_TEST
+
+START_TEST(a_block_without_motion_has_no_way)
+{
+    static const enum cnc_queue_field ways[] = {CNC_QUEUE_BlockLen, CNC_QUEUE_FeedMax, CNC_QUEUE_ParabAccel,
+                                                CNC_QUEUE_LinearAccel};
+    rig_begin("M8\nG1 X1 F1000");
+    run_to(1);
+    for (unsigned i = 0; i < sizeof ways / sizeof *ways; i++) {
+        ck_assert_double_eq(cnc_queue_real(&cnc, 0, ways[i], 0), 0);
+        ck_assert_double_gt(cnc_queue_real(&cnc, 1, ways[i], 0), 0);
+    }
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_AxNCnMove, 0), 0);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 1, CNC_QUEUE_FeedCriterial, 0), 0);
+}
+END_TEST
+
+/* Before START: BLK[0] is not there, BLK[1] is the first block. */
+START_TEST(a_queue_before_the_start)
+{
+    rig_power(NULL, "G1 X1 Y2 F1000 M8\nM3 X4");
+    ck_assert(!cnc_queue_has(&cnc, 0) && cnc_queue_has(&cnc, 2) && !cnc_queue_has(&cnc, 3));
+    ck_assert_double_eq(cnc_queue_real(&cnc, 1, CNC_QUEUE_AxNC, 1), 2);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 2, CNC_QUEUE_AxNC, 0), 4);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 2, CNC_QUEUE_BlockLen, 0), 3);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_M, 2), 0);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 2, CNC_QUEUE_M, 2), 3);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 2, CNC_QUEUE_M, 5), 8);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_M, 5), 0);
+    rig_power(NULL, NULL);
+    ck_assert(!cnc_queue_has(&cnc, 0) && !cnc_queue_has(&cnc, 1));
+}
+END_TEST
+
+/* NB7: Partial is 1 in a block that has been started again, and there alone. */
+START_TEST(a_part_of_a_block)
+{
+    rig_begin("G1 X10 F1000\nX20");
+    run_to(100);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_Partial, 0), 0);
+    cnc_stop(&cnc);
+    run_to(199);
+    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
+    run_to(201);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_Partial, 0), 1);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_Partial, 0), 0);
+    run_to(900);
+    ck_assert_uint_eq(cnc.machine.block, 1);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_Partial, 0), 0);
 }
 END_TEST
 
@@ -126,6 +200,10 @@ static Suite *queue_suite(void)
     tcase_add_test(queue, W48_the_next_blocks);
     tcase_add_test(queue, fields_of_a_block);
     tcase_add_test(queue, the_speed_at_a_border);
+    tcase_add_test(queue, the_speed_at_a_border_with_a_feed_a_revolution);
+    tcase_add_test(queue, a_block_without_motion_has_no_way);
+    tcase_add_test(queue, a_queue_before_the_start);
+    tcase_add_test(queue, a_part_of_a_block);
     tcase_add_test(queue, a_function_ends_the_queue);
     tcase_add_test(queue, a_long_queue);
     tcase_add_test(queue, a_selected_block);

@@ -231,6 +231,40 @@ START_TEST(nf5_blocks_that_are_not_refused)
 }
 END_TEST
 
+/* A function that the configuration has added to group 3 is no gear: only S is looked at. */
+START_TEST(nf5_other_functions_of_the_group_of_gears)
+{
+    rig_begin_with("<ChannelConfig><Gear No=\"1\" MaxSpeed=\"500\"/><MFunctions><MFunc No=\"39\" GroupNo=\"3\"/>"
+                   "<MFunc No=\"45\" GroupNo=\"3\"/></MFunctions></ChannelConfig>",
+                   "M41 S500\nM39\nM45\nM39 S501\nM8");
+    run_to(6);
+    ck_assert(bit("PO_F") && bit("ZMM3PI") && bit("M41PI")); /* the block of M45 */
+    ck_assert_int_eq(cell("SPINDLE_GEAR_ACT_1", 0), 1);
+    run_to(20);
+    ck_assert_int_eq(last_event(CNC_EVENT_BLOCK_REFUSED), 4);
+    set_cell("SPINDLE_GEAR_ACT_1", 0, 2); /* which has no limits */
+    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
+    run_to(30);
+    ck_assert(bit("M08PI"));
+}
+END_TEST
+
+/* F a revolution, S and the overrides at their greatest: FeedRT is the limit, nothing overflows. */
+START_TEST(nm7_the_greatest_feed)
+{
+    rig_begin("M3 G95 G1 X100 F1000000");
+    set_cell("SIM_SPEED_PT", 0, 12000000);
+    set_cell("BZH09", 0, 255);
+    set_cell("BZH10", 0, 255);
+    set_bit("FEED_OVR", true);
+    set_cell("FEED_OVR_MULTIPLIER", 0, 65535);
+    run_to(1500);
+    ck_assert_int_eq(cell("ACT_SPEED_PM", 0), 2000000000);
+    ck_assert_int_eq(top_speed(), 13107200);
+    ck_assert_int_eq(at(1500).x, 100 * MM);
+}
+END_TEST
+
 START_TEST(nf5_the_automatic_gear_beyond_all_gears)
 {
     rig_begin_with("<ChannelConfig><Gear No=\"2\" MaxSpeed=\"1000\"/></ChannelConfig>", "M40 S100\nM40 S2000");
@@ -433,6 +467,8 @@ int main(void)
     tcase_add_test(all, nf4_threading_waits_for_the_spindle);
     tcase_add_test(all, nf5_gears);
     tcase_add_test(all, nf5_blocks_that_are_not_refused);
+    tcase_add_test(all, nf5_other_functions_of_the_group_of_gears);
+    tcase_add_test(all, nm7_the_greatest_feed);
     tcase_add_test(all, nf5_the_automatic_gear_beyond_all_gears);
     tcase_add_test(all, nf5_gears_of_the_plc);
     tcase_add_test(all, nf5_speed_outside_of_the_gear);

@@ -245,6 +245,52 @@ START_TEST(a_stop_in_the_first_pass_moves_nothing)
 }
 END_TEST
 
+/* NQ1, NA5: nothing has been moved yet by the block that is started again, and the axis stands elsewhere. */
+START_TEST(a_restart_from_elsewhere_after_a_stop_in_the_first_pass)
+{
+    rig_begin("G1 X10 F1000");
+    run_to(1);
+    cnc_stop(&cnc);
+    run_to(10);
+    ck_assert(bit("PO_STOP"));
+    set_cell("HOMING_REQ", 0, 1);
+    set_cell("REFPOINT_DIST", 0, 4 * MM);
+    run_to(11);
+    ck_assert_int_eq(cnc.axis[0].position, 4 * MM);
+    start_in(12);
+    run_to(1000);
+    ck_assert(bit("SF_STOP"));
+    ck_assert_int_eq(at(1000).x, 10 * MM);
+    ck_assert_int_eq(at(13).x, 4 * MM + 32768);
+}
+END_TEST
+
+START_TEST(an_empty_program)
+{
+    rig_power(NULL, "; nothing");
+    ck_assert_int_eq(cnc_start(&cnc), CNC_NO_PROGRAM);
+    ck_assert_int_eq(last_event(CNC_EVENT_START_REFUSED), CNC_NO_PROGRAM);
+    run_to(5);
+    ck_assert(!bit("PO_F"));
+}
+END_TEST
+
+/* A port may have no place for events, and there may be no port. */
+START_TEST(nobody_hears_events)
+{
+    static const struct cnc_port deaf = {NULL, NULL};
+    for (unsigned i = 0; i < 2; i++) {
+        rig_power(NULL, "G1 X1 F1000");
+        cnc_begin(&cnc, &(struct cnc_setup){.config = &config, .program = &program, .port = i == 0 ? &deaf : NULL});
+        ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
+        ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
+        run_to(200);
+        ck_assert_int_eq(at(200).x, 1 * MM);
+        ck_assert_uint_eq(rig_events, 0);
+    }
+}
+END_TEST
+
 START_TEST(a_program_is_not_changed_under_way)
 {
     rig_begin("G1 X1 F1000");
@@ -369,6 +415,9 @@ static Suite *start_suite(void)
     tcase_add_test(starts, pulses_of_STOPPI);
     tcase_add_test(starts, STOPPI_counts_by_its_edge);
     tcase_add_test(starts, a_stop_in_the_first_pass_moves_nothing);
+    tcase_add_test(starts, a_restart_from_elsewhere_after_a_stop_in_the_first_pass);
+    tcase_add_test(starts, an_empty_program);
+    tcase_add_test(starts, nobody_hears_events);
     tcase_add_test(starts, a_program_is_not_changed_under_way);
     tcase_add_test(starts, a_reset_drops_a_start);
     tcase_add_loop_test(starts, an_axis_that_is_moved_before_the_motion, 0, 2);
