@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Tuple, Type, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Union
 
 from . import _ports, _sim
 from ._dialogue import Dialogue
@@ -487,10 +487,11 @@ class Bus:
     # ---- What is seen of it ----
 
     def events(self, *kinds: str, motor: Union[None, int, List[int]] = None,
-               unit: Union[None, UnitName, List[UnitName]] = None) -> Events:
+               unit: Union[None, UnitName, List[UnitName]] = None, cells: Optional[Sequence[str]] = None) -> Events:
         """What happens from now on: kinds of docs/CONTROL.md ("step", "outputs", …), of some motors and units; all if left
-        out. At most 15 at a time."""
-        return Events(self._transport, list(kinds), motor, unit)
+        out. cells: changes of these cells of a device that has some, and no other kinds if none are named. At most 15 at a
+        time."""
+        return Events(self._transport, list(kinds), motor, unit, cells)
 
     def trace(self, path: "Path", force: bool = False) -> File:
         """Write a file about what happens from now on: .vcd, .csv, .jsonl for what the units do, .log, .pcapng for what passes

@@ -395,7 +395,7 @@ class Events:
     Iterating takes the events that have come so far, dicts as in docs/CONTROL.md, each once.
     """
 
-    def __init__(self, transport: "Transport", kinds: List[str], motor: Any, unit: Any) -> None:
+    def __init__(self, transport: "Transport", kinds: List[str], motor: Any, unit: Any, cells: Any = None) -> None:
         params: Dict[str, Any] = {}
         if kinds:
             params["kinds"] = kinds
@@ -403,8 +403,13 @@ class Events:
             params["motor"] = motor
         if unit is not None:
             params["unit"] = unit
+        if cells is not None:
+            params["cells"] = list(cells)
         self._transport = transport
-        self._number: int = transport.call("subscribe", params)["subscription"]
+        answer = transport.call("subscribe", params)
+        self._number: int = answer["subscription"]
+        self.cells: Dict[str, int] = answer.get("cells", {})
+        """What the cells were at the beginning."""
         self._closed = False
         self.lost = 0
         """How many events were lost because nobody took them (more than 64 MiB)."""

@@ -30,3 +30,15 @@ def test_what_is_wrong_is_refused():
             bus.call("cnc.get", cells=["NO_CELL"])
         with pytest.raises(rkm04.RefusedError, match="NO_CELL"):
             bus.wait(cell={"NO_CELL": 1}, limit="1s")
+
+
+def test_events_of_cells():
+    with rkm04.Bus(device="cnc872", settings=SETTINGS) as bus:
+        with bus.events(cells=["PO_F", "NEAR", "PASSES"]) as changes:
+            assert changes.cells == {"PO_F": 0, "NEAR": 0, "PASSES": 0}
+            bus.call("cnc.panel", start=True)
+            bus.wait(cell={"NEAR": 1}, limit="1s")
+            bits = [(event["t_us"], event["cell"], event["value"]) for event in changes if event["cell"] != "PASSES"]
+            assert bits == [(1000, "PO_F", 1), (bus.now - 1, "NEAR", 1)]
+        with pytest.raises(rkm04.RefusedError, match="NO_CELL"):
+            bus.events(cells=["NO_CELL"])

@@ -12,6 +12,8 @@
 #include "client_job.h"
 #include "text/text.h"
 
+#define MOTORS_MAX 16
+
 /* ---- Waiting ---------------------------------------------------------------------------------------------------------- */
 
 /* A time as the emulator takes it: a number of us, or a text with its unit. */
@@ -155,9 +157,10 @@ struct listening {
 
 static void print_event(const json_t *event)
 {
-    static const char *const shown[] = {"t_us", "unit", "motor", "kind", "value", "subscription", NULL};
+    static const char *const shown[] = {"t_us", "unit", "motor", "kind", "cell", "value", "subscription", NULL};
     const char *unit = json_string_value(json_object_get(event, "unit"));
     const char *kind = json_string_value(json_object_get(event, "kind"));
+    const char *cell = json_string_value(json_object_get(event, "cell"));
     const json_t *motor = json_object_get(event, "motor"), *value = json_object_get(event, "value");
     print_time(json_integer_value(json_object_get(event, "t_us")));
     if (unit != NULL)
@@ -165,6 +168,8 @@ static void print_event(const json_t *event)
     if (json_is_integer(motor))
         printf("  motor %d", (int)json_integer_value(motor));
     printf("  %s", kind != NULL ? kind : "-");
+    if (cell != NULL)
+        printf(" %s", cell);
     if (json_is_string(value))
         printf(" %s", json_string_value(value));
     else if (json_is_integer(value))
@@ -192,30 +197,36 @@ static void on_event(void *context, const char *method, const json_t *params)
     }
 }
 
-/* Words: kinds, motor=N, count=N. Returns the parameters of `subscribe`, NULL: wrong (reported). */
+/* Words: kinds, motor=N, cell=NAME, count=N. Returns the parameters of `subscribe`, NULL: wrong (reported). */
 static json_t *read_subscription(const struct client_job *job, uint64_t *count)
 {
-    json_t *params = json_object(), *kinds = json_array();
+    json_t *params = json_object(), *kinds = json_array(), *cells = json_array();
     for (size_t i = 0; i < job->count; i++) {
         const char *word = job->words[i], *equals = strchr(word, '=');
         uint64_t number = 0;
         bool whole = equals != NULL && number_read(equals + 1, 1, INT64_MAX, &number);
         if (equals == NULL) {
             json_array_append_new(kinds, json_string(word));
-        } else if (whole && strncmp(word, "motor=", 6) == 0 && number <= 4) {
+        } else if (whole && strncmp(word, "motor=", 6) == 0 && number <= MOTORS_MAX) {
             json_object_set_new(params, "motor", json_integer((json_int_t)number));
         } else if (whole && strncmp(word, "count=", 6) == 0) {
             *count = number;
+        } else if (strncmp(word, "cell=", 5) == 0) {
+            json_array_append_new(cells, json_string(equals + 1));
         } else {
-            client_usage("events: expected kinds, motor=1 to motor=4, or count=N, found '%s'", word);
+            client_usage("events: expected kinds, motor=1 to motor=%d, cell=NAME, or count=N, found '%s'", MOTORS_MAX, word);
             json_decref(params);
             json_decref(kinds);
+            json_decref(cells);
             return NULL;
         }
     }
     if (json_array_size(kinds) > 0)
         json_object_set(params, "kinds", kinds);
+    if (json_array_size(cells) > 0)
+        json_object_set(params, "cells", cells);
     json_decref(kinds);
+    json_decref(cells);
     return params;
 }
 

@@ -54,7 +54,7 @@ static const struct help {
      "  rkmctl wait 'm1.position>=5000' --limit 10s\n  rkmctl wait --advance idle\n"},
     {"advance", "advance TIME|CONDITION", "Advance a stepped clock by a time, or until a condition holds.",
      "  --limit=TIME, -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl advance 250ms\n  rkmctl advance 'm1.idle' --limit 1min\n"},
-    {"events", "events [KIND...] [motor=N] [count=N]",
+    {"events", "events [KIND...] [motor=N] [cell=NAME...] [count=N]",
      "Print events, a line each. Exit status 3 if there are fewer than count within --limit.",
      "  --limit=TIME, -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl events motion command motor=1 count=4\n"},
     {"snapshot", "snapshot NAME|file=PATH", "Save the state of everything, under a name or in a file.",

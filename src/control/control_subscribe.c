@@ -46,7 +46,6 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     unsigned count = 0;
     if (!event_filter_read(&new.filter, sim, context->request->params, refusal))
         return NULL;
-    new.watcher.kinds = new.filter.kinds;
     for (const struct subscription *other = client->subscriptions; other; other = other->next)
         count++;
     if (count == CONTROL_SUBSCRIPTIONS)
@@ -55,18 +54,22 @@ json_t *control_subscribe(struct control_context *context, struct refusal *refus
     struct subscription *subscription = malloc(sizeof *subscription);
     if (!subscription)
         return NULL;
-    new.number = ++client->subscribed;
+    new.number = client->subscribed + 1u;
     new.head_length = (size_t)snprintf(new.head, sizeof new.head, HEAD, new.number);
     new.next = client->subscriptions;
     *subscription = new;
     subscription->watcher.on_event = on_event;
     subscription->watcher.context = subscription;
+    json_t *answer = event_watch(sim, &subscription->watcher, &new.filter, new.number, context->request->params, refusal);
+    if (!answer) {
+        free(subscription);
+        return NULL;
+    }
     client->subscriptions = subscription;
-    sim_watch(sim, &subscription->watcher);
+    client->subscribed = new.number;
     /* Answered before the line looks again: no event comes before the number of its subscription is known. */
     context->later = true;
-    control_answer(client, context->request->id, json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription",
-                                                         (int)subscription->number));
+    control_answer(client, context->request->id, answer);
     bus_changed(context->bus); /* it advances the units more often while there are watchers */
     return NULL;
 }

@@ -242,6 +242,8 @@ static void advance(struct device_unit *unit, uint64_t us)
         device->now = next_turn(unit);
         cnc_tick(&device->cnc);
         report_turn(device);
+        if (device->outer->slot)
+            device->outer->slot(device->context, device->now);
         device->is_quiet = is_quiet(device);
     }
     device->now = end;

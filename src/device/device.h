@@ -79,6 +79,8 @@ struct device_port {
     void (*event)(void *context, uint64_t tick, unsigned axis, enum device_event what, uint32_t value);
     /* What a device reports in words, one line: "start refused: no NC program is loaded". */
     void (*note)(void *context, uint64_t tick, unsigned axis, const char *text);
+    /* A slot of a device with cells is over, which was done at `tick`. It may look at cells: kind->cell(). */
+    void (*slot)(void *context, uint64_t tick);
     /* Flash, blocks 0..kind->flash_blocks-1; erased bytes read FF. Return 0, or another value if it failed. */
     int (*flash_read)(void *context, unsigned block, unsigned offset, void *data, unsigned length);
     int (*flash_erase)(void *context, unsigned block);
@@ -419,8 +421,9 @@ struct device_kind {
     const struct device_method *methods; /* NULL: none */
     const struct device_exchange *exchange_of; /* NULL: none */
 
-    /* Numbers that conditions may name, as cells of an interface: what find_cell() returns for a name is never 0 and valid as
-     * long as the unit's settings; 0 and a message: there is no such cell. NULL: none. */
+    /* Numbers that conditions and subscriptions may name, as cells of an interface, which change in slots only (port->slot): what
+     * find_cell() returns for a name is never 0 and valid as long as the unit's settings; 0 and a message: there is no such cell.
+     * NULL: none. */
     uint64_t (*find_cell)(const struct device_unit *unit, const char *name, char error[DEVICE_ERROR_SIZE]);
     int64_t (*cell)(const struct device_unit *unit, uint64_t found);
     const struct device_service *services; /* ends with a row without name; NULL: none */

@@ -52,13 +52,11 @@ json_t *handle_subscribe(struct handle *handle, const json_t *params, struct ref
     if (!subscription)
         return refuse(refusal, REFUSED_STATE, "too many subscriptions: expected at most %u", HANDLE_SUBSCRIPTIONS);
     *subscription = (struct handle_subscription){
-        .sim = sim,
-        .number = ++handle->subscribed,
-        .filter = filter,
-        .watcher = {.kinds = filter.kinds, .on_event = on_event, .context = subscription},
-    };
-    sim_watch(sim, &subscription->watcher);
-    return json_pack("{s:I, s:i}", "t_us", (json_int_t)sim_now(sim), "subscription", (int)subscription->number);
+        .sim = sim, .filter = filter, .watcher = {.on_event = on_event, .context = subscription}};
+    json_t *answer = event_watch(sim, &subscription->watcher, &filter, handle->subscribed + 1u, params, refusal);
+    if (answer)
+        subscription->number = ++handle->subscribed;
+    return answer;
 }
 
 static void end(struct handle_subscription *subscription)

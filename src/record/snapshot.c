@@ -216,6 +216,7 @@ static void report_changes(struct sim *sim, unsigned number, const struct look *
     report_change(sim, number, 0, WATCH_INPUTS, (int32_t)before->inputs, (int32_t)after.inputs);
     report_change(sim, number, 0, WATCH_OUTPUTS, (int32_t)before->outputs, (int32_t)after.outputs);
     report_change(sim, number, 0, WATCH_VARIABLES, (int32_t)before->variables, (int32_t)after.variables);
+    sim_report_cells(sim, number);
     for (unsigned value = 1; value <= sim_device(sim)->values; value++)
         report_value(sim, number, value, before->value[value - 1u], after.value[value - 1u]);
     for (unsigned motor = 1; motor <= sim_device(sim)->axes; motor++) {

@@ -308,7 +308,7 @@ static uint64_t plants_next(const struct sim *sim)
 /* When something happens around the units. */
 static uint64_t next_around(const struct sim *sim)
 {
-    return earlier(sim_services_next(sim), earlier(plants_next(sim), faults_next(&sim->faults)));
+    return earlier(earlier(sim_services_next(sim), sim_cells_next(sim, 1)), earlier(plants_next(sim), faults_next(&sim->faults)));
 }
 
 uint64_t sim_next_event(const struct sim *sim)
@@ -337,7 +337,7 @@ static uint64_t leap_end(const struct sim *sim, uint64_t tick)
     uint64_t now = sim_now(sim), end = earlier(tick, faults_next(&sim->faults)), bounce = plants_next(sim), due = sim_due(sim);
     uint64_t event = earlier(segment_next_event(&sim->segment), due);
     event = event > now ? event : now;
-    end = earlier(end, earlier(wire_monitor_due(&sim->monitor), sim_services_next(sim)));
+    end = earlier(earlier(end, sim_cells_leap(sim)), earlier(wire_monitor_due(&sim->monitor), sim_services_next(sim)));
     if ((sim->faults.kinds >> FAULT_POWER & 1u) != 0)
         end = earlier(end, due > now ? due : now);
     for (unsigned number = 1; number <= sim->segment.units; number++) {
@@ -451,6 +451,7 @@ void sim_unwatch(struct sim *sim, struct watcher *watcher)
 {
     watch_remove_watcher(&sim->watch, watcher);
     update_step_reports(sim);
+    sim_update_cell_reports(sim);
 }
 
 /* ---- Faults ---------------------------------------------------------------------------------------------------------- */

@@ -227,6 +227,20 @@ void sim_services_free(struct sim *sim);
 void sim_watch(struct sim *sim, struct watcher *watcher);
 void sim_unwatch(struct sim *sim, struct watcher *watcher);
 
+/* A watcher wants an event whenever this cell of a unit has changed at the end of a slot, or by a restore, from now on, until it
+ * watches no more. At most WATCH_CELLS_MAX on a line. Returns it with its present value; NULL: refused. */
+const struct watch_cell *sim_watch_cell(struct sim *sim, const struct watcher *watcher, unsigned number, const char *name,
+                                        struct device_refusal *refusal);
+
+/* A unit has been restored: report its watched cells. */
+void sim_report_cells(struct sim *sim, unsigned number);
+
+/* The end of so many slots with a watched cell, the present one counted; DEVICE_NEVER: none is watched. How far time may leap
+ * then. Watched cells have changed. For sim.c. */
+uint64_t sim_cells_next(const struct sim *sim, unsigned slots);
+uint64_t sim_cells_leap(const struct sim *sim);
+void sim_update_cell_reports(struct sim *sim);
+
 /* Report that something happens at `tick`. `text`: printf-like, for WATCH_PLANT, WATCH_INJECTED and
  * WATCH_NOTE. */
 void sim_report(struct sim *sim, enum watch_phase phase, const struct watch_event *event);

@@ -28,6 +28,7 @@ static const char *const names[WATCH_KINDS] = {
     [WATCH_SERVICE] = "service",
     [WATCH_VALUE] = "value",
     [WATCH_NOTE] = "note",
+    [WATCH_CELL] = "cell",
 };
 
 const char *watch_kind_name(enum watch_kind kind)
@@ -97,6 +98,12 @@ static int compare_events(const void *left, const void *right)
     return a->order < b->order ? -1 : a->order > b->order;
 }
 
+/* A cell that changes is the concern of its watcher alone. */
+static bool is_for(const struct watch *watch, const struct watch_event *event, const struct watcher *watcher)
+{
+    return event->kind != WATCH_CELL || watch->cells[event->number].owner == watcher;
+}
+
 void watch_deliver(struct watch *watch, uint64_t tick)
 {
     size_t done = 0;
@@ -106,7 +113,7 @@ void watch_deliver(struct watch *watch, uint64_t tick)
     for (; done < watch->count && watch->events[done].tick < tick; done++) {
         const struct watch_event *event = &watch->events[done];
         for (struct watcher *watcher = watch->watchers; watcher; watcher = watcher->next)
-            if (watcher->kinds & WATCH_BIT(event->kind))
+            if ((watcher->kinds & WATCH_BIT(event->kind)) != 0 && is_for(watch, event, watcher))
                 watcher->on_event(watcher->context, event);
         free_event(event);
     }
@@ -119,6 +126,7 @@ void watch_end(struct watch *watch)
     for (size_t i = 0; i < watch->count; i++)
         free_event(&watch->events[i]);
     free(watch->events);
+    free(watch->cells);
     *watch = (struct watch){0};
 }
 
@@ -140,8 +148,26 @@ void watch_add_watcher(struct watch *watch, struct watcher *watcher)
     sum_kinds(watch);
 }
 
+/* Its cells, and what has been gathered about them. */
+static void remove_cells(struct watch *watch, const struct watcher *watcher)
+{
+    size_t kept = 0;
+    if (watch->cell_count == 0)
+        return;
+    for (size_t i = 0; i < watch->count; i++)
+        if (watch->events[i].kind != WATCH_CELL || watch->cells[watch->events[i].number].owner != watcher)
+            watch->events[kept++] = watch->events[i];
+    watch->count = kept;
+    for (unsigned at = 0; at < watch->cell_count; at++)
+        if (watch->cells[at].owner == watcher)
+            watch->cells[at].owner = NULL;
+    while (watch->cell_count > 0 && !watch->cells[watch->cell_count - 1u].owner)
+        watch->cell_count--;
+}
+
 void watch_remove_watcher(struct watch *watch, struct watcher *watcher)
 {
+    remove_cells(watch, watcher);
     for (struct watcher **at = &watch->watchers; *at; at = &(*at)->next) {
         if (*at == watcher) {
             *at = watcher->next;

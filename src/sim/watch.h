@@ -32,6 +32,7 @@ enum watch_kind {
     WATCH_SERVICE,   /* unit 0; value: number of the client of a server; `service` says what */
     WATCH_VALUE,     /* value: what value `number` of the unit is now (device_kind.value) */
     WATCH_NOTE,      /* value 0; `text`: what the device reports in words */
+    WATCH_CELL,      /* `cell`: what cell `number` of those that are watched is now; for its watcher alone */
     WATCH_KINDS
 };
 
@@ -64,13 +65,14 @@ struct watch_event {
     uint8_t kind;   /* enum watch_kind */
     uint8_t unit;   /* 1..16, its number on the line; 0: the line */
     uint8_t motor;  /* 1..4; 0: none */
-    uint8_t number; /* WATCH_VALUE: from 1; others 0 */
+    uint8_t number; /* WATCH_VALUE: from 1; WATCH_CELL: place in struct watch; others 0 */
     union {
         struct segment_byte byte;           /* WATCH_BYTE */
         const struct wire_message *message; /* WATCH_MESSAGE; valid during the call */
         const char *text;                   /* WATCH_PLANT, WATCH_INJECTED, WATCH_NOTE; valid during the call */
         const struct watch_service *service; /* WATCH_SERVICE; valid during the call */
         uint32_t pulse_ns;                  /* WATCH_STEP: length of the pulse; 0: device_kind.pulse */
+        int64_t cell;                       /* WATCH_CELL */
     };
 };
 
@@ -90,6 +92,18 @@ struct watcher {
     struct watcher *next; /* inside */
 };
 
+#define WATCH_CELLS_MAX 256u    /* cells that are watched on a line at a time; struct watch_event.number */
+#define WATCH_CELL_NAME_SIZE 64u /* bytes */
+
+/* A cell of a device that a watcher wants to see change (sim_watch_cell()). */
+struct watch_cell {
+    const struct watcher *owner; /* NULL: the place is free */
+    uint64_t code;               /* as device_kind.find_cell() has found it */
+    int64_t value;               /* that was reported last */
+    uint8_t unit;                /* 1..16 */
+    char name[WATCH_CELL_NAME_SIZE];
+};
+
 /* Inside: gathers, sorts, hands out. */
 struct watch {
     struct watcher *watchers;
@@ -98,6 +112,8 @@ struct watch {
     size_t count, room;
     struct watch_event *events;
     bool short_of_memory; /* events were lost */
+    struct watch_cell *cells; /* WATCH_CELLS_MAX places; NULL: none has been watched yet */
+    unsigned cell_count;      /* places up to the last that is taken */
 };
 
 /* "step", "direction", "motion", … as in traces and in the control protocol. Never NULL. */

@@ -42,11 +42,11 @@ static inline char *put_number(char *at, uint64_t number)
     return at + (DIGITS_MAX - n);
 }
 
-static inline char *put_signed(char *at, int32_t number)
+static inline char *put_signed(char *at, int64_t number)
 {
     if (number < 0)
         *at++ = '-';
-    return put_number(at, (uint64_t)(number < 0 ? -(int64_t)number : number));
+    return put_number(at, number < 0 ? 0u - (uint64_t)number : (uint64_t)number);
 }
 
 /* "7E03", without blanks. */

@@ -75,11 +75,60 @@ static bool read_some(struct sim *sim, const json_t *given,
 
 bool event_filter_read(struct event_filter *filter, struct sim *sim, const json_t *params, struct refusal *refusal)
 {
-    static const char *const names[] = {"kinds", "motor", "unit", NULL};
+    static const char *const names[] = {"kinds", "motor", "unit", "cells", NULL};
+    const json_t *cells = json_object_get(params, "cells"), *kinds = json_object_get(params, "kinds");
     *filter = (struct event_filter){WATCH_ALL, ALL_MOTORS, ALL_UNITS};
-    return params_known(params, names, refusal) && read_kinds(json_object_get(params, "kinds"), &filter->kinds, refusal) &&
+    if (!read_kinds(kinds, &filter->kinds, refusal))
+        return false;
+    if (cells)
+        filter->kinds = (kinds ? filter->kinds : 0) | WATCH_BIT(WATCH_CELL);
+    else if (kinds && (filter->kinds & WATCH_BIT(WATCH_CELL)) != 0)
+        return refuse(refusal, REFUSED_PARAMS, "cells: expected a list of cells beside the kind `cell'") != NULL;
+    return params_known(params, names, refusal) &&
            read_some(sim, json_object_get(params, "motor"), add_motor, &filter->motors, refusal) &&
            read_some(sim, json_object_get(params, "unit"), add_unit, &filter->units, refusal);
+}
+
+/* ---- Cells -------------------------------------------------------------------------------------------------------------- */
+
+/* Returns {cell: value}, NULL: refused. */
+static json_t *watch_cells(struct sim *sim, const struct watcher *watcher, const json_t *params, struct refusal *refusal)
+{
+    const json_t *cells = json_object_get(params, "cells"), *cell;
+    const unsigned unit = param_unit(sim, params, refusal);
+    size_t at;
+    if (unit == 0)
+        return NULL;
+    if (!json_is_array(cells) || json_array_size(cells) == 0 || json_array_size(cells) > EVENT_CELLS_MAX)
+        return refuse(refusal, REFUSED_PARAMS, "cells: expected a list of up to %u cells, as in [\"PO_STOP\"]", EVENT_CELLS_MAX);
+    json_t *values = json_object();
+    json_array_foreach((json_t *)cells, at, cell) {
+        struct device_refusal why = {.text = "expected names of cells"};
+        const char *name = json_string_value(cell);
+        const struct watch_cell *found = name ? sim_watch_cell(sim, watcher, unit, name, &why) : NULL;
+        if (!found) {
+            json_decref(values);
+            return refuse(refusal, why.is_state ? REFUSED_STATE : REFUSED_PARAMS, "cells: %s", why.text);
+        }
+        json_object_set_new(values, name, json_integer((json_int_t)found->value));
+    }
+    return values;
+}
+
+json_t *event_watch(struct sim *sim, struct watcher *watcher, const struct event_filter *filter, unsigned number,
+                    const json_t *params, struct refusal *refusal)
+{
+    json_t *values = NULL;
+    watcher->kinds = filter->kinds;
+    sim_watch(sim, watcher);
+    if (json_object_get(params, "cells")) {
+        values = watch_cells(sim, watcher, params, refusal);
+        if (!values) {
+            sim_unwatch(sim, watcher);
+            return NULL;
+        }
+    }
+    return json_pack("{s:I, s:i, s:o*}", "t_us", (json_int_t)sim_now(sim), "subscription", (int)number, "cells", values);
 }
 
 bool event_filter_passes(const struct event_filter *filter, const struct watch_event *event)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* event_filter.h: which events a client wants, from the parameters of `subscribe` (docs/CONTROL.md). */
+/* event_filter.h: what a client subscribes to, from the parameters of `subscribe` (docs/CONTROL.md). */
 #ifndef RKM04_TRACE_EVENT_FILTER_H
 #define RKM04_TRACE_EVENT_FILTER_H
 
@@ -10,8 +10,15 @@ struct event_filter {
     uint32_t motors, units; /* bit n: number n */
 };
 
-/* Read `kinds`, `motor`, `unit`; what is left out means all. Returns false: refused. */
+#define EVENT_CELLS_MAX 64u /* of a subscription */
+
+/* Read `kinds`, `motor`, `unit`; what is left out means all, but with `cells` no other kind. Returns false: refused. */
 bool event_filter_read(struct event_filter *filter, struct sim *sim, const json_t *params, struct refusal *refusal);
+
+/* A watcher with this filter watches, also the cells of the parameters. Returns the answer, {t_us, subscription, cells: what they
+ * are now}, a new reference; NULL: refused, and it does not watch. */
+json_t *event_watch(struct sim *sim, struct watcher *watcher, const struct event_filter *filter, unsigned number,
+                    const json_t *params, struct refusal *refusal);
 
 /* Is this event, of one of `kinds`, wanted? Those of no motor or no unit always are. */
 bool event_filter_passes(const struct event_filter *filter, const struct watch_event *event);

@@ -27,6 +27,8 @@ size_t event_json_room(const struct watch_event *event)
         return room + text_room(event->text);
     case WATCH_SERVICE:
         return room + text_room(event->service->name) + 2u * event->service->length;
+    case WATCH_CELL:
+        return room + ESCAPED * WATCH_CELL_NAME_SIZE;
     default:
         return room;
     }
@@ -122,6 +124,8 @@ static char *put_value(char *at, const struct sim *sim, const struct watch_event
         return put_string(put_text(put_signed(at, event->value), ",\"text\":"), event->text);
     case WATCH_SERVICE:
         return put_service(put_signed(at, event->value), event->service);
+    case WATCH_CELL:
+        return put_signed(at, event->cell);
     case WATCH_INPUTS:
     case WATCH_OUTPUTS:
     case WATCH_VARIABLES:
@@ -154,7 +158,9 @@ char *event_json(char *at, const struct sim *sim, const struct watch_event *even
     if (event->motor != 0) {
         at = put_number(put_text(at, ",\"motor\":"), event->motor);
     }
-    if (event->number != 0)
+    if (event->kind == WATCH_CELL)
+        at = put_string(put_text(at, ",\"cell\":"), sim->watch.cells[event->number].name);
+    else if (event->number != 0)
         at = put_string(put_text(at, ",\"name\":"), sim_device(sim)->value_names[event->number - 1u]);
     return put_value(put_text(at, ",\"value\":"), sim, event);
 }

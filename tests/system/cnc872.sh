@@ -95,6 +95,29 @@ test_a_recording_has_the_files_of_its_machine() {
     holds "$said" "the same" "the replay"
 }
 
+test_NL2_rkmctl_shows_cells_that_change() {
+    printf 'G1 X10 F1000\n' >"$folder/a.nc"
+    serve_cnc --nc "$folder/a.nc"
+    start events "$RKMCTL" -c "$folder/control" events cell=PO_F cell=DWRD.B_INK count=3
+    soon "it listens" grep -q listening "$folder/events.err"
+    call cnc.panel start=true
+    call advance 'ticks="1s"'
+    status_of "$started"
+    same "0.001000 s  unit 1  cell PO_F 1
+0.002000 s  unit 1  cell DWRD.B_INK 4
+0.003000 s  unit 1  cell DWRD.B_INK 12" "$(cat "$folder/events.out")" "the events"
+    exits 2 "$RKMCTL" -c "$folder/control" events cell=NO_CELL
+    holds "$complained" "NO_CELL" "the refusal"
+}
+
+test_NL2_events_of_cells_wait_for_a_client_that_advances_and_reads_late() {
+    serve_cnc
+    exits 0 python3 "$(dirname "$0")/cnc_client.py" "$folder/control" "$started"
+    same "['DWRD.FILETIME_INFO.LOW_FILETIME']
+True
+{'t_us': 4000001} {64} 4000 True" "$said" "what the client prints"
+}
+
 test_NO3_the_backup_memory_is_kept_in_a_file() {
     serve_cnc --flash "$folder/backup.img"
     call cnc.set 'cells={"PLC_MEM_BACKUP[5]": 77}'
