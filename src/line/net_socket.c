@@ -12,6 +12,11 @@ static int descriptor(const uv_tcp_t *tcp)
     return uv_fileno((const uv_handle_t *)tcp, &fd) == 0 ? fd : -1;
 }
 
+void net_socket_prepare_listener(uv_tcp_t *listener)
+{
+    (void)listener;
+}
+
 size_t net_socket_waiting(const uv_tcp_t *tcp)
 {
     int fd = descriptor(tcp), waiting = 0;

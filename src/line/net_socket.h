@@ -8,6 +8,9 @@
 #include <sys/types.h>
 #include <uv.h>
 
+/* Before it listens: let it keep no more of the system than one connection needs. */
+void net_socket_prepare_listener(uv_tcp_t *listener);
+
 /* Bytes that have come and have not been read. */
 size_t net_socket_waiting(const uv_tcp_t *tcp);
 

@@ -15,6 +15,12 @@ static SOCKET socket_of(const uv_tcp_t *tcp)
     return uv_fileno((const uv_handle_t *)tcp, &handle) == 0 ? (SOCKET)handle : INVALID_SOCKET;
 }
 
+/* libuv has 32 sockets ready for each listener otherwise, which must all be closed at the end: several seconds with 256 buses. */
+void net_socket_prepare_listener(uv_tcp_t *listener)
+{
+    uv_tcp_simultaneous_accepts(listener, 0);
+}
+
 size_t net_socket_waiting(const uv_tcp_t *tcp)
 {
     u_long waiting = 0;

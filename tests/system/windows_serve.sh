@@ -131,6 +131,15 @@ test_what_Windows_does_not_have_is_refused() {
     holds "$complained" "cannot listen at 192.0.2.1:4001" "the message about a strange address"
 }
 
+# Wine's server has a descriptor for each socket of all programs.
+test_256_buses_need_few_sockets() {
+    end_wine "$prefix"
+    (ulimit -n 1500 && make_wine "$prefix") || fail "Wine with few descriptors"
+    serve_exe buses --tcp 0 --lines 256 --node 1-16
+    end_exe buses
+    end_wine "$prefix"
+}
+
 # kill_exe: end it without a chance to tidy up.
 kill_exe() {
     local program
