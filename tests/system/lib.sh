@@ -160,10 +160,12 @@ run_case() {
     "$1"
 }
 
-# run_cases [NAME]: every test_ function of the file, or one.
+# run_cases [NAME...]: every test_ function of the file, or these.
 run_cases() {
     local name failed=0
-    for name in ${1-$(compgen -A function test_)}; do
+    # shellcheck disable=SC2046
+    (($# > 0)) || set -- $(compgen -A function test_)
+    for name; do
         if (run_case "$name"); then
             echo "ok $name"
         else
