@@ -18,9 +18,12 @@ static void log_fault(struct bus *bus, const struct watch_event *event)
     unsigned fault = (unsigned)event->value;
     if (fault == 0)
         return;
-    bus_log_at(&bus->log, event->tick, "unit %s, motor %u: fault %s at command %u",
-               bus->sim.unit[event->unit - 1u].name, event->motor, sim_device(&bus->sim)->fault_name(fault),
-               (unsigned)sim_axis(&bus->sim, event->unit, event->motor).index);
+    const char *unit = bus->sim.unit[event->unit - 1u].name, *name = sim_device(&bus->sim)->fault_name(fault);
+    if (event->motor == 0)
+        bus_log_at(&bus->log, event->tick, "unit %s: fault %s", unit, name);
+    else
+        bus_log_at(&bus->log, event->tick, "unit %s, motor %u: fault %s at command %u", unit, event->motor, name,
+                   (unsigned)sim_axis(&bus->sim, event->unit, event->motor).index);
     if (bus->coverage)
         sim_device(&bus->sim)->coverage->fault(bus->coverage, fault);
 }

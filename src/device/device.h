@@ -62,7 +62,7 @@ enum device_event {
     DEVICE_EVENT_COMMAND,  /* value: place from 1 of the command being executed; 0: none */
     DEVICE_EVENT_LED,      /* value: enum device_led */
     DEVICE_EVENT_VARIABLE, /* axis 0; value: all variables, the first in bit 0 */
-    DEVICE_EVENT_FAULT,    /* value: kind->fault_name(); 0: none */
+    DEVICE_EVENT_FAULT,    /* value: kind->fault_name(); 0: none. Axis 0: of the unit as a whole */
     DEVICE_EVENT_POSITION, /* value: counter, as two's complement, that no step led to */
     DEVICE_EVENT_VALUE     /* axis: which of the values, from 1; value: what it is now, as two's complement */
 };

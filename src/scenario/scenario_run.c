@@ -89,11 +89,14 @@ static bool check_faults(struct running *running)
     const struct running_fault *fault = &running->fault;
     if (!fault->there || running->scenario->allow_faults)
         return true;
-    const unsigned index = sim_axis(running->sim, fault->unit, fault->motor).index;
+    const char *unit = running->sim->unit[fault->unit - 1u].name;
+    const char *name = sim_device(running->sim)->fault_name(fault->fault);
+    if (fault->motor == 0)
+        return running_failed(running, running->step, fault->tick, running_text("no unit in fault"),
+                              running_text("unit %s in fault: %s", unit, name));
     return running_failed(running, running->step, fault->tick, running_text("no motor in fault"),
-                          running_text("unit %s motor %u in fault: %s at command %u",
-                                       running->sim->unit[fault->unit - 1u].name, fault->motor,
-                                       sim_device(running->sim)->fault_name(fault->fault), index));
+                          running_text("unit %s motor %u in fault: %s at command %u", unit, fault->motor, name,
+                                       (unsigned)sim_axis(running->sim, fault->unit, fault->motor).index));
 }
 
 /* ---- What must hold always ------------------------------------------------------------------------------------------ */

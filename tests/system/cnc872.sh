@@ -128,4 +128,17 @@ test_NO3_the_backup_memory_is_kept_in_a_file() {
     holds "$said" '"PLC_MEM_BACKUP[5]":77' "the memory after a regular end"
 }
 
+# A fault that is none of a motor.
+test_a_critical_error_of_the_panel_is_reported() {
+    serve_cnc
+    call cnc.panel rtm=7
+    call advance ticks=5ms
+    call state
+    holds "$said" '"fault":"critical"' "the state"
+    grep -q 'unit 1: fault critical$' "$folder/cnc.err" || fail "the log does not have the fault"
+    printf 'device: cnc872\nsteps:\n  - {call: cnc.panel, params: {rtm: 7}}\n  - advance: 5ms\n' >"$folder/fault.yaml"
+    exits 3 "$RKM04" test --no-records "$folder/fault.yaml"
+    holds "$said" "expected no unit in fault; seen unit 1 in fault: critical; at tick 1000" "the scenario"
+}
+
 run_cases "$@"
