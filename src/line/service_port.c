@@ -16,6 +16,7 @@ struct service_connection {
     unsigned client;     /* 0: none of ours, or no more */
     unsigned handles;    /* that are open */
     bool reading, writing, leaving, closing;
+    bool was_read;       /* in this round; the others come first */
     uv_tcp_t tcp;
     uv_timer_t timer;    /* ends one that is leaving */
     uv_write_t write;
@@ -178,6 +179,27 @@ static void on_room(uv_handle_t *handle, size_t suggested, uv_buf_t *buffer)
     *buffer = uv_buf_init((char *)connection->in, SERVICE_IN);
 }
 
+static void set_all_reading(struct service_port *port)
+{
+    for (struct service_connection *connection = port->first; connection; connection = connection->next)
+        set_reading(connection);
+}
+
+/* A turn of the loop begins. When each client that has sent something has been read, a new round begins. */
+static void on_turn(uv_idle_t *turn)
+{
+    struct service_port *port = turn->data;
+    if (port->reads == 0) {
+        uv_idle_stop(turn);
+        for (struct service_connection *connection = port->first; connection; connection = connection->next)
+            connection->was_read = false;
+    }
+    port->reads = 0;
+    port->is_over = false;
+    port->stint_end = uv_hrtime() + SERVICE_STINT;
+    set_all_reading(port);
+}
+
 static void on_read(uv_stream_t *stream, ssize_t length, const uv_buf_t *buffer)
 {
     struct service_connection *connection = stream->data;
@@ -185,14 +207,27 @@ static void on_read(uv_stream_t *stream, ssize_t length, const uv_buf_t *buffer)
     (void)buffer;
     if (length < 0)
         lose_client(connection, NULL);
-    else if (length > 0)
-        port->calls->bytes(port->context, connection->client, connection->in, (size_t)length);
+    if (length <= 0)
+        return;
+    if (!uv_is_active((uv_handle_t *)&port->turn)) {
+        uv_idle_start(&port->turn, on_turn);
+        port->stint_end = uv_hrtime() + SERVICE_STINT;
+    }
+    port->reads++;
+    connection->was_read = true;
+    set_reading(connection);
+    port->calls->bytes(port->context, connection->client, connection->in, (size_t)length);
+    port->is_over = uv_hrtime() >= port->stint_end;
+    if (port->is_over)
+        set_all_reading(port);
 }
 
-/* A client that does not read what it is sent is not read either. */
+/* A client that does not read what it is sent is not read either. However many clients send however much, each is read once in a
+ * round, and a turn of the loop has an end. */
 static void set_reading(struct service_connection *connection)
 {
-    bool wanted = !connection->closing && !connection->leaving && connection->client > 0 && connection->length == 0;
+    bool wanted = !connection->closing && !connection->leaving && connection->client > 0 && connection->length == 0 &&
+                  !connection->was_read && !connection->port->is_over;
     if (wanted == connection->reading)
         return;
     if (!wanted)
@@ -260,6 +295,9 @@ bool service_port_open(struct service_port *port, uv_loop_t *loop, const char *a
     port->listener.data = port;
     int error = uv_tcp_init(loop, &port->listener);
     port->open = error == 0;
+    port->turn.data = port;
+    if (port->open)
+        uv_idle_init(loop, &port->turn);
     const char *wrong =
         error != 0 ? uv_strerror(error) : net_listen(&port->listener, address, on_connection, port->address);
     if (!wrong)
@@ -275,6 +313,7 @@ void service_port_close(struct service_port *port)
         return;
     port->open = false;
     uv_close((uv_handle_t *)&port->listener, NULL);
+    uv_close((uv_handle_t *)&port->turn, NULL);
     for (struct service_connection *connection = port->first; connection; connection = connection->next)
         close_connection(connection);
 }

@@ -13,6 +13,7 @@
 
 #define SERVICE_IN 1024u       /* bytes read from a client at once */
 #define SERVICE_OUT_MAX 65536u /* bytes that may wait for a client to read; with one more it is hung up */
+#define SERVICE_STINT 2000000u /* ns: after them no more clients are read in a turn of the loop */
 
 struct service_connection;
 
@@ -31,6 +32,10 @@ struct service_port {
     void *context;
     const char *refusal; /* what one too many is sent; NULL: nothing */
     uv_tcp_t listener;
+    uv_idle_t turn;      /* begins each turn of the loop while a client has been read and waits for its next read */
+    uint64_t stint_end;  /* uv_hrtime() from which no client is read in this turn */
+    bool is_over;        /* the stint */
+    unsigned reads;      /* in this turn */
     bool open;
     struct service_connection *opening; /* open() is being called for it */
     struct service_connection *first;
