@@ -11,8 +11,12 @@ wine_in() {
     env -u DISPLAY WINEPREFIX="$1" WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml=" LC_ALL=C.UTF-8 timeout 200 "$wine" "${@:2}"
 }
 
-# make_wine PREFIX: make a prefix and have its server ready; what Wine says about that is not of interest.
+# make_wine PREFIX: make a prefix and have its server ready; what Wine says about that is not of interest. The server stays for
+# WINE_IDLE seconds without programs (default 600): else it and the programs of Wine's system end after three, begin anew with the
+# next program, and write to its stderr, now and then that one of them has ended by a page fault.
 make_wine() {
+    mkdir -p "$1"
+    WINEPREFIX=$1 WINEDEBUG=-all timeout 60 "$wineserver" "-p${WINE_IDLE-600}" >/dev/null 2>&1
     wine_in "$1" cmd /c exit >/dev/null 2>&1
     [[ -d $1/dosdevices ]]
 }

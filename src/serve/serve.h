@@ -2,6 +2,7 @@
 /* serve.h: `rkm04 serve`, from its options to its exit status; the face of the room.
  *
  *     serve            buses and control socket in one event loop, until a signal or a client ends it
+ *     serve_option_table  the options and their help
  *     serve_options    the command line
  *     serve_process    signals and descriptors
  *     serve_report     what is logged at the beginning and the end, and the READY line

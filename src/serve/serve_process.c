@@ -30,11 +30,26 @@ const char *serve_signal_name(int number)
     return number == SIGINT ? "SIGINT" : number == SIGTERM ? "SIGTERM" : "SIGHUP";
 }
 
-bool serve_has_option(const char *name)
+const char *serve_option_text(const char *name, const char *text)
 {
     (void)name;
-    return true;
+    return text;
 }
+
+const char serve_ended_by[] = "SIGINT or SIGTERM";
+
+const char serve_examples[] =
+    "  rkm04 serve\n"
+    "  rkm04 serve --node 3 --flash unit3.flash --link ~/rkm04-3\n"
+    "  rkm04 serve --node 1,2,5-8 --flash unit%n.flash\n"
+    "  rkm04 serve --tcp 4000 --rfc2217 4001\n"
+    "  rkm04 serve --port /dev/ttyUSB0 --framing plain\n"
+    "  rkm04 serve --clock x20 --baud 0\n"
+    "  rkm04 serve --readings hold-exit=latch,speed-change=500ms\n"
+    "  rkm04 serve --clock stepped --control test.control --plant axis.yaml\n"
+    "  rkm04 serve --control tcp:0 --control-file test.control\n"
+    "  rkm04 serve --trace pulses.vcd --wire line.pcapng --record session.record\n"
+    "  rkm04 serve --exit-when-idle=2 --coverage covered.txt --min-coverage 80\n";
 
 static unsigned count_services(const struct bus_options *options)
 {

@@ -18,8 +18,12 @@ bool serve_signal_ends(int number);
 /* What it is called in the log. */
 const char *serve_signal_name(int number);
 
-/* Has the system what an option of `rkm04 serve' needs? `name`: without the dashes. */
-bool serve_has_option(const char *name);
+/* What --help says of an option: `text`, or what is so on this system. NULL: it has nothing for the option. `name`: without the
+ * dashes. */
+const char *serve_option_text(const char *name, const char *text);
+
+/* For --help: what ends the emulator; examples, a line each. */
+extern const char serve_ended_by[], serve_examples[];
 
 /* See that there are descriptors for all that the options ask for, and for clients. Nothing has been opened yet. Returns false
  * if there are too few (reported). */

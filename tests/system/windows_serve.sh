@@ -131,6 +131,26 @@ test_what_Windows_does_not_have_is_refused() {
     holds "$complained" "cannot listen at 192.0.2.1:4001" "the message about a strange address"
 }
 
+# options TEXT: the options that a text of --help lists.
+options() { grep -oE '^ +(-., )?--[a-z0-9-]+' <<<"$1" | grep -oE '[-]-[a-z].*' | grep -vx -- --version | sort -u; }
+
+test_help_shows_what_Windows_has() {
+    local help word hidden="--allow-folder --link --no-sandbox --ready-fd --window --wine"
+    cd "$folder" || fail "cd"
+    exits 0 "$RKM04" serve --help
+    options "$said" >here.txt
+    exits 0 exe serve --help
+    help=${said//'"pty":'/} # in READY
+    options "$help" >there.txt
+    same "$hidden" "$(comm -23 here.txt there.txt | xargs)" "what is not shown"
+    same "" "$(comm -13 here.txt there.txt)" "what is shown there alone"
+    for word in pty /dev/ '$XDG' SIGTERM Landlock --link --window; do
+        [[ $help != *"$word"* ]] || fail "the help knows $word"
+    done
+    same "" "$(grep '^  rkm04 serve' <<<"$help" | grep -v -e --tcp -e --rfc2217 -e --port)" "examples that are refused"
+    holds "$help" "rkm04 serve --port COM3" "the examples"
+}
+
 # Wine's server has a descriptor for each socket of all programs.
 test_256_buses_need_few_sockets() {
     (ulimit -n 1500 2>/dev/null) || skip_case "Wine needs 1500 descriptors: \`ulimit -Hn' is $(ulimit -Hn)"
