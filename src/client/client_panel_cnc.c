@@ -144,13 +144,25 @@ static void put_plc(struct panel *panel, int row, const json_t *cnc)
         grid_put_whole(panel, row, column + GAP, PANEL_WRONG, "critical error %" JSON_INTEGER_FORMAT, critical);
 }
 
+/* A speed of 1/1000 rev/min in rev/min, rounded to tenths; "-" where there is none. */
+static const char *turns_text(const json_t *spindle, const char *key, char text[32])
+{
+    const json_int_t number = integer_of(spindle, key), tenths = (number < 0 ? number - 50 : number + 50) / 100;
+    const json_int_t size = tenths < 0 ? -tenths : tenths;
+    if (json_is_integer(json_object_get(spindle, key)))
+        snprintf(text, 32, "%s%" JSON_INTEGER_FORMAT ".%d", tenths < 0 ? "-" : "", size / 10, (int)(size % 10));
+    else
+        strcpy(text, "-");
+    return text;
+}
+
 static void put_spindle(struct panel *panel, int row, const json_t *cnc)
 {
     const json_t *spindle = json_object_get(cnc, "spindle");
-    char actual[24], required[24];
+    char actual[32], required[32];
     int column = grid_put_whole(panel, row, LINE_LEFT, PANEL_PLAIN, "%s", grid_string(spindle, "turns", "-")) + GAP;
-    column = grid_put_whole(panel, row, column, PANEL_PLAIN, "%s of %s rev/min", grid_number(spindle, "actual", actual),
-                            grid_number(spindle, "required", required)) + GAP;
+    column = grid_put_whole(panel, row, column, PANEL_PLAIN, "%s of %s rev/min", turns_text(spindle, "actual", actual),
+                            turns_text(spindle, "required", required)) + GAP;
     column = put_number(panel, row, column, "gear", spindle, "gear");
     grid_put_whole(panel, row, column, PANEL_PLAIN, "spindle %" JSON_INTEGER_FORMAT " %%",
                    integer_of(json_object_get(cnc, "panel"), "spindle"));

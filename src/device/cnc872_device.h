@@ -76,7 +76,7 @@ const char *cnc_settings_difference(const struct device_config *a, const struct 
 /* Is there anything wrong in an NC program? As struct device_kind's check_text. */
 bool cnc_check_text(const struct device_config *config, const char *name, const char *text, size_t length, FILE *out);
 
-/* ---- cnc872_json.c, cnc872_cells.c, cnc872_methods.c -------------------------------------------------------------------- */
+/* ---- cnc872_json.c, cnc872_cells.c, cnc872_names.c, cnc872_methods.c ---------------------------------------------------- */
 
 json_t *cnc_json_state(const struct device_unit *unit, uint64_t t_us);
 json_t *cnc_json_describe(const struct device_unit *unit, uint64_t t_us);
@@ -94,6 +94,10 @@ int32_t cnc_shown_position(const struct cnc *cnc, unsigned axis);
 json_t *cnc_get_cells(const struct cnc_device *device, const json_t *cells, struct device_refusal *refusal);
 /* {operand: value}: all of them, or none. False: refused. */
 bool cnc_set_cells(struct cnc_device *device, const json_t *cells, struct device_refusal *refusal);
+
+/* {search, section, limit} -> {cells: [{name, type, access, section}], more}: the cells whose name has this part; NULL:
+ * refused. */
+json_t *cnc_find_names(const struct cnc_device *device, const json_t *params, struct device_refusal *refusal);
 
 /* As struct device_kind's find_cell and cell. */
 uint64_t cnc_find_cell_code(const struct device_unit *unit, const char *name, char error[DEVICE_ERROR_SIZE]);

@@ -61,11 +61,12 @@ json_t *cnc_json_state(const struct device_unit *unit, uint64_t t_us)
 
 static json_t *axis_json(const struct cnc *cnc, unsigned axis)
 {
-    return json_pack("{s:I, s:I, s:I, s:I, s:s, s:b, s:b}", "position", (json_int_t)cnc_position(cnc, axis, 5), "actual",
+    return json_pack("{s:I, s:I, s:I, s:I, s:s, s:b, s:b, s:b}", "position", (json_int_t)cnc_position(cnc, axis, 5), "actual",
                      (json_int_t)cnc_position(cnc, axis, 6), "pos0", (json_int_t)cnc_position(cnc, axis, 0), "difference",
                      (json_int_t)cnc_number(&cnc->cells, CNC_CELL_DIFCIT_X, axis), "state",
                      cnc_state_name(cnc_axis_state(cnc, axis)), "homed",
-                     (int)(number_of(cnc, CNC_CELL_HOMING) >> axis & 1), "enabled", (int)has_bit(cnc, CNC_BIT_MPxPI + axis));
+                     (int)(number_of(cnc, CNC_CELL_HOMING) >> axis & 1), "enabled", (int)has_bit(cnc, CNC_BIT_MPxPI + axis),
+                     "rotary", (int)cnc->config->axis[axis].is_rotary);
 }
 
 static json_t *axes_json(const struct cnc *cnc)

@@ -39,6 +39,11 @@ static json_t *call_set(struct device_unit *unit, const json_t *params, struct d
     return json_pack("{s:I}", "t", (json_int_t)cnc_of(unit)->cnc.turn);
 }
 
+static json_t *call_cells(struct device_unit *unit, const json_t *params, struct device_refusal *refusal)
+{
+    return cnc_find_names(cnc_of(unit), params, refusal);
+}
+
 /* ---- Panel -------------------------------------------------------------------------------------------------------------- */
 
 /* A member of `panel` that is a key or switch: false or true. */
@@ -279,6 +284,7 @@ static json_t *call_state(struct device_unit *unit, const json_t *params, struct
 const struct device_method cnc_methods[] = {
     {"cnc.get", call_get, false, NAMES("cells")},
     {"cnc.set", call_set, true, NAMES("cells")},
+    {"cnc.cells", call_cells, false, NAMES("search", "section", "limit")},
     {"cnc.panel", call_panel, true, NULL}, /* it reports more about its own */
     {"cnc.load", call_load, true, NAMES("text", "name")},
     {"cnc.state", call_state, false, (const char *const[]){NULL}},

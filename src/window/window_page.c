@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "window_control.h"
+
 struct page *page_open(struct pages *pages, struct lws *socket)
 {
     struct page *page = pages->count < PAGES_MAX ? calloc(1, sizeof *page) : NULL;
@@ -31,6 +33,16 @@ void page_close(struct page *page)
     page->pages->closed(page);
     free(page->message);
     free(page);
+}
+
+void page_detach(struct page *page)
+{
+    if (page->control != NULL && page->leave != NULL)
+        window_control_send(page->control, page->leave, strlen(page->leave)); /* written at once, but to a clogged socket */
+    free(page->leave);
+    page->leave = NULL;
+    window_control_close(page->control);
+    page->control = NULL;
 }
 
 struct page *page_find(const struct pages *pages, uint64_t number)

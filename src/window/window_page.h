@@ -52,6 +52,7 @@ struct page {
     bool busy;              /* a job of the program tools is under way, */
     struct tools_job *later; /* and this one comes next */
     struct window_control *control; /* its connection to the emulator; NULL: none */
+    char *leave;            /* a line that goes there before that connection ends; NULL: none */
 };
 
 /* NULL: there are too many, or no memory. */
@@ -61,6 +62,9 @@ struct page *page_find(const struct pages *pages, uint64_t number);
 
 /* Bytes of a message have come; `last` ends it. Returns false if the page is to be closed. */
 bool page_receive(struct page *page, const void *bytes, size_t length, bool last);
+
+/* End the page's connection to the emulator, which is sent `leave` before: what was held in the page is let go. */
+void page_detach(struct page *page);
 
 /* Send an object; takes the reference. A `frame` is left out if the page is slow. */
 void page_send(struct page *page, json_t *object);

@@ -194,8 +194,7 @@ static void on_line(void *context, char *line, size_t length)
 static void on_ended(void *context)
 {
     struct page *page = context;
-    window_control_close(page->control);
-    page->control = NULL;
+    page_detach(page);
     page_send(page, json_pack("{s:s}", "event", "uncalled")); /* what has not been answered will not be */
 }
 
@@ -234,37 +233,60 @@ static bool place_file(struct page *page, const json_t *request, json_t *params)
     return true;
 }
 
-/* {"method", "params", "id"}: a method of the control socket. */
-static void do_call(struct page *page, json_t *request)
+/* {"method", "params"}: a call of the control socket, as text with this id. NULL: refused. */
+static char *make_call(struct page *page, const json_t *request, json_t *id)
 {
-    const struct window_control_calls calls = {.line = on_line, .ended = on_ended, .context = page};
-    struct window *window = window_of(page);
-    char trouble[256] = "no emulator is chosen";
+    const struct window *window = window_of(page);
     const char *method = read_string(page, request, "method");
     json_t *params = json_deep_copy(json_object_get(request, "params"));
     if (method == NULL || (params != NULL && !json_is_object(params)) || !is_allowed(window, method)) {
         if (method != NULL)
             page_refuse(page, request, "unknown method, or params that are no object");
         json_decref(params);
-        return;
+        return NULL;
     }
     params = params != NULL ? params : json_object();
     if (!place_file(page, request, params)) {
         json_decref(params);
-        return;
+        return NULL;
     }
     json_object_set_new(params, "line", json_integer(window->watch.bus));
+    json_t *call = json_pack("{s:s, s:O?, s:s, s:o}", "jsonrpc", "2.0", "id", id, "method", method, "params", params);
+    char *text = call != NULL ? json_dumps(call, JSON_COMPACT) : NULL;
+    if (text == NULL)
+        page_refuse(page, request, "out of memory");
+    json_decref(call);
+    return text;
+}
+
+/* A method of the control socket. */
+static void do_call(struct page *page, json_t *request)
+{
+    const struct window_control_calls calls = {.line = on_line, .ended = on_ended, .context = page};
+    struct window *window = window_of(page);
+    char trouble[256] = "no emulator is chosen";
+    char *text = make_call(page, request, json_object_get(request, "id"));
+    if (text == NULL)
+        return;
     if (page->control == NULL && window->watch.path[0] != '\0')
         page->control = window_control_open(&window->loop, window->watch.path, &calls, trouble);
-    json_t *call = json_pack("{s:s, s:O?, s:s, s:o}", "jsonrpc", "2.0", "id", json_object_get(request, "id"), "method", method,
-                             "params", params);
-    char *text = call != NULL ? json_dumps(call, JSON_COMPACT) : NULL;
-    if (page->control == NULL || text == NULL)
+    if (page->control == NULL)
         page_refuse(page, request, "%s", trouble);
     else
         window_control_send(page->control, text, strlen(text));
     free(text);
-    json_decref(call);
+}
+
+/* What is called when the page goes: it lets keys go that are held. Without a method: nothing. */
+static void do_leave(struct page *page, json_t *request)
+{
+    const bool is_call = json_object_get(request, "method") != NULL;
+    char *text = is_call ? make_call(page, request, NULL) : NULL;
+    if (is_call && text == NULL)
+        return;
+    free(page->leave);
+    page->leave = text;
+    page_answer(page, request, json_object());
 }
 
 /* ---- All -------------------------------------------------------------------------------------------------------------- */
@@ -285,7 +307,7 @@ void window_request(struct page *page, json_t *request)
     } requests[] = {
         {"hello", do_hello}, {"ports", window_ports_list}, {"open", do_open}, {"close", do_close}, {"request", do_request},
         {"send", do_send}, {"stop", do_stop}, {"check", tools_do}, {"format", tools_do}, {"attach", do_attach},
-        {"watch", do_watch}, {"call", do_call},
+        {"watch", do_watch}, {"call", do_call}, {"leave", do_leave},
     };
     const char *name = json_string_value(json_object_get(request, "do"));
     for (size_t i = 0; name != NULL && i < sizeof requests / sizeof requests[0]; i++) {
@@ -299,7 +321,7 @@ void window_request(struct page *page, json_t *request)
 
 void window_page_closed(struct page *page)
 {
-    window_control_close(page->control);
+    page_detach(page);
     tools_drop(page->later);
     window_watch_pages_changed(&window_of(page)->watch);
 }

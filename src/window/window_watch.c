@@ -256,8 +256,7 @@ void window_watch_choose(struct window_watch *watch, const char *path, int bus)
     watch->bus = bus;
     snprintf(watch->path, sizeof watch->path, "%s", path != NULL ? path : "");
     for (struct page *page = watch->pages->first; page != NULL; page = page->next) {
-        window_control_close(page->control);
-        page->control = NULL;
+        page_detach(page);
         page_send(page, json_pack("{s:s}", "event", "uncalled")); /* what has not been answered will not be */
     }
     window_watch_pages_changed(watch);

@@ -171,8 +171,8 @@ static json_t *cnc_state(int count, json_t *more)
     json_t *cnc = json_pack(
         "{s:{s:s, s:i, s:i, s:i, s:i}, s:o, s:{s:b, s:b}, s:{s:s, s:i, s:i, s:b, s:b}, s:{s:i, s:i, s:i, s:s}, s:i, s:i, s:i, "
         "s:i}", "block", "phase", "move", "block", 1, "line", 4, "next", 2, "blocks", 9, "axes", axes, "stops", "po_stop", 0,
-        "sf_stop", 0, "panel", "mode", "aut", "feed", 120, "spindle", 95, "rapid", 1, "m01", 0, "spindle", "required", 500,
-        "actual", 480, "gear", 2, "turns", "m3", "speed", 1092266, "critical", 0, "plc_error", 0, "plc_pass", 1);
+        "sf_stop", 0, "panel", "mode", "aut", "feed", 120, "spindle", 95, "rapid", 1, "m01", 0, "spindle", "required", 500000,
+        "actual", 479949, "gear", 2, "turns", "m3", "speed", 1092266, "critical", 0, "plc_error", 0, "plc_pass", 1);
     json_object_update(cnc, more);
     json_decref(more);
     return json_pack("{s:i, s:s, s:s, s:[], s:o, s:{s:s}}", "t_us", 99000, "unit", "1", "clock", "x1", "motors", "cnc", cnc,
@@ -190,7 +190,7 @@ START_TEST(a_cnc_has_its_axes_and_what_its_block_and_its_program_do)
                  " feed     1000.0 mm/min   feed 120 %   aut   rapid\n"
                  " stops    -\n"
                  " PLC      pass init   error 0h\n"
-                 " spindle  m3   480 of 500 rev/min   gear 2   spindle 95 %\n");
+                 " spindle  m3   479.9 of 500.0 rev/min   gear 2   spindle 95 %\n");
 }
 END_TEST
 

@@ -233,6 +233,20 @@ START_TEST(NU3_the_cells_of_a_plc_program_are_cells_like_others)
 }
 END_TEST
 
+START_TEST(NL3_mechanisms_of_a_plc_program_are_found)
+{
+    static const char plc[] = "plc=DATA\nREADY BIT 0\nLIMIT EQU 5\nDATA_END\nMODULE_MAIN\n  Mech_Begin CLAMP\n EX\n"
+                              "MECH_END CLAMP\nMODULE_MAIN_END\n";
+    fake_rig_end(&rig);
+    fake_rig_begin_as(&rig, &cnc872_device, plc, "1", true);
+    expect_result("cnc.cells", "{\"section\": \"mechanism\"}",
+                  "{\"cells\":[{\"name\":\"CLAMP\",\"type\":\"BIT\",\"access\":\"rw\",\"section\":\"mechanism\"}],\"more\":0}");
+    expect_result("cnc.cells", "{\"search\": \"\", \"section\": \"program\"}",
+                  "{\"cells\":[{\"name\":\"READY\",\"type\":\"BIT\",\"access\":\"rw\",\"section\":\"program\"}],\"more\":0}");
+    fake_rig_expect_refusal(&rig, "cnc.cells", "{\"section\": 8}", "section: expected its name");
+}
+END_TEST
+
 START_TEST(NL1_a_real_that_is_no_number_is_null)
 {
     fake_rig_do(&rig, "cnc.set", "{\"cells\": {\"QWRD.rAxGParabAccel\": 9221120237041090560}}"); /* NaN */
@@ -291,6 +305,33 @@ START_TEST(NL2_conditions_see_cells_that_change_while_nothing_happens)
 }
 END_TEST
 
+START_TEST(NL3_cells_are_found_by_a_part_of_their_name)
+{
+    expect_result("cnc.cells", "{\"search\": \"po_pol\"}",
+                  "{\"cells\":[{\"name\":\"PO_POL\",\"type\":\"BIT\",\"access\":\"r\",\"section\":\"8.1.15\"}],\"more\":0}");
+    /* Of axes those that the configuration has. */
+    expect_result("cnc.cells", "{\"search\": \"PLC_MEM\"}", "\"name\":\"PLC_MEM_BACKUP[0]\"");
+    expect_result("cnc.cells", "{\"search\": \"difcit\", \"limit\": 2}", "\"name\":\"DIFCIT_X[1]\"");
+    expect_result("cnc.cells", "{\"search\": \"difcit\", \"limit\": 2}", "\"more\":1}");
+    expect_result("cnc.cells", "{\"search\": \"VAZBA_\", \"limit\": 2}", "\"name\":\"VAZBA_X\"");
+    expect_result("cnc.cells", "{\"search\": \"TOC_ROW\"}", "\"name\":\"DISPTOC1.TOC_ROW\",\"type\":\"BYTE\",\"access\":\"rw\"");
+    expect_result("cnc.cells", "{\"search\": \"BLK[0].AxNC0\"}", "\"access\":\"r\"");
+    fake_rig_expect_refusal(&rig, "cnc.cells", "{\"search\": 1}", "search: expected a part of a name");
+    fake_rig_expect_refusal(&rig, "cnc.cells", "{\"limit\": 0}", "limit: expected a whole number from 1 to 1000");
+    /* Each name is one that cnc.get takes. */
+    size_t at;
+    json_t *cell, *found = fake_rig_command(&rig, "cnc.cells", "{\"limit\": 1000}");
+    ck_assert_int_eq(json_integer_value(json_object_get(found, "more")), 0);
+    ck_assert_uint_gt(json_array_size(json_object_get(found, "cells")), 300);
+    json_array_foreach(json_object_get(found, "cells"), at, cell) {
+        char params[100];
+        snprintf(params, sizeof params, "{\"cells\": [\"%s\"]}", json_string_value(json_object_get(cell, "name")));
+        json_decref(fake_rig_command(&rig, "cnc.get", params));
+    }
+    json_decref(found);
+}
+END_TEST
+
 /* The names of the kinds of faults, as {"kinds": [{"kind": NAME, ...}]} has them. */
 static void expect_kinds(const char *wanted)
 {
@@ -342,6 +383,8 @@ static Suite *cnc872_device_suite(void)
     tcase_add_test(tests, NL2_the_cnc_tells_what_happens);
     tcase_add_test(tests, NL1_a_real_that_is_no_number_is_null);
     tcase_add_test(tests, NO3_the_backup_memory_outlives_power);
+    tcase_add_test(tests, NL3_mechanisms_of_a_plc_program_are_found);
+    tcase_add_test(tests, NL3_cells_are_found_by_a_part_of_their_name);
     tcase_add_test(tests, NU1_a_cnc_has_neither_bus_nor_inputs_nor_steps);
     suite_add_tcase(suite, tests);
     return suite;

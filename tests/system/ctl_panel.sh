@@ -138,7 +138,7 @@ test_the_panel_of_a_CNC872_shows_axes_block_and_stops() {
         "see: stops    -" "run:'$RKMCTL' call cnc.panel stop=true" "run:'$RKMCTL' advance 500ms" "see: X     stopped" \
         "see: stops    po_stop   sf_stop" colours:red keys:q status:0
     exits 0 "$RKMCTL" watch --once
-    holds "$said" " spindle  off   0 of 0 rev/min   gear 1   spindle 100 %" "the spindle"
+    holds "$said" " spindle  off   0.0 of 0.0 rev/min   gear 1   spindle 100 %" "the spindle"
 }
 
 run_cases "$@"

@@ -32,16 +32,55 @@ test_the_panel_of_a_CIB_module_shows_drives_outputs_and_configuration() {
     serve bus --device cib
     drive_with cib "$folder/bus.control"
 }
-test_the_panel_of_a_CNC872_moves_its_axes_and_draws_their_path() {
-    printf 'G1 X3 F600\nY2\n' >"$folder/corner.nc"
-    start bus "$RKM04" serve --device cnc872 --nc "$folder/corner.nc" --control "$folder/bus.control"
+# show_cnc CASE OPTION...: the panel of a CNC872 with these options.
+show_cnc() {
+    start bus "$RKM04" serve --device cnc872 --control "$folder/bus.control" "${@:2}"
     soon "the unit is ready" ready bus
-    drive_with cnc "$folder/bus.control"
+    drive_with "$1" "$folder/bus.control"
 }
-test_a_device_without_a_bus_shows_what_it_has() {
-    start bus "$RKM04" serve --device cnc872 --control "$folder/bus.control"
-    soon "the unit is ready" ready bus
-    drive_with nobus "$folder/bus.control"
+test_a_device_without_a_bus_shows_what_it_has() { show_cnc nobus; }
+test_the_panel_of_a_CNC872_moves_its_axes_and_draws_their_path() {
+    printf 'G1 X30 F600\nY2\n' >"$folder/corner.nc"
+    show_cnc cnc --nc "$folder/corner.nc"
+}
+test_keys_of_a_CNC872_are_let_go_whatever_happens_to_the_page() { show_cnc cncheld; }
+test_keys_of_a_CNC872_are_let_go_when_the_window_ends() {
+    show_cnc cncend
+    soon "the axis has stopped" stands
+}
+stands() { [[ $("$RKMCTL" -c "$folder/bus.control" call cnc.state) != *'"state":"manual"'* ]]; }
+test_an_NC_program_is_loaded_into_a_CNC872_and_a_block_chosen() { show_cnc cnctext; }
+test_keys_displays_and_mechanisms_of_a_PLC_program_are_shown() {
+    cat >"$folder/show.plc" <<'PLC'
+MODULE_INIT
+  LOD CNST.16
+  STO BYTE.DISPTOC1.TOC_COLUMN
+  LOD CNST.'A'
+  STO BYTE.DISPTOC1.TOC_CHAR1
+  LOD CNST.'b'
+  STO BYTE.DISPTOC1.TOC_CHAR2
+  LOD CNST.'c'
+  STO BYTE.DISPTOC1.TOC_CHAR3
+  LOD CNST.0FFh
+  STO BYTE.DISPTOC1.TOC_CHAR4
+MODULE_INIT_END
+MODULE_MAIN
+MECH_BEGIN WAIT
+  LDR STOPPI
+  EX0
+MECH_END WAIT
+MODULE_MAIN_END
+PLC
+    show_cnc cncplc --plc "$folder/show.plc"
+}
+test_cells_of_a_CNC872_are_found_shown_and_set() { show_cnc cnccells; }
+test_all_axes_of_a_CNC872_have_their_curves() {
+    {
+        echo '<ChannelConfig>'
+        for name in X Y Z {5..16}; do echo "<Axis Name=\"$name\"/>"; done
+        echo '<Axis Name="4" Rotary="1"/></ChannelConfig>'
+    } >"$folder/all.xml"
+    show_cnc cncaxes --config "$folder/all.xml"
 }
 test_the_panel_of_a_PMC_does_what_its_maker_s_window_does() {
     serve bus --device pmc-2hs

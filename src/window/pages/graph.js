@@ -5,12 +5,17 @@ import { makeSvg } from "./make.js";
 const SPAN_MS = 60000;
 const PART_MS = 150; // what comes within one part is drawn as its first, lowest, highest and last value
 const COLOURS = 4;
+const DASHES = [[], [6, 3], [2, 2], [8, 3, 2, 3]];
+
+const round = (value) => Math.round(value * 1000) / 1000;
 
 export class Graph {
   constructor(canvas, bands = 1, motors = 4) {
     this.canvas = canvas;
     this.bands = bands;
     this.parts = Array.from({ length: bands }, () => Array.from({ length: motors }, () => []));
+    this.hidden = this.parts.map(() => new Set()); // motors that are not drawn
+    this.titles = []; // of the bands
     this.wanted = false;
     this.inSight = false;
     new ResizeObserver(() => this.draw()).observe(canvas);
@@ -22,6 +27,14 @@ export class Graph {
 
   // The values of another one.
   take(other) { this.parts = other.parts; }
+
+  clear() { this.parts.forEach((lists) => lists.forEach((list) => { list.length = 0; })); }
+
+  // Motors, from 0, that are not drawn.
+  hide(band, motors) {
+    this.hidden[band] = motors;
+    this.draw();
+  }
 
   // A value of a motor, from 0, at a time in ms.
   add(band, motor, time, value) {
@@ -61,10 +74,11 @@ export class Graph {
     context.setTransform(scale, 0, 0, scale, 0, 0);
     context.clearRect(0, 0, width, height);
     for (let band = 0; band < this.bands; band++)
-      this.paintBand(context, style, this.parts[band], band * height / this.bands, height / this.bands, width);
+      this.paintBand(context, style, band, band * height / this.bands, height / this.bands, width);
   }
 
-  paintBand(context, style, lists, top, height, width) {
+  paintBand(context, style, band, top, height, width) {
+    const lists = this.parts[band].map((list, motor) => this.hidden[band].has(motor) ? [] : list);
     const filled = lists.filter((list) => list.length > 0);
     if (filled.length === 0)
       return;
@@ -79,11 +93,11 @@ export class Graph {
     const y = (value) => top + height - 6 - (value - low) / (high - low) * (height - 24);
     context.fillStyle = style.getPropertyValue("--soft");
     context.font = "12px system-ui, sans-serif";
-    context.fillText(`${low} … ${high}`, 4, top + 13);
+    context.fillText(`${this.titles[band] ?? ""} ${round(low)} … ${round(high)}`.trim(), 4, top + 13);
     context.lineWidth = 1.5;
     lists.forEach((list, motor) => {
       context.strokeStyle = style.getPropertyValue(`--m${motor % COLOURS + 1}`);
-      context.setLineDash([[], [6, 3], [2, 2], [8, 3, 2, 3]][motor % COLOURS]);
+      context.setLineDash(DASHES[(motor + Math.floor(motor / COLOURS)) % COLOURS]);
       context.beginPath();
       for (const part of list) {
         context.lineTo(x(part.begin), y(part.first));

@@ -35,10 +35,17 @@ function take(object) {
   }
 }
 
+// Whole numbers that a double cannot hold stay texts, in answers that cells may have.
+function parse(text) {
+  const keep = (_, value, source) =>
+    Number.isInteger(value) && !Number.isSafeInteger(value) && source?.source ? source.source : value;
+  return text.startsWith('{"event":"called"') && /\d{16}/.test(text) ? JSON.parse(text, keep) : JSON.parse(text);
+}
+
 export function connect() {
   socket = new WebSocket(`ws://${location.host}/socket`, "rkm04-window");
   socket.onopen = () => tell("open");
-  socket.onmessage = (message) => take(JSON.parse(message.data));
+  socket.onmessage = (message) => take(parse(message.data));
   socket.onclose = () => {
     for (const map of [pending, called])
       for (const id of [...map.keys()])

@@ -70,6 +70,10 @@ document.addEventListener("keydown", (event) => {
   }
 });
 
+// A file that is dropped beside its place does not take the page away.
+for (const name of ["dragover", "drop"])
+  addEventListener(name, (event) => event.preventDefault());
+
 let isOpened = false;
 on("open", async () => {
   const hello = await ask("hello");

@@ -59,11 +59,7 @@ export class UnitView {
     const bits = [["DI", this.di], ["DO", this.do], ["VAR", own ? [] : this.var]].filter(([, list]) => list.length > 0);
     const front = make("div", { class: "front" }, group(word("power"), [this.power, this.reset]),
       ...(own ? [] : [group("LED", this.leds)]), this.buildAddress(), ...bits.map(([name, list]) => group(name, list)));
-    const canvas = make("canvas", { class: "graph", role: "img", "aria-label": word("speed-graph") });
-    const old = this.graph;
-    this.graph = new Graph(canvas, 2, device.axes);
-    if (old)
-      this.graph.take(old);
+    const canvas = this.panel?.curves ? null : this.buildGraph();
     this.plant = make("div");
     this.axes = [];
     this.more = make("dl", { class: "more" });
@@ -72,9 +68,17 @@ export class UnitView {
     const motors = make("div", { class: "motors", tabindex: "0", role: "group", "aria-label": title.textContent });
     motors.append(this.buildTable());
     const inside = this.panel ? [this.panel.element] : [motors, this.more, this.listing?.element].filter(Boolean);
-    this.element.replaceChildren(title, front, ...inside, canvas, this.plant);
+    this.element.replaceChildren(title, front, ...inside, ...(canvas ? [canvas] : []), this.plant);
     if (this.state)
       this.show(this.state);
+  }
+
+  buildGraph() {
+    const canvas = make("canvas", { class: "graph", role: "img", "aria-label": word("speed-graph") }), old = this.graph;
+    this.graph = new Graph(canvas, 2, this.device.axes);
+    if (old)
+      this.graph.take(old);
+    return canvas;
   }
 
   inputName(input) { return this.device.input_names?.[input - 1] ?? two(input); }
@@ -123,10 +127,12 @@ export class UnitView {
     this.di.forEach((button, bit) => pressed(button, state.di >>> bit & 1));
     this.do.forEach((element, bit) => light(element, Boolean(state.do >>> bit & 1), `DO ${this.outputName(bit + 1)}`));
     this.var.forEach((element, bit) => light(element, Boolean(state.var >>> bit & 1), `VAR ${this.device.first_variable + bit}`));
-    state.motors.forEach((motor, at) => this.showMotor(motor, at, state.t_us));
-    this.panel?.show(state);
-    if (!this.panel)
-      this.showMore(state);
+    if (this.panel)
+      this.panel.show(state);
+    else
+      this.showMotors(state);
+    if (this.graph)
+      state.motors.forEach((motor, at) => this.drawMotor(motor, at, state.t_us));
     this.listing?.show(state);
     if (state.motors.some((motor) => motor.true_position !== null))
       this.askPlant();
@@ -134,7 +140,12 @@ export class UnitView {
       this.showPlant(null);
   }
 
-  showMotor(motor, at, t_us) {
+  showMotors(state) {
+    state.motors.forEach((motor, at) => this.showMotor(motor, at));
+    this.showMore(state);
+  }
+
+  showMotor(motor, at) {
     const loops = (motor.loops ?? []).map((loop) => `L@${loop.start}: ${loop.left}`);
     const calls = (motor.calls ?? []).map((place) => `→${place}`);
     const guards = Object.entries(motor.guards ?? {}).filter(([, input]) => input !== null)
@@ -148,6 +159,9 @@ export class UnitView {
     };
     this.heads.forEach((head, column) => write(this.rows[at][column], String(texts[head])));
     light(this.leds[at], motor.lit ?? motor.led === "on", `LED ${at + 1}`);
+  }
+
+  drawMotor(motor, at, t_us) {
     const speed = motor.speed ?? 0;
     this.graph.add(0, at, t_us / 1000, motor.forward || speed === 0 ? speed : -speed);
     this.graph.add(1, at, t_us / 1000, motor.position);
