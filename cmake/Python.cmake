@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# The Python that the extension is built against: any from 3.9 on, the extension keeps to the stable ABI.
-if(RKM04_PYTHON)
+# The Python that the extension is built against: any from 3.9 on, the extension keeps to the stable ABI. For Windows it is that of
+# tools/windows-python (WindowsPrograms.cmake).
+if(RKM04_PYTHON AND NOT WIN32)
   find_package(Python 3.9 COMPONENTS Interpreter Development.Module)
   if(Python_FOUND)
     set(CMAKE_POSITION_INDEPENDENT_CODE ON)

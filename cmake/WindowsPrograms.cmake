@@ -47,6 +47,21 @@ set_source_files_properties(client/client_link.c client/client_pmc.c client/clie
 target_link_libraries(rkmctl PRIVATE rkm04-sim -static pthread)
 set_target_properties(rkm04 rkmctl PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 
+# The extension of the Python package, against the stable ABI: python3.dll.
+if(RKM04_PYTHON)
+  file(GLOB python_files CONFIGURE_DEPENDS python/*.c)
+  add_library(rkm04-python MODULE ${python_files})
+  use_windows(rkm04-python)
+  target_include_directories(rkm04-python SYSTEM PRIVATE ${RKM04_WINDOWS_PYTHON}/include)
+  target_link_libraries(rkm04-python PRIVATE rkm04-sim -static pthread ${RKM04_WINDOWS_PYTHON}/libs/python3.lib)
+  set_target_properties(rkm04-python PROPERTIES PREFIX "" OUTPUT_NAME _sim SUFFIX .pyd
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python/rkm04)
+  install(TARGETS rkm04-python LIBRARY DESTINATION rkm04 COMPONENT python EXCLUDE_FROM_ALL)
+  install(TARGETS rkm04 rkmctl RUNTIME DESTINATION rkm04/bin COMPONENT python EXCLUDE_FROM_ALL)
+  install(FILES ${PROJECT_SOURCE_DIR}/python/urlhandler/protocol_rkm04.py DESTINATION serial/urlhandler COMPONENT python
+    EXCLUDE_FROM_ALL)
+endif()
+
 # A zip with the program, the documents and a prompt (cpack --preset windows).
 install(TARGETS rkm04 rkmctl RUNTIME DESTINATION .)
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-prompt.cmd ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-serve.cmd

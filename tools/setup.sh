@@ -12,7 +12,7 @@ package_packages=(dpkg-dev file)
 test_packages=("${package_packages[@]}" check libgmp-dev valgrind socat procps clang cppcheck g++ python3-serial python3-pyte
     python3-pymodbus python3-serial-asyncio libmodbus-dev mbpoll
     python3-dev python3-venv librsvg2-bin fonts-dejavu-core zsh fish gensio-bin ser2net iproute2 tshark sigrok-cli gtkwave
-    lintian systemd chromium vim gcc-mingw-w64-x86-64-win32 wine64)
+    lintian systemd chromium vim gcc-mingw-w64-x86-64-win32 wine64 maven)
 # Needed by the tests with npm packages, if the machine has no node and npm of its own.
 node_packages=(nodejs npm)
 # Needed by the tests that are about another processor than this machine's, which `quick` leaves out.

@@ -46,9 +46,19 @@ static int fail(void)
     return -1;
 }
 
-static const char *native(const char *path)
+#define WIDE_MAX 4096 /* characters of a path */
+
+/* A path in UTF-8, as the system has it; in that of the process's code page where it is no UTF-8 (arguments before Windows 10,
+ * version 1903). A process that is not ours, as Python, may have any code page. Returns `wide`; NULL: errno says why. */
+static wchar_t *native(const char *path, wchar_t wide[WIDE_MAX])
 {
-    return strcmp(path, "/dev/null") == 0 ? "NUL" : path;
+    const char *name = strcmp(path, "/dev/null") == 0 ? "NUL" : path;
+    if (MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, name, -1, wide, WIDE_MAX) > 0)
+        return wide;
+    if (GetLastError() == ERROR_NO_UNICODE_TRANSLATION && MultiByteToWideChar(CP_ACP, 0, name, -1, wide, WIDE_MAX) > 0)
+        return wide;
+    errno = ENAMETOOLONG;
+    return NULL;
 }
 
 /* Of a file for this user alone: nothing is inherited from its folder. NULL: the system does not say who the user is. */
@@ -85,16 +95,20 @@ int windows_open(const char *path, int flags, ...)
         mode = va_arg(values, unsigned);
         va_end(values);
     }
+    wchar_t wide[WIDE_MAX];
+    if (!native(path, wide))
+        return -1;
     DWORD how = (flags & O_EXCL) ? CREATE_NEW : (flags & O_CREAT) ? OPEN_ALWAYS : OPEN_EXISTING;
-    HANDLE file = CreateFileA(native(path), accesses[flags & (O_WRONLY | O_RDWR)],
+    HANDLE file = CreateFileW(wide, accesses[flags & (O_WRONLY | O_RDWR)],
                               FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
                               (mode & 077) == 0 ? private_attributes() : NULL, how, FILE_ATTRIBUTE_NORMAL, NULL);
     if (file == INVALID_HANDLE_VALUE) {
-        DWORD found = GetFileAttributesA(path);
+        DWORD error = GetLastError(), found = GetFileAttributesW(wide);
         if (found != INVALID_FILE_ATTRIBUTES && (found & FILE_ATTRIBUTE_DIRECTORY)) {
             errno = EISDIR;
             return -1;
         }
+        SetLastError(error);
         return fail();
     }
     int fd = _open_osfhandle((intptr_t)file, _O_BINARY | (flags & _O_NOINHERIT));
@@ -148,7 +162,10 @@ int windows_fstat(int fd, struct windows_stat *status)
 
 int windows_stat(const char *path, struct windows_stat *status)
 {
-    HANDLE file = CreateFileA(native(path), 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, NULL, OPEN_EXISTING,
+    wchar_t wide[WIDE_MAX];
+    if (!native(path, wide))
+        return -1;
+    HANDLE file = CreateFileW(wide, 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, NULL, OPEN_EXISTING,
                               FILE_FLAG_BACKUP_SEMANTICS, NULL);
     if (file == INVALID_HANDLE_VALUE)
         return fail();
@@ -159,18 +176,34 @@ int windows_stat(const char *path, struct windows_stat *status)
 
 int windows_rename(const char *from, const char *to)
 {
-    return MoveFileExA(from, to, MOVEFILE_REPLACE_EXISTING) ? 0 : fail();
+    wchar_t wide_from[WIDE_MAX], wide_to[WIDE_MAX];
+    if (!native(from, wide_from) || !native(to, wide_to))
+        return -1;
+    return MoveFileExW(wide_from, wide_to, MOVEFILE_REPLACE_EXISTING) ? 0 : fail();
 }
 
 int windows_unlink(const char *path)
 {
-    return DeleteFileA(path) ? 0 : fail();
+    wchar_t wide[WIDE_MAX];
+    if (!native(path, wide))
+        return -1;
+    return DeleteFileW(wide) ? 0 : fail();
 }
 
 char *realpath(const char *path, char *found)
 {
     struct windows_stat status;
-    return windows_stat(path, &status) == 0 ? _fullpath(found, path, found ? _MAX_PATH : 0) : NULL;
+    wchar_t wide[WIDE_MAX], whole[WIDE_MAX];
+    if (windows_stat(path, &status) != 0 || !native(path, wide) || !_wfullpath(whole, wide, WIDE_MAX))
+        return NULL;
+    int room = found ? PATH_MAX : WideCharToMultiByte(CP_UTF8, 0, whole, -1, NULL, 0, NULL, NULL);
+    char *result = found ? found : malloc((size_t)room);
+    if (result && WideCharToMultiByte(CP_UTF8, 0, whole, -1, result, room, NULL, NULL) > 0)
+        return result;
+    errno = result ? ENAMETOOLONG : ENOMEM;
+    if (!found)
+        free(result);
+    return NULL;
 }
 
 /* The X at the end of the path become a name that is free. */
@@ -192,12 +225,12 @@ int mkostemp(char *path, int flags)
 
 FILE *windows_tmpfile(void)
 {
-    char folder[MAX_PATH], path[MAX_PATH];
-    if (!GetTempPathA(sizeof folder, folder) || !GetTempFileNameA(folder, "rkm", 0, path)) {
+    wchar_t folder[MAX_PATH], path[MAX_PATH];
+    if (!GetTempPathW(MAX_PATH, folder) || !GetTempFileNameW(folder, L"rkm", 0, path)) {
         fail();
         return NULL;
     }
-    HANDLE file = CreateFileA(path, GENERIC_READ | GENERIC_WRITE | DELETE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
+    HANDLE file = CreateFileW(path, GENERIC_READ | GENERIC_WRITE | DELETE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
                               NULL, CREATE_ALWAYS, FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, NULL);
     int fd = file != INVALID_HANDLE_VALUE ? _open_osfhandle((intptr_t)file, _O_BINARY) : fail();
     return fd >= 0 ? _fdopen(fd, "w+b") : NULL;

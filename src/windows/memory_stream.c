@@ -19,17 +19,19 @@ struct stream {
 };
 
 static struct stream *streams;
+static SRWLOCK lock = SRWLOCK_INIT; /* of the list, and of what is open: Python has several threads */
 
 static struct stream *find(const FILE *file)
 {
+    AcquireSRWLockShared(&lock);
     struct stream *stream = streams;
     while (stream && !(stream->open && stream->file == file))
         stream = stream->next;
+    ReleaseSRWLockShared(&lock);
     return stream;
 }
 
-/* A stream on an empty file. Returns NULL if there is none. */
-static struct stream *begin(void)
+static struct stream *take_free(void)
 {
     struct stream *stream = streams;
     while (stream && stream->open)
@@ -47,6 +49,15 @@ static struct stream *begin(void)
     }
     rewind(stream->file);
     *stream = (struct stream){.file = stream->file, .open = true, .next = stream->next};
+    return stream;
+}
+
+/* A stream on an empty file. Returns NULL if there is none. */
+static struct stream *begin(void)
+{
+    AcquireSRWLockExclusive(&lock);
+    struct stream *stream = take_free();
+    ReleaseSRWLockExclusive(&lock);
     return stream;
 }
 
@@ -127,6 +138,8 @@ int windows_fclose(FILE *file)
     if (!stream)
         return fclose(file);
     bool delivered = deliver(stream);
+    AcquireSRWLockExclusive(&lock);
     stream->open = false;
+    ReleaseSRWLockExclusive(&lock);
     return delivered ? 0 : EOF;
 }

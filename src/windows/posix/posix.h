@@ -103,6 +103,10 @@ void *memmem(const void *bytes, size_t length, const void *wanted, size_t wanted
 #undef JSON_INTEGER_FORMAT
 #define JSON_INTEGER_FORMAT "lld"
 
+/* ---- Time ----------------------------------------------------------------------------------------------------------- */
+
+#define CLOCK_MONOTONIC_COARSE CLOCK_MONOTONIC
+
 /* ---- The process ---------------------------------------------------------------------------------------------------- */
 
 #define SIGPIPE 13 /* never comes: writing says so */
