@@ -73,13 +73,19 @@ static void report_turn(struct cnc_device *device)
     device->is_critical = critical != 0;
 }
 
-/* A PLC program may do something in any T; what is asked for from outside ends the quiet (cnc872_methods.c). */
-static bool is_quiet(const struct cnc_device *device)
+/* Is nothing under way but passes of the PLC program? */
+static bool is_at_rest(const struct cnc_device *device)
 {
     const struct cnc_machine *machine = &device->cnc.machine;
     const bool is_resting = machine->phase == CNC_IDLE || cnc_bit(&device->cnc.cells, CNC_BIT_PO_STOP);
     return is_resting && device->moving == 0 && machine->start == 0 && machine->annulment == 0 &&
-           device->own.text[CNC_TEXT_PLC] == NULL && cnc_bit(&device->cnc.cells, CNC_BIT_INPOS);
+           cnc_bit(&device->cnc.cells, CNC_BIT_INPOS);
+}
+
+/* A PLC program may do something in any T; what is asked for from outside ends the quiet (cnc872_methods.c). */
+static bool is_quiet(const struct cnc_device *device)
+{
+    return device->own.text[CNC_TEXT_PLC] == NULL && is_at_rest(device);
 }
 
 /* ---- Backup memory (NO3): in the flash of the unit ----------------------------------------------------------------------- */
@@ -234,6 +240,12 @@ static uint64_t next_event(const struct device_unit *unit)
     return cnc_in(unit)->is_quiet ? DEVICE_NEVER : next_turn(unit);
 }
 
+/* A PLC program has no end of its own. */
+static uint64_t next_report(const struct device_unit *unit)
+{
+    return is_at_rest(cnc_in(unit)) ? DEVICE_NEVER : next_event(unit);
+}
+
 static void advance(struct device_unit *unit, uint64_t us)
 {
     struct cnc_device *device = cnc_of(unit);
@@ -362,7 +374,7 @@ const struct device_kind cnc872_device = {
     .now = now,
     .advance = advance,
     .next_event = next_event,
-    .next_report = next_event,
+    .next_report = next_report,
     .set_inputs = set_inputs,
     .inputs_of = no_bits,
     .outputs_of = no_bits,

@@ -339,7 +339,9 @@ struct device_kind {
     uint64_t (*now)(const struct device_unit *unit);              /* the first us that is not yet done */
     void (*advance)(struct device_unit *unit, uint64_t us);       /* do the us now .. now + us - 1 */
     uint64_t (*next_event)(const struct device_unit *unit);       /* >= now: when something is due of itself; DEVICE_NEVER */
-    uint64_t (*next_report)(const struct device_unit *unit);      /* the same, without steps while the port has no `steps` */
+    /* The same for who runs a program to its end: without steps while the port has no `steps`, and without what goes on of
+     * itself for ever. */
+    uint64_t (*next_report)(const struct device_unit *unit);
 
     /* Ticks of the pulses that an axis makes now, if they are not all `pulse` long; called from within port->steps. NULL: they
      * are. */

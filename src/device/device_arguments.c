@@ -15,7 +15,7 @@
 #define FILE_SIZE_MAX (1u << 20) /* bytes of a file that an option names */
 #define GROUP_UNITS 1
 #define GROUP_BUS 2
-#define GROUP_DEVICES 6
+#define GROUP_DEVICES 6  /* that of the first kind */
 
 enum { KEY_DEVICE = 0x1000, KEY_OPTION, KEY_FIRST }; /* KEY_FIRST + n: row n of `switches` */
 
@@ -58,7 +58,8 @@ static void add_switch(const struct device_option *option)
             option->flags & DEVICE_OPTION_BUS ? GROUP_BUS : GROUP_UNITS);
 }
 
-static void add_kind(const struct device_arguments *arguments, const struct device_kind *kind)
+/* `group`: of its own options, so that they stand below their head. */
+static void add_kind(const struct device_arguments *arguments, const struct device_kind *kind, int group)
 {
     bool has_head = false;
     for (const struct device_option *option = kind->options; option && option->name; option++) {
@@ -70,10 +71,10 @@ static void add_kind(const struct device_arguments *arguments, const struct devi
         }
         if (!has_head)
             add_row(NULL, 0, NULL, 0, keep_name("Options of the device %s (%s):", kind->name, "--device-option NAME=VALUE"),
-                    GROUP_DEVICES);
+                    group);
         has_head = true;
         add_row(keep_name("%s=%s", option->name, option->argument), 0, NULL, OPTION_DOC | OPTION_NO_USAGE, option->help,
-                GROUP_DEVICES);
+                group);
     }
 }
 
@@ -90,7 +91,7 @@ const struct argp *device_arguments_argp(struct device_arguments *arguments)
             "A setting of the device; may be given several times. `rkm04 devices --json' lists those of each device",
             GROUP_UNITS);
     for (unsigned at = 0; (kind = device_kind_at(at)); at++)
-        add_kind(arguments, kind);
+        add_kind(arguments, kind, GROUP_DEVICES + (int)at);
     help.row[help.rows] = (struct argp_option){0};
     help.argp = (struct argp){.options = help.row, .parser = parse};
     arguments->kind = device_kind_at(0);

@@ -26,7 +26,7 @@ static unsigned find_bit(const char *const *names, unsigned count, const char *n
 
 static const char *list_bits(const char *const *names, unsigned count, char text[DEVICE_ERROR_SIZE])
 {
-    size_t length = (size_t)snprintf(text, DEVICE_ERROR_SIZE, "1 to %u", count);
+    size_t length = (size_t)snprintf(text, DEVICE_ERROR_SIZE, count > 0 ? "1 to %u" : "(the device has none)", count);
     for (unsigned at = 0; names && at < count && length < DEVICE_ERROR_SIZE; at++)
         length += (size_t)snprintf(text + length, DEVICE_ERROR_SIZE - length, at > 0 ? ", %s" : " or %s", names[at]);
     return text;

@@ -54,7 +54,7 @@ static const char doc[] =
     "A trace as CSV has the columns t_us,source,event,value:\n"
     "  m1,step,POSITION   m1,dir,1|-1        m1,motion,begin|end\n"
     "  m1,led,off|on|blink                   m1,command,INDEX (0: idle)\n"
-    "  m1,position,POSITION   changed without a pulse: C100, =, after a motion under T41\n"
+    "  m1,position,POSITION   changed without a pulse: C100, =, a motion under T41\n"
     "  unit,di|do|var,MASK\n"
     "docs/TRACES.md describes the other formats.\n"
     "\n"
@@ -126,17 +126,6 @@ static void parse_options(int argc, char **argv, struct options *options)
 
 /* ---- Run ---------------------------------------------------------------------------------------------------------- */
 
-static bool is_running(struct exec_run *run)
-{
-    bool running = false;
-    for (unsigned motor = 1; motor <= run->device->axes; motor++) {
-        struct device_axis state;
-        run->device->axis(exec_run_unit(run), motor, &state);
-        running = running || state.running;
-    }
-    return running;
-}
-
 /* What repeats from slot to slot are motions: a program takes more than one for a turn. */
 static void report_endless(struct exec_run *run)
 {
@@ -155,7 +144,7 @@ static void report_endless(struct exec_run *run)
 static int exit_status(struct exec_run *run, const struct options *options, enum exec_end end, bool written)
 {
     bool fault = report_faults(run) || run->refused;
-    if (end == EXEC_UNTIL && is_running(run)) {
+    if (end == EXEC_UNTIL && exec_run_is_running(run)) {
         if (options->until_text == NULL)
             fprintf(stderr, "rkm04 exec: virtual time has reached its end with a motor still running\n");
         else

@@ -47,6 +47,17 @@ struct device_unit *exec_run_unit(struct exec_run *run)
     return sim_core(&run->sim, 1);
 }
 
+bool exec_run_is_running(struct exec_run *run)
+{
+    bool running = false;
+    struct device_axis axis;
+    for (unsigned motor = 1; motor <= run->device->axes; motor++) {
+        run->device->axis(exec_run_unit(run), motor, &axis);
+        running = running || axis.running;
+    }
+    return running;
+}
+
 bool exec_run_set(struct exec_run *run, unsigned motor, const void *text, size_t length, const char *place)
 {
     char error[DEVICE_ERROR_SIZE];
@@ -125,10 +136,11 @@ static void deliver_stimulus(struct exec_run *run, const struct stimulus *s)
 
 /* First tick not to be done in the next leap: it ends with the slot in which something is due, or where something comes from
  * outside. DEVICE_NEVER: nothing is to be done. */
-static uint64_t leap_end(const struct exec_run *run, uint64_t stimulus)
+static uint64_t leap_end(struct exec_run *run, uint64_t stimulus)
 {
     uint64_t end = sim_next_report(&run->sim);
-    if (run->open && end > run->until) /* a motor continues without end: the state repeats from slot to slot */
+    /* A motor continues without end: the state repeats from slot to slot. */
+    if (run->open && end > run->until && exec_run_is_running(run))
         end = sim_next_event(&run->sim);
     if (end <= run->until)
         end = (end + run->device->slot - 1) / run->device->slot * run->device->slot + 1;

@@ -48,6 +48,9 @@ void exec_run_end(struct exec_run *run);
 /* The unit. */
 struct device_unit *exec_run_unit(struct exec_run *run);
 
+/* Does a motor continue of itself: it moves, or time will bring its next command? */
+bool exec_run_is_running(struct exec_run *run);
+
 /* Hand a text over to a motor from 1, or 0 for all, at the present tick. What is wrong is reported on stderr, with `place` in
  * front. Returns false if the device refuses it; a text that only fills its memory is taken. */
 bool exec_run_set(struct exec_run *run, unsigned motor, const void *text, size_t length, const char *place);

@@ -102,7 +102,7 @@ static bool read_input(struct parser *p, struct stimulus *s)
     s->kind = STIMULUS_INPUT;
     snprintf(name, sizeof name, "%.*s", (int)word.length, word.text);
     s->input = word.length < sizeof name ? (uint8_t)device_input_named(p->device, name) : 0;
-    if (p->device->input_names)
+    if (p->device->input_names || p->device->inputs == 0)
         snprintf(what, sizeof what, "an input %s", device_input_names(p->device, names));
     else
         snprintf(what, sizeof what, "an input 01 to %02u", p->device->inputs);

@@ -41,6 +41,17 @@ test_NU1_exec_runs_an_nc_program_to_its_end() {
     holds "$said" "5000  idle" "positions"
 }
 
+# A PLC program goes on for ever; what it was started for does not.
+test_NU1_exec_ends_with_the_nc_program_though_a_plc_program_runs() {
+    local machine=(--config "$example/mill.xml" --plc "$example/mill.plc" --machine "$example/mill.machine.yaml")
+    exits 0 "$RKM04" exec --device cnc872 "${machine[@]}" "$example/part.nc"
+    holds "$said" "at 9.015000 s: finished" "exec"
+    exits 0 "$RKM04" plot --device cnc872 "${machine[@]}" "$example/part.nc" -o "$folder/part.svg"
+    printf '50ms di 1 1\n' >"$folder/stimulus"
+    exits 1 "$RKM04" exec --device cnc872 "${machine[@]}" --stimulus "$folder/stimulus" "$example/part.nc"
+    holds "$complained" "expected an input (the device has none), found '1'" "a stimulus"
+}
+
 test_NU1_what_is_about_a_bus_is_refused() {
     local option
     for option in "--link $folder/l" "--tcp 127.0.0.1:0" "--rfc2217 127.0.0.1:0" "--port /dev/null" "--wire $folder/w.log"; do

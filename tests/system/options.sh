@@ -11,6 +11,12 @@ refused() {
     same "" "$said" "stdout of '${*:2}'"
 }
 
+test_options_of_a_device_stand_below_its_head() {
+    exits 0 "$RKM04" exec --help
+    holds "$(sed -n '/device cib /,/device pmc-1hs /p' <<<"$said")" "comm-timeout=MS" "options of the CIB module"
+    holds "$(sed -n '/device pmc-1hs /,/device pmc-2hs /p' <<<"$said")" "rep-counts=WHAT" "options of the PMC-1HS"
+}
+
 test_help_and_version_go_to_stdout() {
     local command
     for command in "$RKM04 --help" "$RKM04 serve --help" "$RKM04 exec --help" "$RKM04 test --help" \
