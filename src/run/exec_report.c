@@ -103,12 +103,15 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end, bool
 
 bool report_faults(struct exec_run *run)
 {
-    char text[DEVICE_ERROR_SIZE];
+    char text[DEVICE_ERROR_SIZE], last[DEVICE_ERROR_SIZE] = "";
     bool any = false;
     for (unsigned motor = 1; motor <= run->device->axes; motor++) {
         if (!run->device->is_stuck(exec_run_unit(run), motor, text))
             continue;
         any = true;
+        if (run->device->is_program_whole && strcmp(text, last) == 0) /* all motors have one program */
+            continue;
+        memcpy(last, text, sizeof last);
         fprintf(stderr, "rkm04 exec: motor %u: %s\n", motor, text);
     }
     return any;

@@ -52,6 +52,13 @@ test_NU1_exec_ends_with_the_nc_program_though_a_plc_program_runs() {
     holds "$complained" "expected an input (the device has none), found '1'" "a stimulus"
 }
 
+# All axes have one program.
+test_NU1_exec_reports_a_stop_once() {
+    printf 'MODULE_MAIN\n FL 1,STOP_REQ\nMODULE_MAIN_END\n' >"$folder/stop.plc"
+    exits 1 "$RKM04" exec --device cnc872 --plc "$folder/stop.plc" "$example/part.nc"
+    same "rkm04 exec: motor 1: the program is stopped: START makes it go on" "$complained" "a stop that the PLC program makes"
+}
+
 test_NU1_what_is_about_a_bus_is_refused() {
     local option
     for option in "--link $folder/l" "--tcp 127.0.0.1:0" "--rfc2217 127.0.0.1:0" "--port /dev/null" "--wire $folder/w.log"; do
