@@ -197,12 +197,13 @@ static json_t *command_device(struct sim *sim, const json_t *params, struct refu
     json_t *methods = json_array();
     for (const struct device_method *method = kind->methods; method && method->name; method++)
         json_array_append_new(methods, json_string(method->name));
-    return json_pack("{s:I, s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:b, s:b, s:o, s:o*, s:o*}", "t_us",
+    return json_pack("{s:I, s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:b, s:b, s:b, s:o, s:o*, s:o*}", "t_us",
                      (json_int_t)sim_now(sim), "name", kind->name, "description", kind->description, "axes", (int)kind->axes,
                      "inputs", (int)kind->inputs, "outputs", (int)kind->outputs, "variables", (int)kind->variables,
                      "first_variable", (int)kind->first_variable, "addresses", (int)kind->addresses, "program",
-                     (int)kind->program, "bus", kind->receive != NULL, "plant", !kind->has_no_steps, "methods", methods,
-                     "input_names", names_json(kind->input_names, kind->inputs), "output_names",
+                     (int)kind->program, "bus", kind->receive != NULL, "plant", !kind->has_no_steps, "cells",
+                     kind->find_cell != NULL, "methods", methods, "input_names",
+                     names_json(kind->input_names, kind->inputs), "output_names",
                      names_json(kind->output_names, kind->outputs));
 }
 

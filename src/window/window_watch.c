@@ -10,6 +10,7 @@
 
 #define ROUND_MS 50u      /* between two rounds while something moves */
 #define HEARTBEAT_MS 1000u
+#define HEARTBEAT_CELLS_MS 100u /* of a device with cells, which change without an event */
 #define MESSAGES_MAX 20u  /* of the bus, sent in one round */
 
 enum { ID_UNITS = 1, ID_READY, ID_DEVICE, ID_SUBSCRIBE, ID_STATE = 100 };
@@ -56,7 +57,8 @@ static void schedule(struct window_watch *watch)
         return;
     uint64_t since = uv_now(watch->pages->loop) - watch->round;
     uint64_t rest = since < ROUND_MS ? ROUND_MS - since : 0;
-    uv_timer_start(&watch->timer, on_timer, watch->news || watch->moving ? rest : HEARTBEAT_MS, 0);
+    uint64_t beat = json_is_true(json_object_get(watch->device, "cells")) ? HEARTBEAT_CELLS_MS : HEARTBEAT_MS;
+    uv_timer_start(&watch->timer, on_timer, watch->news || watch->moving ? rest : beat, 0);
 }
 
 static uint64_t sum_of(const char *text, size_t length)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* window_watch.h: the emulator of the window and the state of its units, for the pages that watch: asked for as often as
- * something moves or happens, at most 20 times a second, otherwise once a second. Pages get what has changed. */
+ * something moves or happens, at most 20 times a second, otherwise once a second, of a device with cells ten times. Pages get
+ * what has changed. */
 #ifndef RKM04_WINDOW_WATCH_H
 #define RKM04_WINDOW_WATCH_H
 

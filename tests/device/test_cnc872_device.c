@@ -348,7 +348,7 @@ static void expect_kinds(const char *wanted)
 
 START_TEST(NU1_a_cnc_has_neither_bus_nor_inputs_nor_steps)
 {
-    expect_result("device", "{}", "\"bus\":false,\"plant\":false");
+    expect_result("device", "{}", "\"bus\":false,\"plant\":false,\"cells\":true");
     expect_kinds("flash power ");
     fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"drop\"}", "drop: the device cnc872 has no bus");
     fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"cable\"}", "cable: the device cnc872 has no bus");
@@ -360,7 +360,7 @@ START_TEST(NU1_a_cnc_has_neither_bus_nor_inputs_nor_steps)
     fake_rig_do(&rig, "plant.set", "{\"plant\": null}");
     fake_rig_end(&rig);
     fake_rig_begin(&rig, "1", true);
-    expect_result("device", "{}", "\"bus\":true,\"plant\":true");
+    expect_result("device", "{}", "\"bus\":true,\"plant\":true,\"cells\":false");
 }
 END_TEST
 

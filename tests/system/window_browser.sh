@@ -74,6 +74,10 @@ PLC
     show_cnc cncplc --plc "$folder/show.plc"
 }
 test_cells_of_a_CNC872_are_found_shown_and_set() { show_cnc cnccells; }
+test_cells_that_change_without_motion_are_seen_soon() {
+    export RKMCTL
+    show_cnc cncnews
+}
 test_all_axes_of_a_CNC872_have_their_curves() {
     {
         echo '<ChannelConfig>'

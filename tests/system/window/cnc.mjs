@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // cnc.mjs: the panel of a CNC872, a device without a bus.
+import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
+import { cpus, loadavg } from "node:os";
 import assert from "node:assert/strict";
 import { checkAccess, folder, openPage, openPanel, pictures, shows } from "./page.mjs";
 
@@ -283,6 +285,21 @@ export const cases = {
     const rows = await page.locator("table.cells tbody th").allTextContents();
     assert.deepEqual(rows, ["PO_F", "PO_STOP", "STOP_REQ", "LIMIT_FEED", "FEED_OVR", "po_pol", "WORD.BZH09"]);
     await checkAccess(page, "cells");
+  },
+
+  // What another client changes is seen soon, although nothing moves and no event comes: of nine times all but one count.
+  async cncnews(page) {
+    await shows(page, ".axes td", "element.textContent === 'X'");
+    const times = [];
+    for (let gear = 2; gear <= 10; gear++) {
+      const cells = `cells={"SPINDLE_GEAR_ACT_1": ${gear}}`;
+      execFileSync(process.env.RKMCTL, ["-c", folder + "/bus.control", "call", "cnc.set", cells]);
+      const begun = performance.now();
+      await line(page, "Spindle", `gear ${gear},`);
+      times.push(Math.round(performance.now() - begun));
+    }
+    console.log(`seen after ${times.join(", ")} ms`);
+    assert.ok(times.sort((a, b) => a - b)[7] <= 300 || loadavg()[0] > cpus().length, "seen late");
   },
 
   // Sixteen axes: those of the configuration, each with its curve; a rotary one in degrees.
