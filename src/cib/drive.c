@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "drive.h"
 
+#include <string.h>
+
 #include "cib_report.h"
 #include "outputs.h"
 #include "phase.h"
@@ -22,12 +24,14 @@ enum after { AFTER_END, AFTER_TURN, AFTER_LONG_WAY };
 void drive_reset(struct cib_unit *unit, struct cib_drive *drive)
 {
     const struct cib_drive_setup *setup = &unit->setup.drive[drive - unit->drive];
-    const struct cib_drive old = {.sequence = drive->sequence,
-                                  .command = drive->command,
-                                  .p1 = drive->p1,
-                                  .p2 = drive->p2,
-                                  .ack = drive->ack};
-    *drive = old;
+    const uint16_t sequence = drive->sequence, command = drive->command, p2 = drive->p2, ack = drive->ack;
+    const uint32_t p1 = drive->p1;
+    memset(drive, 0, sizeof *drive); /* a compound literal would be a second drive on the stack */
+    drive->sequence = sequence;
+    drive->command = command;
+    drive->p1 = p1;
+    drive->p2 = p2;
+    drive->ack = ack;
     drive->invel_due = drive->idle_due = drive->slot = CIB_NEVER;
     drive->motion.ramp.next = CIB_NEVER;
     if (!cib_has_drive(unit, axis_of(unit, drive) - 1))

@@ -143,7 +143,10 @@ int64_t cnc_feed_limit(const struct cnc *cnc, bool rapid);
 /* Begin a motion of an axis at rest, in a direction, 1 or -1; length: u or CNC_ENDLESS. */
 void cnc_begin_single(struct cnc *cnc, unsigned axis, enum cnc_single_kind kind, int direction, int64_t length);
 
-/* It is over: PO_OSxPI becomes 0. */
+/* PO_OSxPI while it moves; of an axis of a block, also of a stopped one, it stays 1 (NE3). */
+void cnc_request_single(struct cnc *cnc, unsigned axis, bool is_requested);
+
+/* It is over. */
 void cnc_end_single(struct cnc *cnc, unsigned axis);
 
 /* One T of it towards a target speed; by_emergency: with AccelerationEmergency. Returns the speed, 0 while BZH13 is not 0. */

@@ -12,11 +12,16 @@ void cnc_begin_single(struct cnc *cnc, unsigned axis, enum cnc_single_kind kind,
     moved->direction = (int8_t)direction;
 }
 
+void cnc_request_single(struct cnc *cnc, unsigned axis, bool is_requested)
+{
+    cnc_set(cnc, CNC_BIT_PO_OSxPI + axis, is_requested || cnc_is_set(cnc, CNC_BIT_PO_OSx + axis));
+}
+
 void cnc_end_single(struct cnc *cnc, unsigned axis)
 {
     cnc->axis[axis].kind = CNC_SINGLE_NONE;
     cnc->axis[axis].direction = 0;
-    cnc_set(cnc, CNC_BIT_PO_OSxPI + axis, false);
+    cnc_request_single(cnc, axis, false);
 }
 
 int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_emergency)
@@ -110,7 +115,7 @@ static void move_axis(struct cnc *cnc, unsigned i, bool may_move, bool rapid)
     const bool is_held = !enabled || cnc_find_limit(cnc, i, axis->direction) != CNC_LIMIT_NONE;
     const int64_t target = request == axis->direction && !is_held ? find_speed(cnc, i, rapid) : 0;
     const int64_t v = cnc_step_single(cnc, i, target, is_held || (cnc->manual_emergency & bit) != 0);
-    cnc_set(cnc, CNC_BIT_PO_OSxPI + i, v > 0);
+    cnc_request_single(cnc, i, v > 0);
     if (v == 0)
         cnc_end_single(cnc, i);
 }

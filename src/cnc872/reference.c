@@ -229,7 +229,7 @@ static void begin_reference(struct cnc *cnc, unsigned i)
     if (reference->state == CNC_REFERENCE_WAITS)
         reference->state = cnc_is_set(cnc, CNC_BIT_KRx + i) ? CNC_REFERENCE_BACK : CNC_REFERENCE_SEARCH;
     cnc_begin_single(cnc, i, CNC_SINGLE_REFERENCE, find_direction(cnc, i), CNC_ENDLESS);
-    cnc_set(cnc, CNC_BIT_PO_OSxPI + i, true);
+    cnc_request_single(cnc, i, true);
 }
 
 static void move_reference(struct cnc *cnc, unsigned i)

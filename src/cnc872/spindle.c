@@ -184,7 +184,7 @@ static void begin_axis(struct cnc *cnc, unsigned i)
         return;
     cnc_set(cnc, CNC_BIT_POLOHV_x + i, true);
     cnc_begin_single(cnc, i, CNC_SINGLE_SPINDLE, 1, way);
-    cnc_set(cnc, CNC_BIT_PO_OSxPI + i, true);
+    cnc_request_single(cnc, i, true);
 }
 
 /* One T of the motion to the whole turn; central annulment ends it at rest. */

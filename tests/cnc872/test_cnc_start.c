@@ -265,6 +265,34 @@ START_TEST(a_restart_from_elsewhere_after_a_stop_in_the_first_pass)
 }
 END_TEST
 
+/* PO_OSxPI stays 1 in a stop inside the block, and INIT of the restart can test it, whatever has moved the axis meanwhile. */
+START_TEST(NE3_a_manual_move_in_a_stop_leaves_the_request_of_the_block)
+{
+    rig_begin_plc(NULL, "G1 X10 F1000",
+                  "DATA\nSEEN BIT 0\nDATA_END\nMODULE_BLOCK_INIT\n LDR PO_OSXPI\n WR SEEN\nMODULE_BLOCK_INIT_END\n");
+    run_to(100);
+    cnc_stop(&cnc);
+    run_to(200);
+    ck_assert(bit("PO_STOP") && bit("PO_OSXPI") && bit("PO_OSX"));
+    set_bit("AUTMAN_REQ", true);
+    cnc.panel.jog_minus = 1 | 2;
+    run_to(250);
+    ck_assert(bit("PO_OSXPI") && bit("PO_OSX") && bit("PO_OSYPI") && !bit("PO_OSY"));
+    cnc.panel.jog_minus = 0;
+    run_to(400);
+    ck_assert(bit("PO_OSXPI") && bit("PO_OSX") && !bit("PO_OSYPI"));
+    set_bit("AUTMAN_REQ", false);
+    set_bit("SEEN", false);
+    run_to(401);
+    start_in(402);
+    run_to(404);
+    ck_assert(bit("SEEN"));
+    run_to(2000);
+    ck_assert(!bit("PO_OSXPI") && !bit("PO_OSX") && bit("SF_STOP"));
+    ck_assert_int_eq(at(2000).x, 10 * MM);
+}
+END_TEST
+
 START_TEST(an_empty_program)
 {
     rig_power(NULL, "; nothing");
@@ -416,6 +444,7 @@ static Suite *start_suite(void)
     tcase_add_test(starts, STOPPI_counts_by_its_edge);
     tcase_add_test(starts, a_stop_in_the_first_pass_moves_nothing);
     tcase_add_test(starts, a_restart_from_elsewhere_after_a_stop_in_the_first_pass);
+    tcase_add_test(starts, NE3_a_manual_move_in_a_stop_leaves_the_request_of_the_block);
     tcase_add_test(starts, an_empty_program);
     tcase_add_test(starts, nobody_hears_events);
     tcase_add_test(starts, a_program_is_not_changed_under_way);
