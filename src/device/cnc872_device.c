@@ -292,6 +292,7 @@ static void axis(const struct device_unit *unit, unsigned number, struct device_
         .state = (uint8_t)cnc_axis_state(cnc, number - 1u),
         .fault = (uint8_t)device->is_critical,
         .led = DEVICE_LED_OFF,
+        .absent = (cnc->config->axes >> (number - 1u) & 1u) == 0,
         .idle = !is_busy && !moves,
         .running = is_busy || moves,
         .moving = moves,

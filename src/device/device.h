@@ -109,6 +109,7 @@ struct device_axis {
     uint8_t led;       /* enum device_led */
     uint64_t blink_from; /* us since power-up from which the LED blinks */
     bool lit;          /* is the LED bright now? */
+    bool absent;       /* the configuration has no such axis */
     bool idle;         /* it has nothing more to do */
     bool running;      /* it continues by itself: it moves, or time will bring its next command */
     bool moving;

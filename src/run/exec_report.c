@@ -91,6 +91,8 @@ static void print_table(FILE *out, struct exec_run *run, enum exec_end end, bool
     for (unsigned motor = 1; motor <= kind->axes; motor++) {
         struct device_axis state;
         kind->axis(unit, motor, &state);
+        if (state.absent)
+            continue;
         fprintf(out, "%-5u  %11" PRId32 "  %-6s  %7u  %-5s  %s\n", motor, state.position, kind->state_name(state.state),
                 (unsigned)state.index, kind->led_name(state.led),
                 state.fault == 0 ? "-" : kind->fault_name(state.fault));

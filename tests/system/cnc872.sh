@@ -46,6 +46,7 @@ test_NU1_exec_ends_with_the_nc_program_though_a_plc_program_runs() {
     local machine=(--config "$example/mill.xml" --plc "$example/mill.plc" --machine "$example/mill.machine.yaml")
     exits 0 "$RKM04" exec --device cnc872 "${machine[@]}" "$example/part.nc"
     holds "$said" "at 9.015000 s: finished" "exec"
+    same 6 "$(wc -l <<<"$said")" "lines: three axes alone"
     exits 0 "$RKM04" plot --device cnc872 "${machine[@]}" "$example/part.nc" -o "$folder/part.svg"
     printf '50ms di 1 1\n' >"$folder/stimulus"
     exits 1 "$RKM04" exec --device cnc872 "${machine[@]}" --stimulus "$folder/stimulus" "$example/part.nc"
