@@ -84,6 +84,18 @@ static void put_field(struct panel *panel, int row, const int column[FIELDS], en
         grid_put_whole(panel, row, column[field], style, "%*s", fields[field].width, text);
 }
 
+/* Positions of rotary axes are in degrees. */
+static const char *head_of(enum field field, json_t *axes)
+{
+    const char *name;
+    json_t *axis;
+    if (field == FIELD_POSITION)
+        json_object_foreach(axes, name, axis)
+            if (json_is_true(json_object_get(axis, "rotary")))
+                return "mm or deg";
+    return fields[field].head;
+}
+
 static const char *yes_no(const json_t *axis, const char *key)
 {
     return json_is_true(json_object_get(axis, key)) ? "yes" : "no";
@@ -176,7 +188,43 @@ static const struct {
 
 #define LINES ((int)(sizeof lines / sizeof lines[0]))
 
+/* ---- Displays --------------------------------------------------------------------------------------------------------- */
+
+#define DISPLAY_STEP 19 /* columns from one to the next */
+
+static const char *display_line(const json_t *cnc, size_t display, int line)
+{
+    const json_t *shown = json_array_get(json_object_get(cnc, "displays"), display);
+    const char *text = json_string_value(json_array_get(json_object_get(shown, "lines"), (size_t)line));
+    return text != NULL ? text : "";
+}
+
+/* Rows for the displays with their heads: up to the last line in which something is written, none if nothing is. */
+static int display_rows(const json_t *cnc)
+{
+    int rows = 0;
+    size_t at;
+    const json_t *display;
+    json_array_foreach(json_object_get(cnc, "displays"), at, display)
+        for (int line = 0; line < (int)json_array_size(json_object_get(display, "lines")); line++)
+            if (strspn(display_line(cnc, at, line), " ") < strlen(display_line(cnc, at, line)) && line >= rows)
+                rows = line + 1;
+    return rows > 0 ? rows + 1 : 0;
+}
+
+static void put_displays(struct panel *panel, int row, int rows, const json_t *cnc)
+{
+    for (size_t at = 0; at < json_array_size(json_object_get(cnc, "displays")); at++) {
+        const int column = 1 + (int)at * DISPLAY_STEP;
+        grid_put_whole(panel, row, column, PANEL_HEAD, "display %d", (int)at + 1);
+        for (int line = 0; line + 1 < rows; line++)
+            grid_put_whole(panel, row + 1 + line, column, PANEL_PLAIN, "%s", display_line(cnc, at, line));
+    }
+}
+
 /* ---- All -------------------------------------------------------------------------------------------------------------- */
+
+#define AXES_FIRST 3 /* axes that have room before the lines */
 
 /* How many of `wanted` rows have room; they are taken from `room`. */
 static int take_rows(int *room, int wanted)
@@ -186,31 +234,59 @@ static int take_rows(int *room, int wanted)
     return taken;
 }
 
+/* All of `wanted` rows, or none. */
+static int take_all_rows(int *room, int wanted)
+{
+    return *room < wanted ? 0 : take_rows(room, wanted);
+}
+
+/* The axes, in so many rows; the last of them says how many have no room. Returns the row behind them. */
+static int put_axes(struct panel *panel, int row, int rows, const int column[FIELDS], json_t *axes)
+{
+    const char *name;
+    json_t *axis;
+    int left = (int)json_object_size(axes);
+    json_object_foreach(axes, name, axis) {
+        if (rows == 0)
+            break;
+        if (rows == 1 && left > 1) {
+            grid_put_whole(panel, row, 1, PANEL_DARK, "%d more axes: not enough rows", left);
+            return row + 1;
+        }
+        put_axis(panel, row++, column, name, axis);
+        rows--;
+        left--;
+    }
+    return row;
+}
+
 void client_panel_draw_cnc(struct panel *panel, const struct panel_view *view, int rows)
 {
     const json_t *cnc = json_object_get(view->state, "cnc");
-    json_t *axes = json_object_get(cnc, "axes"), *axis;
-    const char *name;
-    int column[FIELDS], room = rows < PANEL_ROWS ? rows : PANEL_ROWS;
-    int row = take_rows(&room, 1), shown = take_rows(&room, (int)json_object_size(axes)), line = 0;
-    const int count = take_rows(&room, LINES), head = take_rows(&room, 1), keys = take_rows(&room, view->keys ? 1 : 0);
-    const int gaps = room >= 2 + keys ? 1 : 0;
+    json_t *axes = json_object_get(cnc, "axes");
+    const int all = (int)json_object_size(axes), first = all < AXES_FIRST ? all : AXES_FIRST;
+    int column[FIELDS], room = rows < PANEL_ROWS ? rows : PANEL_ROWS, line = 0;
+    int row = take_rows(&room, 1), shown = take_rows(&room, first);
+    const int count = take_rows(&room, LINES);
+    shown += take_rows(&room, all - shown);
+    const int head = take_rows(&room, 1), keys = take_rows(&room, view->keys ? 1 : 0);
+    const int gaps = take_all_rows(&room, 2 + keys) > 0 ? 1 : 0, wanted = display_rows(cnc);
+    const int displays = take_all_rows(&room, wanted > 0 ? wanted + gaps : 0);
     choose_fields(panel, column);
     panel->rows = PANEL_ROWS; /* what is drawn below sets how many there are */
     for (int i = 0; i < PANEL_ROWS; i++)
         grid_fill_row(panel, i, PANEL_PLAIN);
     row += gaps;
     for (int i = 0; i < FIELDS && head; i++)
-        put_field(panel, row, column, (enum field)i, PANEL_HEAD, fields[i].head);
-    row += head;
-    json_object_foreach(axes, name, axis)
-        if (shown-- > 0)
-            put_axis(panel, row++, column, name, axis);
+        put_field(panel, row, column, (enum field)i, PANEL_HEAD, head_of((enum field)i, axes));
+    row = put_axes(panel, row + head, shown, column, axes);
     for (row += gaps; line < count; line++, row++) {
         grid_put_whole(panel, row, 1, PANEL_PLAIN, "%s", lines[line].name);
         lines[line].put(panel, row, cnc);
     }
-    row += gaps * keys;
+    if (displays > 0)
+        put_displays(panel, row + gaps, wanted, cnc);
+    row += displays + gaps * keys;
     if (keys)
         grid_put(panel, row++, 1, PANEL_DARK, "%s", view->keys);
     panel->rows = row;

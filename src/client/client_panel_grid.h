@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <wchar.h>
 
-#define PANEL_ROWS 24
+#define PANEL_ROWS 48
 #define PANEL_COLUMNS 120
 
 enum panel_style { PANEL_PLAIN, PANEL_TITLE, PANEL_HEAD, PANEL_LIT, PANEL_DARK, PANEL_WRONG, PANEL_STYLES };

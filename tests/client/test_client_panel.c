@@ -194,6 +194,14 @@ START_TEST(a_cnc_has_its_axes_and_what_its_block_and_its_program_do)
 }
 END_TEST
 
+START_TEST(a_cnc_with_a_rotary_axis_shows_degrees)
+{
+    draw(json_pack("{s:{s:{s:{s:I, s:b}}}}", "cnc", "axes", "4", "position", (json_int_t)65536 * 90000, "rotary", 1), 24, 80);
+    assert_shown(" axis  state        mm or deg");
+    assert_shown(" 4     -               90.000");
+}
+END_TEST
+
 START_TEST(stops_and_errors_of_a_cnc_are_named)
 {
     draw(cnc_state(1, json_pack("{s:{s:b, s:b}, s:i, s:i, s:i}", "stops", "po_stop", 1, "limit", 1, "plc_error", 0x15, "critical",
@@ -256,6 +264,42 @@ START_TEST(a_cnc_has_gaps_where_there_is_room)
 }
 END_TEST
 
+/* {"displays": ...}: what the second one shows in its second line. */
+static json_t *displays(const char *second)
+{
+    const char *blank = "                ";
+    return json_pack("{s:[{s:[s, s, s]}, {s:[s, s, s]}]}", "displays", "lines", blank, blank, blank, "lines", blank, second,
+                     blank);
+}
+
+START_TEST(displays_of_a_cnc_are_shown_if_something_is_written_on_them)
+{
+    draw(cnc_state(2, displays("  Abc \x1b          ")), 24, 80);
+    assert_shown(" rev/min   gear 2   spindle 95 %\n\n display 1          display 2\n\n                      Abc ?\n");
+    ck_assert_int_eq(panel.rows, 15);
+    draw(cnc_state(2, displays("                ")), 24, 80);
+    ck_assert(strstr(text, "display") == NULL);
+    draw(cnc_state(2, displays("  Abc           ")), 14, 80); /* there is no room */
+    ck_assert(strstr(text, "display") == NULL);
+    assert_shown("spindle 95 %\n");
+}
+END_TEST
+
+/* Block and stops are there before the fourth axis; what has no room is named. */
+START_TEST(a_small_terminal_shows_what_a_cnc_does)
+{
+    draw(cnc_state(16, NULL), 10, 40);
+    assert_shown("\n X     block");
+    assert_shown("\n Z     idle");
+    assert_shown("\n 13 more axes: not enough rows\n block    move");
+    assert_shown("\n stops    -\n");
+    draw(cnc_state(16, NULL), 23, 80);
+    assert_shown("\n 16    idle");
+    draw(cnc_state(16, NULL), 50, 200);
+    assert_shown("x1\n\n axis"); /* with gaps */
+}
+END_TEST
+
 /* Sixteen axes, head, lines and keys fill 24 rows; with less room axes stay longest, and no position is cut. */
 START_TEST(a_cnc_fits_any_size)
 {
@@ -288,10 +332,13 @@ static Suite *client_panel_suite(void)
     tcase_add_test(values, what_the_state_lacks_is_a_dash);
     tcase_add_test(values, control_characters_and_others_do_not_reach_the_terminal);
     tcase_add_test(values, a_cnc_has_its_axes_and_what_its_block_and_its_program_do);
+    tcase_add_test(values, a_cnc_with_a_rotary_axis_shows_degrees);
     tcase_add_test(values, stops_and_errors_of_a_cnc_are_named);
     tcase_add_test(values, what_the_state_of_a_cnc_lacks_is_a_dash);
     tcase_add_test(values, what_is_wrong_with_a_cnc_is_marked);
     tcase_add_test(sizes, a_cnc_has_gaps_where_there_is_room);
+    tcase_add_test(sizes, displays_of_a_cnc_are_shown_if_something_is_written_on_them);
+    tcase_add_test(sizes, a_small_terminal_shows_what_a_cnc_does);
     tcase_add_test(sizes, a_cnc_fits_any_size);
     tcase_add_test(sizes, at_every_size_nothing_is_wider_or_higher_and_positions_stay_longest);
     tcase_add_test(sizes, no_number_is_cut_at_any_width);
