@@ -12,9 +12,11 @@
 
 #define NAME_MAX_LENGTH 48
 #define VALUE_MAX_LENGTH 48
-#define NAME_CHARACTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.+-"
+#define MOTORS_MAX 16 /* the emulator knows how many there are */
+#define NAME_CHARACTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.+-[]"
 #define EXPECTED_NAME \
-    "m1.position, true, steps, index, commands, state, led, fault or idle; idle, do1, di1, var80, powered, message, dropped or t"
+    "m1.position, true, steps, index, commands, state, led, fault or idle; idle, do1, di1, var80, cell.NAME, powered, message, " \
+    "dropped or t"
 
 struct reader {
     const char *at;
@@ -279,6 +281,24 @@ static json_t *line_term(const struct reader *reader, const struct term *term, c
     return NULL;
 }
 
+/* A cell of an interface. */
+static json_t *cell_term(const struct reader *reader, const struct term *term, const char *name)
+{
+    json_t *value = read_integer(reader, term);
+    return value == NULL ? NULL : no_memory(reader, json_pack("{s:{s:o}}", "cell", name, value));
+}
+
+/* The motor in front of "m12.position"; 0: there is none. */
+static int motor_of(const char *name)
+{
+    int motor = 0;
+    if (*name++ != 'm')
+        return 0;
+    for (; *name >= '0' && *name <= '9' && motor <= MOTORS_MAX; name++)
+        motor = 10 * motor + *name - '0';
+    return *name == '.' && motor <= MOTORS_MAX ? motor : 0;
+}
+
 /* What concerns a unit; `name` is the name of the term without that of the unit. */
 static json_t *unit_term(const struct reader *reader, const struct term *term, const char *name)
 {
@@ -286,10 +306,13 @@ static json_t *unit_term(const struct reader *reader, const struct term *term, c
         const char *name;
         int low, high;
     } bits[] = {{"do", 1, 32}, {"di", 1, 32}, {"var", 1, 99}}; /* the emulator knows which there are */
+    const int motor = motor_of(name);
     if ((name[0] == 'd') && (name[1] == 'i' || name[1] == 'o') && name[2] == '.' && name[3] != '\0')
         return named_bit_term(reader, term, name[1] == 'i' ? "di" : "do", name + 3);
-    if (name[0] == 'm' && name[1] >= '1' && name[1] <= '4' && name[2] == '.')
-        return motor_term(reader, term, name + 3, name[1] - '0');
+    if (strncmp(name, "cell.", 5) == 0 && name[5] != '\0')
+        return cell_term(reader, term, name + 5);
+    if (motor > 0)
+        return motor_term(reader, term, strchr(name, '.') + 1, motor);
     for (size_t i = 0; i < sizeof bits / sizeof *bits; i++) {
         size_t length = strlen(bits[i].name);
         if (strncmp(name, bits[i].name, length) != 0)

@@ -307,6 +307,7 @@ static const struct command {
     {"fault", 0, SIZE_MAX, "inject KIND NAME=VALUE..., clear [ID], or nothing to list them", TAKES_UNIT, client_control_fault},
     {"plant", 0, 4, "set FILE, none, motor=N..., or nothing to show it", TAKES_UNIT, client_control_plant},
     {"cib", 1, SIZE_MAX, "status, command, di, do, pwm or config", TAKES_UNIT, client_control_cib},
+    {"cnc", 1, SIZE_MAX, "get, set, cells, start, stop, reset, jog, home, panel or load", TAKES_UNIT, client_control_cnc},
     {"clock", 0, 1, "real, xN, max, stepped, or nothing to show it", 0, show_or_set_clock},
     {"trace", 1, 2, "start FILE or stop [NUMBER]", TAKES_FORCE, client_control_trace},
     {"call", 1, SIZE_MAX, "a METHOD and its parameters, JSON or NAME=VALUE...", TAKES_UNIT, call_method},

@@ -57,11 +57,11 @@ json_t *client_job_file(const char *path);
 json_t *client_job_output(const struct client_job *job, const char *path);
 
 /* The commands, one function each: client_control.c, client_control_time.c, client_control_state.c, client_control_plant.c,
- * client_control_cib.c. */
+ * client_control_cib.c, client_control_cnc.c. */
 typedef enum exit_status client_job_function(struct client_job *job);
 
 client_job_function client_control_state, client_control_di;
 client_job_function client_control_wait, client_control_advance, client_control_events, client_control_trace;
-client_job_function client_control_fault, client_control_plant, client_control_cib;
+client_job_function client_control_fault, client_control_plant, client_control_cib, client_control_cnc;
 
 #endif

@@ -78,7 +78,8 @@ static const char arguments[] =
     "pmc COMMAND [...]\nstate|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
     "snapshot|restore NAME|file=PATH\npower on|off\nswitch NODE [reset]\nclock [CLOCK]\nfault [inject KIND|clear] [...]\n"
     "plant [set FILE|none|motor=N ...]\n"
-    "cib status|command|di|do|pwm|config [...]\ntrace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\n"
+    "cib status|command|di|do|pwm|config [...]\ncnc get|set|cells|start|stop|reset|jog|home|panel|load [...]\n"
+    "trace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\n"
     "shell\nwindow [OPTION...]";
 
 static const char doc[] =
@@ -111,6 +112,8 @@ static const char doc[] =
     "  fault        list injected faults; inject KIND NAME=VALUE...; clear [ID]\n"
     "  plant        show the simulated mechanics; set FILE; none; motor=N jammed=true ...\n"
     "  cib          a CIB module: status, command, di, do, pwm, config get, put FILE or apply\n"
+    "  cnc          a CNC872: cells, keys of its panel, NC program: get CELL..., set CELL=VALUE..., cells, start, stop, reset,\n"
+    "               jog, home, panel, load FILE\n"
     "  clock        show or set it: real, xN, max, stepped\n"
     "  trace        start FILE (" TRACE_ENDINGS ", " WIRE_ENDINGS "), stop [NUMBER]\n"
     "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"

@@ -39,6 +39,8 @@ START_TEST(numbers_of_motors_are_compared)
     assert_means("m3.true<=0", NULL, "{\"motor\": 3, \"true_position\": {\"<=\": 0}}");
     assert_means("m4.true_position!=0", NULL, "{\"motor\": 4, \"true_position\": {\"!=\": 0}}");
     assert_means("m4.steps > 10", NULL, "{\"motor\": 4, \"steps\": {\">\": 10}}");
+    assert_means("m16.position>0", NULL, "{\"motor\": 16, \"position\": {\">\": 0}}");
+    assert_means("u2.cell.B_POL[0]>=-8", NULL, "{\"cell\": {\"B_POL[0]\": {\">=\": -8}}, \"unit\": \"2\"}");
     assert_means("m4.index<700", NULL, "{\"motor\": 4, \"index\": {\"<\": 700}}");
     assert_means("m1.commands=0", NULL, "{\"motor\": 1, \"commands\": 0}");
 }
@@ -125,7 +127,10 @@ START_TEST(what_is_no_condition_is_refused_with_what_is_one)
 {
     assert_refused("", "m1.position>=5000");
     assert_refused(">=5", "m1.position>=5000");
-    assert_refused("m5.idle", "m1.position");
+    assert_refused("m17.idle", "m1.position");
+    assert_refused("m0.idle", "m1.position");
+    assert_refused("cell.PO_STOP", "a comparison after cell.PO_STOP");
+    assert_refused("cell.=1", "m1.position");
     assert_refused("m1.speed>5", "m1.position, true, steps");
     assert_refused("m1.position", "a comparison after m1.position");
     assert_refused("m1.position>=", "a value after m1.position>=");

@@ -33,6 +33,57 @@ test_NU1_the_part_passes_its_scenario() {
     holds "$said" "pass " "the report"
 }
 
+# cnc WORD...: rkmctl cnc; its answer is in $said.
+cnc() {
+    exits 0 "$RKMCTL" -c "$folder/control" cnc "$@"
+}
+
+test_NL1_rkmctl_cnc_does_what_an_operator_and_a_plc_author_do() {
+    printf 'G1 X10 F1000\nG1 Q1\n' >"$folder/bad.nc"
+    printf 'G1 X10 F1000\nM30\n' >"$folder/a.nc"
+    serve_cnc
+    exits 2 "$RKMCTL" -c "$folder/control" cnc load "$folder/bad.nc"
+    holds "$complained" "bad.nc:2:4: error: expected" "a wrong program"
+    cnc load "$folder/a.nc"
+    cnc panel feed=50
+    cnc start
+    exits 0 "$RKMCTL" -c "$folder/control" wait --advance --limit 10s 'cell.B_INK_EX[0]>100000000'
+    cnc get PO_STOP FEED_OVR_MULTIPLIER
+    same $'PO_STOP=0\nFEED_OVR_MULTIPLIER=1000' "$said" "cnc get"
+    cnc stop
+    exits 0 "$RKMCTL" -c "$folder/control" advance 2s
+    cnc get PO_STOP
+    same "PO_STOP=1" "$said" "after stop"
+    cnc reset
+    exits 0 "$RKMCTL" -c "$folder/control" advance 100ms
+    cnc panel mode=manual
+    cnc jog X+
+    exits 0 "$RKMCTL" -c "$folder/control" wait --advance --limit 10s 'm1.position>9000'
+    cnc jog X
+    exits 0 "$RKMCTL" -c "$folder/control" wait --advance --limit 10s m1.idle
+    cnc set REQ_BACKUP_MEM=0
+    cnc cells PO_ST
+    holds "$said" "PO_STOP" "the list"
+    exits 0 "$RKMCTL" -c "$folder/control" --json cnc get PO_STOP
+    holds "$said" '"PO_STOP":' "--json"
+}
+
+test_NL1_what_rkmctl_cnc_cannot_do_is_said() {
+    serve_cnc
+    exits 2 "$RKMCTL" -c "$folder/control" cnc get NO_CELL
+    holds "$complained" "NO_CELL" "an unknown cell"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc get
+    exits 2 "$RKMCTL" -c "$folder/control" cnc set PO_STOP
+    exits 2 "$RKMCTL" -c "$folder/control" cnc jog +
+    exits 2 "$RKMCTL" -c "$folder/control" cnc home
+    exits 2 "$RKMCTL" -c "$folder/control" cnc begin
+    holds "$complained" "expected get, set, cells, start, stop, reset, jog, home, panel or load, found 'begin'" "an unknown word"
+    exits 1 "$RKMCTL" -c "$folder/control" cnc load "$folder/none.nc"
+    holds "$complained" "cannot read $folder/none.nc" "a missing file"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc home Q
+    exits 2 "$RKMCTL" -c "$folder/control" wait 'cell.PO_STOP'
+}
+
 test_NU1_exec_runs_an_nc_program_to_its_end() {
     printf 'G1 X10 Y-2 F1000\nG0 Z5 M30\n' >"$folder/a.nc"
     exits 0 "$RKM04" exec --device cnc872 "$folder/a.nc"

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+/* cnc: what a CNC872 has of its own, over the control socket. */
+#include <err.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client_job.h"
+#include "text/text.h"
+
+#define CELLS_MAX 1000 /* of a list */
+
+/* `print` NULL: there is nothing to show. */
+static enum exit_status call(struct client_job *job, const char *method, json_t *params, void (*print)(const json_t *))
+{
+    json_t *result;
+    if (params == NULL)
+        return client_usage("expected UTF-8");
+    enum exit_status status = client_job_call(job, method, params, true, &result);
+    if (status != STATUS_SUCCESS)
+        return status;
+    if (!job->json && print)
+        print(result);
+    return client_job_done(job, result);
+}
+
+/* ---- Cells -------------------------------------------------------------------------------------------------------------- */
+
+static void print_values(const json_t *result)
+{
+    const char *name;
+    json_t *value;
+    json_object_foreach(json_object_get(result, "cells"), name, value) {
+        char *text = json_dumps(value, JSON_ENCODE_ANY);
+        printf("%s=%s\n", name, text != NULL ? text : "?");
+        free(text);
+    }
+}
+
+static enum exit_status get_cells(struct client_job *job)
+{
+    json_t *names = json_array();
+    if (job->count < 2) {
+        json_decref(names);
+        return client_usage("cnc get: expected names of cells, as in `cnc get PO_STOP B_INK_EX[0]'");
+    }
+    for (size_t i = 1; i < job->count; i++)
+        json_array_append_new(names, json_string(job->words[i]));
+    return call(job, "cnc.get", json_pack("{s:o}", "cells", names), print_values);
+}
+
+static enum exit_status set_cells(struct client_job *job)
+{
+    json_t *cells = json_object();
+    if (job->count < 2) {
+        json_decref(cells);
+        return client_usage("cnc set: expected CELL=VALUE..., as in `cnc set STOP_REQ=1'");
+    }
+    if (!client_job_members(cells, job->words + 1, job->count - 1)) {
+        json_decref(cells);
+        return STATUS_USAGE;
+    }
+    return call(job, "cnc.set", json_pack("{s:o}", "cells", cells), NULL);
+}
+
+static void print_list(const json_t *result)
+{
+    size_t i;
+    json_t *cell;
+    json_array_foreach(json_object_get(result, "cells"), i, cell) {
+        const char *name, *type, *access, *section;
+        if (json_unpack(cell, "{s:s, s:s, s:s, s:s}", "name", &name, "type", &type, "access", &access, "section", &section) == 0)
+            printf("%-24s  %-6s  %-2s  %s\n", name, type, access, section);
+    }
+    const json_int_t more = json_integer_value(json_object_get(result, "more"));
+    if (more > 0)
+        printf("and %" JSON_INTEGER_FORMAT " more\n", more);
+}
+
+static enum exit_status list_cells(struct client_job *job)
+{
+    if (job->count > 2)
+        return client_usage("cnc cells: expected a part of a name, or nothing for all, found '%s'", job->words[2]);
+    return call(job, "cnc.cells", json_pack("{s:i, s:s*}", "limit", CELLS_MAX, "search", job->count == 2 ? job->words[1] : NULL),
+                print_list);
+}
+
+/* ---- Panel -------------------------------------------------------------------------------------------------------------- */
+
+/* start, stop, reset. */
+static enum exit_status press(struct client_job *job)
+{
+    if (job->count > 1)
+        return client_usage("cnc %s: expected nothing, found '%s'", job->words[0], job->words[1]);
+    return call(job, "cnc.panel", json_pack("{s:b}", job->words[0], 1), NULL);
+}
+
+/* X+, X-; X: its key is let go. */
+static enum exit_status jog(struct client_job *job)
+{
+    json_t *axes = json_object();
+    for (size_t i = 1; i < job->count; i++) {
+        const char *word = job->words[i];
+        const size_t length = strcspn(word, "+-");
+        char *name = strndup(word, length);
+        if (length == 0 || strlen(word + length) > 1) {
+            free(name);
+            json_decref(axes);
+            return client_usage("cnc jog: expected an axis with + or -, or alone to end its motion, found '%s'", word);
+        }
+        if (name != NULL)
+            json_object_set_new(axes, name, json_string(word + length));
+        free(name);
+    }
+    if (json_object_size(axes) > 0)
+        return call(job, "cnc.panel", json_pack("{s:o}", "jog", axes), NULL);
+    json_decref(axes);
+    return client_usage("cnc jog: expected axes, as in `cnc jog X+' and then `cnc jog X'");
+}
+
+static enum exit_status home(struct client_job *job)
+{
+    if (job->count != 2)
+        return client_usage("cnc home: expected one axis, as in `cnc home X'");
+    return call(job, "cnc.panel", json_pack("{s:s}", "home", job->words[1]), NULL);
+}
+
+static enum exit_status work_panel(struct client_job *job)
+{
+    json_t *params = json_object();
+    if (job->count < 2) {
+        json_decref(params);
+        return client_usage("cnc panel: expected NAME=VALUE..., as in `cnc panel mode=manual feed=50'");
+    }
+    if (!client_job_members(params, job->words + 1, job->count - 1)) {
+        json_decref(params);
+        return STATUS_USAGE;
+    }
+    return call(job, "cnc.panel", params, NULL);
+}
+
+/* ---- NC program --------------------------------------------------------------------------------------------------------- */
+
+static enum exit_status load(struct client_job *job)
+{
+    struct program_text text;
+    if (job->count != 2)
+        return client_usage("cnc load: expected one FILE, - is standard input");
+    const char *wrong = program_text_read(&text, job->words[1]);
+    if (wrong != NULL)
+        warnx("cannot read %s: %s", job->words[1], wrong);
+    json_t *content = wrong == NULL ? json_stringn(text.text, text.length) : NULL;
+    if (wrong == NULL && content == NULL)
+        warnx("%s: expected UTF-8", job->words[1]);
+    program_text_free(&text);
+    if (content == NULL)
+        return STATUS_FAILURE;
+    return call(job, "cnc.load", json_pack("{s:o, s:s}", "text", content, "name", job->words[1]), NULL);
+}
+
+enum exit_status client_control_cnc(struct client_job *job)
+{
+    static const struct {
+        const char *name;
+        client_job_function *function;
+    } parts[] = {{"get", get_cells}, {"set", set_cells}, {"cells", list_cells}, {"start", press}, {"stop", press},
+                 {"reset", press},   {"jog", jog},       {"home", home},        {"panel", work_panel}, {"load", load}};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        if (strcmp(job->words[0], parts[i].name) == 0)
+            return parts[i].function(job);
+    return client_usage("cnc: expected get, set, cells, start, stop, reset, jog, home, panel or load, found '%s'", job->words[0]);
+}
