@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "pmc_device.h"
+#include "text/text.h"
 
 /* What a text says. */
 struct content {
@@ -23,11 +24,14 @@ static bool read_text(struct content *content, enum pmc_file what, unsigned axes
 struct printing {
     FILE *out;
     const char *name;
+    struct error_lines lines;
 };
 
 static void print_error(void *context, const struct pmc_text_error *error)
 {
-    const struct printing *printing = context;
+    struct printing *printing = context;
+    if (!error_lines_add(&printing->lines))
+        return;
     fprintf(printing->out, "%s:%u:%u: %s: %s\n", printing->name, error->line, error->column,
             error->is_warning ? "warning" : "error", error->text);
 }
@@ -36,7 +40,10 @@ bool pmc_file_is_wrong(enum pmc_file what, unsigned axes, const char *name, cons
 {
     struct content content;
     struct printing printing = {.out = out, .name = name};
-    return !read_text(&content, what, axes, text, length, out ? print_error : NULL, &printing);
+    const bool is_right = read_text(&content, what, axes, text, length, out ? print_error : NULL, &printing);
+    if (out)
+        error_lines_end(&printing.lines, name, out);
+    return !is_right;
 }
 
 /* Keep the first error. */

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <yaml.h>
 
+#include "error_lines.h"
 #include "invisible.h"
 #include "nearest.h"
 #include "number.h"
@@ -36,6 +37,7 @@ struct config_node {
 struct config_tree {
     char *name;
     FILE *errors;
+    struct error_lines lines; /* in it */
     struct config_node *nodes, *root;
     size_t count; /* of nodes */
 };
@@ -50,9 +52,11 @@ struct reader {
 
 /* ---- Errors --------------------------------------------------------------------------------------------------------- */
 
-static bool report(const struct config_tree *tree, size_t line, size_t column, const char *format, va_list arguments)
+static bool report(struct config_tree *tree, size_t line, size_t column, const char *format, va_list arguments)
 {
     char text[MESSAGE_SIZE];
+    if (!error_lines_add(&tree->lines))
+        return false;
     vsnprintf(text, sizeof text, format, arguments);
     invisible_note(text, sizeof text);
     fprintf(tree->errors, "%s:%zu:%zu: error: %s\n", tree->name, line, column, text);
@@ -77,7 +81,7 @@ bool config_key_error(const struct config_node *map, size_t at, const char *form
     return false;
 }
 
-__attribute__((format(printf, 3, 4))) static bool error_at(const struct config_tree *tree, const yaml_mark_t *mark,
+__attribute__((format(printf, 3, 4))) static bool error_at(struct config_tree *tree, const yaml_mark_t *mark,
                                                            const char *format, ...)
 {
     va_list arguments;
@@ -93,7 +97,7 @@ static bool short_of_memory(const struct config_tree *tree)
     return false;
 }
 
-static bool parser_error(const struct config_tree *tree, const yaml_parser_t *parser)
+static bool parser_error(struct config_tree *tree, const yaml_parser_t *parser)
 {
     if (parser->error == YAML_MEMORY_ERROR)
         return short_of_memory(tree);
@@ -318,6 +322,7 @@ void config_free(struct config_tree *tree)
 {
     if (!tree)
         return;
+    error_lines_end(&tree->lines, tree->name, tree->errors);
     while (tree->nodes) {
         struct config_node *node = tree->nodes;
         tree->nodes = node->next;
@@ -461,6 +466,8 @@ bool config_keys(const struct config_node *node, const char *const *names)
         if (names[at])
             continue;
         ok = false;
+        if (!error_lines_add(&node->tree->lines))
+            continue;
         fprintf(errors, "%s:%zu:%zu: error: expected ", node->tree->name, node->item[i]->key_line, node->item[i]->key_column);
         list_names(errors, names);
         char found[MESSAGE_SIZE];

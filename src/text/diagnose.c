@@ -8,6 +8,7 @@
 
 #include <rkm04/text.h>
 
+#include "error_lines.h"
 #include "invisible.h"
 
 /* ---- Characters and places ---------------------------------------------------------------------------------------- */
@@ -177,19 +178,18 @@ int diagnose_text(const char *name, const char *text, size_t length, FILE *out)
     struct rkm04_command command;
     enum rkm04_read found;
     struct text_place place = text_place_begin(text, length);
-    int errors = 0;
+    struct error_lines errors = {0};
     rkm04_read_begin(&reader, text, length);
     while ((found = diagnose_read(&reader, &command)) != RKM04_READ_END) {
-        if (found == RKM04_READ_COMMAND)
+        if (found == RKM04_READ_COMMAND || !error_lines_add(&errors))
             continue;
         text_place_move(&place, reader.start);
         fprintf(out, "%s:%zu:%zu: error: ", name, place.line, place.column);
         diagnose_error(&reader, found, out);
         fputc('\n', out);
-        if (errors < INT_MAX)
-            errors++;
     }
-    return errors;
+    error_lines_end(&errors, name, out);
+    return errors.count < INT_MAX ? (int)errors.count : INT_MAX;
 }
 
 int diagnose_readings(const char *name, const char *text, size_t length, const struct rkm04_readings *readings, FILE *out)
@@ -197,16 +197,16 @@ int diagnose_readings(const char *name, const char *text, size_t length, const s
     struct rkm04_reader reader;
     struct rkm04_command command;
     struct text_place place = text_place_begin(text, length);
-    int errors = 0;
+    struct error_lines errors = {0};
     rkm04_read_begin(&reader, text, length);
     while (readings->negative_position == RKM04_NEGATIVE_POSITION_NO && rkm04_read(&reader, &command) == RKM04_READ_COMMAND) {
-        if (command.op != '=' || command.argument <= INT32_MAX)
+        if (command.op != '=' || command.argument <= INT32_MAX || !error_lines_add(&errors))
             continue;
         text_place_move(&place, reader.start);
         fprintf(out, "%s:%zu:%zu: error: expected a number from 0 on after =, found %" PRId32, name, place.line, place.column,
                 (int32_t)command.argument);
         fputs(" (--readings negative-position=no)\n", out);
-        errors++;
     }
-    return errors;
+    error_lines_end(&errors, name, out);
+    return errors.count < INT_MAX ? (int)errors.count : INT_MAX;
 }

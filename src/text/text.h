@@ -4,6 +4,7 @@
  *     config_tree    YAML and JSON files as a tree whose nodes know their line and column
  *     number, digits, time_value    numbers and times as people write them: "1.5s", "20ms"
  *     program_text, diagnose        program texts of a unit, and what a unit would refuse in them
+ *     error_lines    errors of a text, up to a limit
  *     readings       names and values of the readings of the manual
  *     nearest        the known name next to a wrong one, for messages
  *     trace_names    endings of names of traces, for help texts
@@ -17,6 +18,7 @@
 #include "config_tree.h"
 #include "diagnose.h"
 #include "digits.h"
+#include "error_lines.h"
 #include "exit_status.h"
 #include "invisible.h"
 #include "nearest.h"

@@ -413,4 +413,11 @@ test_the_panel_has_the_axes() {
     [[ $said != *"of 700 commands"* ]] || fail "state: has numbers of an RKM04: $said"
 }
 
+test_a_file_of_another_kind_does_not_fill_the_terminal() {
+    yes 'no program' | head -n 5000 >"$folder/wrong.pmc"
+    exits 1 "$RKM04" exec --device pmc-2hs "$folder/wrong.pmc"
+    same 1001 "$(wc -l <<<"$complained")" "lines of errors"
+    holds "$complained" "wrong.pmc: 4000 more errors are not shown" "the last line"
+}
+
 run_cases "$@"

@@ -286,6 +286,21 @@ START_TEST(a_text_with_too_many_values_is_refused_where_they_begin)
 }
 END_TEST
 
+START_TEST(errors_have_a_limit)
+{
+    static const char *const names[] = {"name", NULL};
+    struct config_tree *tree = read_well("a: 1\nb: 2\n");
+    for (unsigned i = 0; i < 499; i++)
+        ck_assert(!config_keys(config_root(tree), names));
+    for (unsigned i = 0; i < 5; i++)
+        ck_assert(!config_error(config_root(tree), "expected more, for the time %u", i));
+    ck_assert(!config_keys(config_root(tree), names));
+    config_free(tree);
+    fflush(errors);
+    ck_assert_ptr_nonnull(strstr(said, "for the time 1\nfile: 5 more errors are not shown\n"));
+}
+END_TEST
+
 START_TEST(characters_that_cannot_be_seen_are_named)
 {
     static const char *const names[] = {"name", "steps", NULL};
@@ -323,6 +338,7 @@ static Suite *config_tree_suite(void)
     tcase_add_checked_fixture(refusing, setup, teardown);
     tcase_add_loop_test(refusing, what_cannot_be_read_is_refused_with_its_place, 0, COUNT(refusals));
     tcase_add_test(refusing, text_that_is_not_UTF_8_is_refused);
+    tcase_add_test(refusing, errors_have_a_limit);
     tcase_add_test(refusing, characters_that_cannot_be_seen_are_named);
     tcase_add_test(refusing, lists_within_lists_end_somewhere);
     tcase_add_test(refusing, maps_have_a_limit);

@@ -134,6 +134,21 @@ START_TEST(P1_every_error_has_a_line_of_its_own)
 }
 END_TEST
 
+START_TEST(P1_a_text_of_another_kind_does_not_fill_the_terminal)
+{
+    char text[5001];
+    memset(text, 'q', sizeof text - 1u);
+    text[sizeof text - 1u] = '\0';
+    const char *lines = diagnose(text), *end = lines;
+    size_t count = 0;
+    for (const char *at = lines; (at = strchr(at, '\n')) != NULL; at++, count++)
+        end = at[1] != '\0' ? at + 1 : end;
+    ck_assert_uint_eq(count, 1001);
+    ck_assert_str_eq(end, "f.rks: 4000 more errors are not shown\n");
+    ck_assert_int_eq(errors, 5000);
+}
+END_TEST
+
 START_TEST(P1_columns_count_characters_as_an_editor_does)
 {
     static const char message[] = "f.rks:2:8: error: expected a command, found 'q'\n";
@@ -180,6 +195,7 @@ int main(void)
     tcase_add_checked_fixture(places, NULL, drop_said);
     tcase_set_timeout(places, 60);
     tcase_add_test(places, P1_every_error_has_a_line_of_its_own);
+    tcase_add_test(places, P1_a_text_of_another_kind_does_not_fill_the_terminal);
     tcase_add_test(places, P1_columns_count_characters_as_an_editor_does);
     tcase_add_test(places, P1_any_bytes_are_judged_without_harm);
     suite_add_tcase(suite, places);
