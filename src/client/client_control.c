@@ -150,6 +150,19 @@ bool client_job_members(json_t *params, const char *const *words, size_t count)
     return true;
 }
 
+enum exit_status client_job_show(struct client_job *job, const char *method, json_t *params, void (*print)(const json_t *result))
+{
+    json_t *result;
+    if (params == NULL)
+        return client_usage("expected UTF-8");
+    enum exit_status status = client_job_call(job, method, params, true, &result);
+    if (status != STATUS_SUCCESS)
+        return status;
+    if (!job->json && print != NULL)
+        print(result);
+    return client_job_done(job, result);
+}
+
 /* ---- Commands without much to them ------------------------------------------------------------------------------------ */
 
 /* Call a method without printing its result. */

@@ -15,19 +15,6 @@ static json_int_t integer_of(const json_t *object, const char *key)
     return json_integer_value(json_object_get(object, key));
 }
 
-static enum exit_status call(struct client_job *job, const char *method, json_t *params, void (*print)(const json_t *))
-{
-    json_t *result;
-    if (params == NULL)
-        return client_usage("expected UTF-8");
-    enum exit_status status = client_job_call(job, method, params, true, &result);
-    if (status != STATUS_SUCCESS)
-        return status;
-    if (!job->json)
-        print(result);
-    return client_job_done(job, result);
-}
-
 /* ---- Drives ------------------------------------------------------------------------------------------------------------- */
 
 static void print_drive(const json_t *drive)
@@ -59,7 +46,8 @@ static enum exit_status show_status(struct client_job *job)
 {
     if (job->count > 2)
         return client_usage("cib status: expected A or B, or nothing for both");
-    return call(job, "cib.status", job->count == 2 ? json_pack("{s:s}", "drive", job->words[1]) : json_object(), print_status);
+    return client_job_show(job, "cib.status", job->count == 2 ? json_pack("{s:s}", "drive", job->words[1]) : json_object(),
+                           print_status);
 }
 
 static enum exit_status give_command(struct client_job *job)
@@ -77,7 +65,7 @@ static enum exit_status give_command(struct client_job *job)
         }
         json_object_set_new(params, names[i - 2], json_integer(value));
     }
-    return call(job, "cib.command", params, print_status);
+    return client_job_show(job, "cib.command", params, print_status);
 }
 
 /* ---- Inputs and outputs ------------------------------------------------------------------------------------------------- */
@@ -112,7 +100,7 @@ static enum exit_status show_inputs(struct client_job *job)
 {
     if (job->count > 1)
         return client_usage("cib di: expected nothing; `di' sets inputs, as in `di di3=1 button1=0'");
-    return call(job, "state", json_object(), print_inputs);
+    return client_job_show(job, "state", json_object(), print_inputs);
 }
 
 static enum exit_status set_outputs(struct client_job *job)
@@ -127,18 +115,19 @@ static enum exit_status set_outputs(struct client_job *job)
         }
         json_object_set_new(outputs, name, json_integer(word[2] - '0'));
     }
-    return call(job, "cib.do", json_pack("{s:o}", "outputs", outputs), print_outputs);
+    return client_job_show(job, "cib.do", json_pack("{s:o}", "outputs", outputs), print_outputs);
 }
 
 static enum exit_status set_duty(struct client_job *job)
 {
     uint64_t output, duty;
     if (job->count == 1)
-        return call(job, "cib.do", json_object(), print_outputs);
+        return client_job_show(job, "cib.do", json_object(), print_outputs);
     if (job->count != 3 || !number_read(job->words[1], 1, OUTPUTS, &output) || !number_read(job->words[2], 0, 10000, &duty))
         return client_usage("cib pwm: expected an output from 1 to 8 and a duty from 0 to 10000 (0.01 %%), as in `cib pwm 1 "
                             "2500'");
-    return call(job, "cib.pwm", json_pack("{s:I, s:I}", "output", (json_int_t)output, "duty", (json_int_t)duty), print_outputs);
+    return client_job_show(job, "cib.pwm", json_pack("{s:I, s:I}", "output", (json_int_t)output, "duty", (json_int_t)duty),
+                           print_outputs);
 }
 
 /* ---- Configuration ------------------------------------------------------------------------------------------------------ */
@@ -166,11 +155,6 @@ static void print_proposal(const json_t *result)
     print_setup(json_object_get(result, "proposal"));
 }
 
-static void print_nothing(const json_t *result)
-{
-    (void)result;
-}
-
 static json_t *read_setup(const char *path)
 {
     struct program_text text;
@@ -192,7 +176,7 @@ static enum exit_status put_setup(struct client_job *job)
     if (job->count != 3)
         return client_usage("cib config put: expected one FILE");
     json_t *params = read_setup(job->words[2]);
-    return params != NULL ? call(job, "cib.config.put", params, print_nothing) : STATUS_FAILURE;
+    return params != NULL ? client_job_show(job, "cib.config.put", params, NULL) : STATUS_FAILURE;
 }
 
 /* APPLY: an error if the module refuses what is proposed. */
@@ -217,7 +201,7 @@ static enum exit_status configure(struct client_job *job)
         return put_setup(job);
     if (job->count > 2 || (strcmp(word, "get") != 0 && strcmp(word, "apply") != 0))
         return client_usage("cib config: expected get, put FILE or apply, found '%s'", job->words[job->count > 2 ? 2 : 1]);
-    return strcmp(word, "get") == 0 ? call(job, "cib.config", json_object(), print_proposal) : apply(job);
+    return strcmp(word, "get") == 0 ? client_job_show(job, "cib.config", json_object(), print_proposal) : apply(job);
 }
 
 enum exit_status client_control_cib(struct client_job *job)

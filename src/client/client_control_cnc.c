@@ -10,20 +10,6 @@
 
 #define CELLS_MAX 1000 /* of a list */
 
-/* `print` NULL: there is nothing to show. */
-static enum exit_status call(struct client_job *job, const char *method, json_t *params, void (*print)(const json_t *))
-{
-    json_t *result;
-    if (params == NULL)
-        return client_usage("expected UTF-8");
-    enum exit_status status = client_job_call(job, method, params, true, &result);
-    if (status != STATUS_SUCCESS)
-        return status;
-    if (!job->json && print)
-        print(result);
-    return client_job_done(job, result);
-}
-
 /* ---- Cells -------------------------------------------------------------------------------------------------------------- */
 
 static void print_values(const json_t *result)
@@ -46,21 +32,23 @@ static enum exit_status get_cells(struct client_job *job)
     }
     for (size_t i = 1; i < job->count; i++)
         json_array_append_new(names, json_string(job->words[i]));
-    return call(job, "cnc.get", json_pack("{s:o}", "cells", names), print_values);
+    return client_job_show(job, "cnc.get", json_pack("{s:o}", "cells", names), print_values);
+}
+
+/* Call a method with the words NAME=VALUE as its parameters, or, with `key`, as one of them. */
+static enum exit_status call_members(struct client_job *job, const char *method, const char *key, const char *expected)
+{
+    json_t *members = json_object();
+    const bool is_right = job->count > 1 && client_job_members(members, job->words + 1, job->count - 1);
+    if (is_right)
+        return client_job_show(job, method, key != NULL ? json_pack("{s:o}", key, members) : members, NULL);
+    json_decref(members);
+    return job->count > 1 ? STATUS_USAGE : client_usage("cnc %s: expected %s", job->words[0], expected);
 }
 
 static enum exit_status set_cells(struct client_job *job)
 {
-    json_t *cells = json_object();
-    if (job->count < 2) {
-        json_decref(cells);
-        return client_usage("cnc set: expected CELL=VALUE..., as in `cnc set STOP_REQ=1'");
-    }
-    if (!client_job_members(cells, job->words + 1, job->count - 1)) {
-        json_decref(cells);
-        return STATUS_USAGE;
-    }
-    return call(job, "cnc.set", json_pack("{s:o}", "cells", cells), NULL);
+    return call_members(job, "cnc.set", "cells", "CELL=VALUE..., as in `cnc set STOP_REQ=1'");
 }
 
 static void print_list(const json_t *result)
@@ -81,7 +69,8 @@ static enum exit_status list_cells(struct client_job *job)
 {
     if (job->count > 2)
         return client_usage("cnc cells: expected a part of a name, or nothing for all, found '%s'", job->words[2]);
-    return call(job, "cnc.cells", json_pack("{s:i, s:s*}", "limit", CELLS_MAX, "search", job->count == 2 ? job->words[1] : NULL),
+    return client_job_show(job, "cnc.cells", json_pack("{s:i, s:s*}", "limit", CELLS_MAX, "search",
+                                                  job->count == 2 ? job->words[1] : NULL),
                 print_list);
 }
 
@@ -92,7 +81,7 @@ static enum exit_status press(struct client_job *job)
 {
     if (job->count > 1)
         return client_usage("cnc %s: expected nothing, found '%s'", job->words[0], job->words[1]);
-    return call(job, "cnc.panel", json_pack("{s:b}", job->words[0], 1), NULL);
+    return client_job_show(job, "cnc.panel", json_pack("{s:b}", job->words[0], 1), NULL);
 }
 
 /* X+, X-; X: its key is let go. */
@@ -113,7 +102,7 @@ static enum exit_status jog(struct client_job *job)
         free(name);
     }
     if (json_object_size(axes) > 0)
-        return call(job, "cnc.panel", json_pack("{s:o}", "jog", axes), NULL);
+        return client_job_show(job, "cnc.panel", json_pack("{s:o}", "jog", axes), NULL);
     json_decref(axes);
     return client_usage("cnc jog: expected axes, as in `cnc jog X+' and then `cnc jog X'");
 }
@@ -122,21 +111,12 @@ static enum exit_status home(struct client_job *job)
 {
     if (job->count != 2)
         return client_usage("cnc home: expected one axis, as in `cnc home X'");
-    return call(job, "cnc.panel", json_pack("{s:s}", "home", job->words[1]), NULL);
+    return client_job_show(job, "cnc.panel", json_pack("{s:s}", "home", job->words[1]), NULL);
 }
 
 static enum exit_status work_panel(struct client_job *job)
 {
-    json_t *params = json_object();
-    if (job->count < 2) {
-        json_decref(params);
-        return client_usage("cnc panel: expected NAME=VALUE..., as in `cnc panel mode=manual feed=50'");
-    }
-    if (!client_job_members(params, job->words + 1, job->count - 1)) {
-        json_decref(params);
-        return STATUS_USAGE;
-    }
-    return call(job, "cnc.panel", params, NULL);
+    return call_members(job, "cnc.panel", NULL, "NAME=VALUE..., as in `cnc panel mode=manual feed=50'");
 }
 
 /* ---- NC program --------------------------------------------------------------------------------------------------------- */
@@ -155,7 +135,7 @@ static enum exit_status load(struct client_job *job)
     program_text_free(&text);
     if (content == NULL)
         return STATUS_FAILURE;
-    return call(job, "cnc.load", json_pack("{s:o, s:s}", "text", content, "name", job->words[1]), NULL);
+    return client_job_show(job, "cnc.load", json_pack("{s:o, s:s}", "text", content, "name", job->words[1]), NULL);
 }
 
 enum exit_status client_control_cnc(struct client_job *job)

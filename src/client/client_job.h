@@ -42,6 +42,10 @@ enum exit_status client_job_outcome(const struct client_job *job, enum client_rp
 /* Print the result: as JSON with --json, otherwise nothing. Takes the reference. Returns the exit status. */
 enum exit_status client_job_done(const struct client_job *job, json_t *result);
 
+/* Call a method of a unit and show its result: as JSON with --json, otherwise by `print`; NULL: there is nothing to show. Takes
+ * the reference of `params`; NULL: they are not UTF-8 (reported). Returns the exit status. */
+enum exit_status client_job_show(struct client_job *job, const char *method, json_t *params, void (*print)(const json_t *result));
+
 /* Words NAME=VALUE as members of `params`: whole and other numbers, true, false as such, everything else as a string.
  * Returns false if a word is not of that form (reported). */
 bool client_job_members(json_t *params, const char *const *words, size_t count);
