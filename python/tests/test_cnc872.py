@@ -42,3 +42,15 @@ def test_events_of_cells():
             assert bits == [(1000, "PO_F", 1), (bus.now - 1, "NEAR", 1)]
         with pytest.raises(rkm04.RefusedError, match="NO_CELL"):
             bus.events(cells=["NO_CELL"])
+
+
+def test_exchange_is_a_cycle_in_one_call():
+    with rkm04.Bus(device="cnc872", settings=SETTINGS) as bus:
+        bus.call("cnc.panel", start=True)
+        assert bus.call("cnc.exchange", slots=199, get=["PO_F"]) == {"t": 199, "cells": {"PO_F": 1}}
+        assert bus.call("cnc.exchange", set={"STOP_REQ": 1}, slots=17, get=["PO_STOP", "B_INK_EX"]) == {
+            "t": 216, "cells": {"PO_STOP": 1, "B_INK_EX": 207170098}}
+        assert bus.call("cnc.exchange", slots=0) == {"t": 216, "cells": {}}
+        with pytest.raises(rkm04.RefusedError, match="may only be read"):
+            bus.call("cnc.exchange", set={"PO_F": 1})
+        assert bus.call("cnc.exchange", get=["PASSES"]) == {"t": 217, "cells": {"PASSES": 217}}

@@ -5,6 +5,7 @@
  *     condition_read     a condition from JSON
  *     condition_term     what a condition consists of, and its relations
  *     condition_until    parameters and answers of `wait` and `advance`
+ *     exchange           the method of a device that takes time
  *
  *     {"unit": 3, "motor": 1, "position": 5000}          the counter is there; or ">=": {"position": {">=": 5000}}
  *     {"motor": 2, "true_position": {"<=": 0}}           of the plant
@@ -64,6 +65,24 @@ bool until_read_wait(struct until *until, struct sim *sim, const json_t *params,
 
 /* The answer at the present tick. `condition`: NULL: there is none. Returns a new reference, or NULL if out of memory. */
 json_t *until_answer(const struct sim *sim, struct condition *condition, bool holds);
+
+/* ---- The exchange of a device (struct device_exchange), a method that takes time ----------------------------------------- */
+
+struct exchange {
+    const char *get;  /* the method whose result is the answer; NULL: it is none */
+    json_t *params;   /* of it */
+    uint64_t end;     /* tick at which it is asked, not before the present one */
+};
+
+/* Has the device such a method, and is this its name? */
+bool exchange_is_named(const struct sim *sim, const char *method);
+
+/* Read {set, slots, get, unit}, and do what `set` has, at the present tick. Returns false: refused, nothing has changed. */
+bool exchange_begin(struct exchange *exchange, struct sim *sim, const json_t *params, struct refusal *refusal);
+
+/* Its answer, at its end, a new reference; NULL: refused. exchange_drop() is due in any case; also for one that is all zero. */
+json_t *exchange_answer(const struct exchange *exchange, struct sim *sim, struct refusal *refusal);
+void exchange_drop(struct exchange *exchange);
 
 /* The other parts that rooms above use. */
 #include "condition_term.h"

@@ -163,8 +163,7 @@ bool control_handle_line(struct control_client *client, const char *line, size_t
     json_t *result = NULL;
     bool ok = rpc_read(&request, line, length, control->lines, &refusal);
     if (ok) {
-        const struct device_exchange *exchange = sim_device(bus_sim(control->buses[request.line]))->exchange_of;
-        const bool is_exchange = exchange && strcmp(request.method, exchange->name) == 0;
+        const bool is_exchange = exchange_is_named(bus_sim(control->buses[request.line]), request.method);
         control_method *method = is_exchange ? control_exchange : find(request.method);
         if (strcmp(request.method, "restore") == 0 && json_object_get(request.params, "file"))
             method = control_restore;

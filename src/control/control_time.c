@@ -18,8 +18,7 @@ struct control_call {
     uint64_t limit;        /* tick; waiter.limit may be a slice on the way to it */
     bool moves;            /* it is an `advance` */
     bool pausing;          /* between two slices, until the client has read */
-    const char *ask;       /* method whose result is the answer; NULL: the time is */
-    json_t *ask_params;    /* of it; owned */
+    struct exchange exchange; /* whose answer it is; all zero: none, the time is */
     struct control_call *next; /* of the same client */
 };
 
@@ -44,7 +43,7 @@ static void remove_call(struct control_call *call)
 static void free_call(struct control_call *call)
 {
     condition_free(call->waiter.condition);
-    json_decref(call->ask_params);
+    exchange_drop(&call->exchange);
     json_decref(call->id);
     free(call);
 }
@@ -53,9 +52,10 @@ static void finish_call(struct control_call *call, bool holds)
 {
     struct refusal refusal;
     remove_call(call);
-    json_t *answer = call->ask ? sim_command(&call->bus->sim, call->ask, call->ask_params, &refusal)
-                               : until_answer(&call->bus->sim, call->waiter.condition, holds);
-    if (answer || !call->ask)
+    const bool is_exchange = call->exchange.get != NULL;
+    json_t *answer = is_exchange ? exchange_answer(&call->exchange, &call->bus->sim, &refusal)
+                                 : until_answer(&call->bus->sim, call->waiter.condition, holds);
+    if (answer || !is_exchange)
         control_answer(call->client, call->id, answer);
     else
         control_refuse(call->client, call->id, &refusal);
@@ -189,75 +189,26 @@ json_t *control_advance(struct control_context *context, struct refusal *refusal
     return NULL;
 }
 
-/* ---- The exchange of a device (struct device_exchange) --------------------------------------------------------------- */
-
-#define SLOTS_MAX 3600000 /* an hour of 1 ms */
-
-/* {member: what `from` has, unit: ...} for one of its two methods; NULL: out of memory. */
-static json_t *part_of(const json_t *params, const char *from, const char *member)
-{
-    json_t *part = json_object(), *value = json_object_get(params, from), *unit = json_object_get(params, "unit");
-    if (part && value)
-        json_object_set(part, member, value);
-    if (part && unit)
-        json_object_set(part, "unit", unit);
-    return part;
-}
-
-/* Do what `set` has; a first answer of `get` shows that there will be one. */
-static bool exchange_cells(struct control_context *context, const struct device_exchange *exchange, json_t *get,
-                           struct refusal *refusal)
-{
-    struct sim *sim = bus_sim(context->bus);
-    const json_t *params = context->request->params;
-    json_t *answer = sim_command(sim, exchange->get, get, refusal);
-    json_t *set = answer && json_object_get(params, "set") ? part_of(params, "set", exchange->member) : NULL;
-    bool is_done = answer != NULL;
-    if (set) {
-        json_t *done = sim_command(sim, exchange->set, set, refusal);
-        is_done = done != NULL;
-        json_decref(done);
-    }
-    json_decref(set);
-    json_decref(answer);
-    return is_done;
-}
+/* ---- The exchange of a device (condition.h) ---------------------------------------------------------------------------- */
 
 json_t *control_exchange(struct control_context *context, struct refusal *refusal)
 {
-    static const char *const names[] = {"set", "slots", "get", "unit", NULL};
     struct sim *sim = bus_sim(context->bus);
-    const struct device_exchange *exchange = sim_device(sim)->exchange_of;
-    const json_t *params = context->request->params;
-    int64_t slots;
-    unsigned unit;
+    struct exchange exchange;
     if (!is_stepped(context, refusal))
         return NULL;
     context->again = control_time_is_moved(context->client->control, context->bus);
-    if (context->again || !params_known(params, names, refusal) || (unit = param_unit(sim, params, refusal)) == 0 ||
-        !param_integer_or(params, "slots", 0, SLOTS_MAX, 1, &slots, refusal))
+    if (context->again || !exchange_begin(&exchange, sim, context->request->params, refusal))
         return NULL;
-    if (!sim_powered(sim, unit))
-        return refuse(refusal, REFUSED_STATE, "the unit has no power");
-    const struct device_unit *core = sim_core(sim, unit);
-    const uint64_t end = sim_now(sim) + exchange->end(core, (unsigned)slots) - sim_device(sim)->now(core);
-    if (end > SIM_TIME_MAX)
-        return refuse(refusal, REFUSED_STATE, "virtual time ends before");
-    json_t *get = part_of(params, "get", exchange->member);
-    if (get && !json_object_get(get, exchange->member))
-        json_object_set_new(get, exchange->member, json_array());
-    if (!exchange_cells(context, exchange, get, refusal)) {
-        json_decref(get);
+    struct control_call *call = new_call(context, (struct until){NULL, exchange.end}, true);
+    if (!call) {
+        exchange_drop(&exchange);
         return NULL;
     }
-    struct control_call *call = new_call(context, (struct until){NULL, end}, true);
-    if (!call)
-        return json_decref(get), NULL;
     bus_changed(context->bus);
-    call->ask = exchange->get;
-    call->ask_params = get;
+    call->exchange = exchange;
     context->later = true;
-    if (end <= sim_now(sim) || !continue_call(call))
+    if (exchange.end <= sim_now(sim) || !continue_call(call))
         finish_call(call, false);
     return NULL;
 }

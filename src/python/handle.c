@@ -192,6 +192,18 @@ static json_t *method_wait(struct handle *handle, const json_t *params, struct r
     return until_read_wait(&until, &handle->sim, params, refusal) ? do_until(handle, &until, refusal) : NULL;
 }
 
+/* As over the control socket, which does it on a stepped clock. */
+static json_t *do_exchange(struct handle *handle, const json_t *params, struct refusal *refusal)
+{
+    struct exchange exchange;
+    if (!exchange_begin(&exchange, &handle->sim, params, refusal))
+        return NULL;
+    json_t *result = handle_advance(handle, exchange.end) ? exchange_answer(&exchange, &handle->sim, refusal)
+                                                          : refuse(refusal, REFUSED_STATE, "interrupted");
+    exchange_drop(&exchange);
+    return result;
+}
+
 static json_t *method_clock(struct handle *handle, const json_t *params, struct refusal *refusal)
 {
     static const char *const names[] = {"clock", NULL};
@@ -293,6 +305,8 @@ json_t *handle_call(struct handle *handle, const char *method, const json_t *par
     for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
         if (strcmp(methods[i].name, method) == 0)
             return methods[i].function(handle, params, refusal);
+    if (exchange_is_named(sim, method))
+        return do_exchange(handle, params, refusal);
     uint64_t tick = sim_now(sim);
     json_t *result = sim_command(sim, method, params, refusal);
     if (result && !json_object_get(result, "t_us"))

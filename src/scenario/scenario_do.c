@@ -159,10 +159,23 @@ static bool check_result(struct running *running, const struct scenario_step *st
     return true;
 }
 
+/* The exchange of a device takes time. */
+static json_t *exchange(struct running *running, const struct scenario_step *step, struct refusal *refusal)
+{
+    struct exchange exchange;
+    if (!exchange_begin(&exchange, running->sim, step->json, refusal))
+        return NULL;
+    json_t *result = run_until(running, exchange.end) ? exchange_answer(&exchange, running->sim, refusal) : NULL;
+    exchange_drop(&exchange);
+    return result;
+}
+
 static bool do_call(struct running *running, const struct scenario_step *step)
 {
     struct refusal refusal = {0};
-    json_t *result = sim_command(running->sim, step->method, step->json, &refusal);
+    json_t *result = exchange_is_named(running->sim, step->method)
+                         ? exchange(running, step, &refusal)
+                         : sim_command(running->sim, step->method, step->json, &refusal);
     bool ok = result != NULL;
     if (ok && !running->over && step->result != NULL)
         check_result(running, step, result);

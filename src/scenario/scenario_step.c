@@ -329,7 +329,18 @@ static bool spare_file(const struct config_node *node, const json_t *params)
     return file == NULL || output_file_spare(file) || no_memory(node);
 }
 
-/* Try a command out, on a line of which nothing is seen. Takes `params` over. */
+/* Do a command on the line of which nothing is seen; of one that takes time what it begins and ends with. */
+static json_t *try_command(struct sim *sim, const char *method, const json_t *params, struct refusal *refusal)
+{
+    struct exchange exchange;
+    if (!exchange_is_named(sim, method))
+        return sim_command(sim, method, params, refusal);
+    json_t *result = exchange_begin(&exchange, sim, params, refusal) ? exchange_answer(&exchange, sim, refusal) : NULL;
+    exchange_drop(&exchange);
+    return result;
+}
+
+/* Try a command out. Takes `params` over. */
 static bool set_command(struct scenario_reader *reader, const struct config_node *node, struct scenario_step *step,
                         const char *method, json_t *params)
 {
@@ -340,7 +351,7 @@ static bool set_command(struct scenario_reader *reader, const struct config_node
         return no_memory(node);
     if (strcmp(method, "snapshot") == 0 || strcmp(method, "restore") == 0)
         return spare_file(node, params); /* files may be concerned: when the scenario runs */
-    json_t *result = sim_command(reader->sim, method, params, &refusal);
+    json_t *result = try_command(reader->sim, method, params, &refusal);
     bool wrong = result == NULL && (refusal.code == REFUSED_PARAMS || refusal.code == REFUSED_METHOD);
     json_decref(result);
     return !wrong || config_error(node, "%s", refusal.text);
@@ -484,6 +495,9 @@ bool scenario_stimulus_read(struct scenario_reader *reader, const struct config_
 {
     if (!read_entry(reader, node, &stimulus->step, true))
         return false;
+    if (stimulus->step.action == ACTION_CALL && exchange_is_named(reader->sim, stimulus->step.method))
+        return config_error(config_get(node, "call"), "expected a method that takes no time, found %s, which is for steps",
+                            stimulus->step.method);
     const struct config_node *when = config_get(node, "when");
     if ((when == NULL) == (stimulus->step.at == DEVICE_NEVER))
         return config_error(node, "expected either at or when");

@@ -210,6 +210,45 @@ START_TEST(NU1_scenario_of_a_cnc)
 }
 END_TEST
 
+#define LOAD_AND_START "device: cnc872\nsteps:\n  - call: cnc.load\n    params: {text: G1 X10 F1000}\n" \
+                       "  - call: cnc.panel\n    params: {start: true}\n"
+
+/* W8: STOP_REQ acts in T 200, at rest in T 216. */
+START_TEST(NL1_W8_a_scenario_exchanges_cells_cycle_by_cycle)
+{
+    run_story(LOAD_AND_START
+              "  - call: cnc.exchange\n    params: {slots: 199, get: [PO_F]}\n    result: {t: 199, cells: {PO_F: 1}}\n"
+              "  - call: cnc.exchange\n    params: {set: {STOP_REQ: 1}, get: [STOP_REQ]}\n"
+              "    result: {t: 200, cells: {STOP_REQ: 0}}\n"
+              "  - call: cnc.exchange\n    params: {slots: 15, get: [PO_STOP]}\n    result: {cells: {PO_STOP: 0}}\n"
+              "  - call: cnc.exchange\n    params: {get: [PO_STOP]}\n    result: {t: 216, cells: {PO_STOP: 1}}\n"
+              "  - call: cnc.exchange\n    params: {slots: 0, get: [B_INK_EX]}\n"
+              "    result: {t: 216, cells: {B_INK_EX: 207170098}}\n"
+              "  - expect: {cell: {PO_STOP: 1}}\n",
+              SCENARIO_PASSED, NULL);
+    run_story(LOAD_AND_START "  - call: cnc.exchange\n    params: {get: [PO_F]}\n    result: {cells: {PO_F: 0}}\n",
+              SCENARIO_FAILED, "expected cells {\"PO_F\":0} in the result, seen cells {\"PO_F\":1} in the result");
+    run_story(LOAD_AND_START "  - call: cnc.exchange\n    params: {set: {PO_F: 1}}\n", SCENARIO_FAILED, "PO_F may only be read");
+    run_story(LOAD_AND_START "  - call: cnc.exchange\n    params: {get: [PO_G]}\n", SCENARIO_FAILED, "`PO_G'");
+    run_story(LOAD_AND_START "  - call: cnc.exchange\n    params: {slots: 3600001}\n", SCENARIO_FAILED, "slots");
+    run_story(LOAD_AND_START "  - call: cnc.exchange\n    params: {T: 1}\n", SCENARIO_FAILED, "T");
+    run_story(LOAD_AND_START "  - power: off\n  - call: cnc.exchange\n", SCENARIO_FAILED, "no power");
+    run_story(LOAD_AND_START "stimuli:\n  - at: 5ms\n    call: cnc.exchange\n", SCENARIO_FAILED, "takes no time");
+}
+END_TEST
+
+/* What the exchange must hold always, and what comes meanwhile, as with any other time. */
+START_TEST(NL1_an_exchange_of_a_scenario_is_time_like_other_time)
+{
+    run_story(LOAD_AND_START "  - call: cnc.exchange\n    params: {slots: 700}\nalways:\n  - cell: {PO_POL: 0}\n",
+              SCENARIO_FAILED, "always cell PO_POL == 0");
+    run_story(LOAD_AND_START "  - call: cnc.exchange\n    params: {slots: 300, get: [PO_STOP]}\n"
+                             "    result: {t: 300, cells: {PO_STOP: 1}}\n"
+                             "stimuli:\n  - at: 100ms\n    call: cnc.set\n    params: {cells: {STOP_REQ: 1}}\n",
+              SCENARIO_PASSED, NULL);
+}
+END_TEST
+
 /* ---- A PLC program of its own --------------------------------------------------------------------------------------- */
 
 START_TEST(NU3_the_cells_of_a_plc_program_are_cells_like_others)
@@ -378,6 +417,8 @@ static Suite *cnc872_device_suite(void)
     tcase_add_test(tests, recording_of_a_cnc_replays);
     tcase_add_test(tests, snapshot_of_a_cnc_goes_on_as_before);
     tcase_add_test(tests, NU1_scenario_of_a_cnc);
+    tcase_add_test(tests, NL1_W8_a_scenario_exchanges_cells_cycle_by_cycle);
+    tcase_add_test(tests, NL1_an_exchange_of_a_scenario_is_time_like_other_time);
     tcase_add_test(tests, NU3_the_cells_of_a_plc_program_are_cells_like_others);
     tcase_add_test(tests, NL2_conditions_see_cells_that_change_while_nothing_happens);
     tcase_add_test(tests, NL2_the_cnc_tells_what_happens);
