@@ -34,7 +34,7 @@ struct bus_options {
     const char *rfc2217;        /* NULL: none */
     const char *service_text[DEVICE_SERVICES_MAX]; /* --service as given; NULL: no more */
     struct bus_service_option service[DEVICE_SERVICES_MAX];
-    const char *flash;          /* NULL: memory only */
+    const char *flash, *backup; /* --flash, --backup: the same file; NULL: memory only */
     const char *coverage;       /* NULL: no report */
     int min_coverage;           /* tenths of a per cent; -1: not asked for */
     const char *clock_text;     /* as given: "real", "x10", "max", "stepped" */

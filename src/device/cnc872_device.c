@@ -300,6 +300,11 @@ static void axis(const struct device_unit *unit, unsigned number, struct device_
     };
 }
 
+static bool has_program(const struct device_config *config)
+{
+    return cnc_own_of(config).text[CNC_TEXT_NC] != NULL;
+}
+
 /* An NC program, as of `rkm04 exec`: it is loaded, and started. */
 static int set_text(struct device_unit *unit, unsigned number, const char *text, size_t length, char error[DEVICE_ERROR_SIZE])
 {
@@ -307,12 +312,13 @@ static int set_text(struct device_unit *unit, unsigned number, const char *text,
     struct device_refusal refusal;
     (void)number; /* the text is for all axes */
     device->is_quiet = false;
-    const struct cnc_text *program = cnc_text_read(CNC_TEXT_NC, device->own.text[CNC_TEXT_CONFIG], "nc", text, length, NULL);
-    if (!program) {
+    const struct cnc_text *program =
+        text ? cnc_text_read(CNC_TEXT_NC, device->own.text[CNC_TEXT_CONFIG], "nc", text, length, NULL) : NULL;
+    if (text && !program) {
         snprintf(error, DEVICE_ERROR_SIZE, "the NC program is wrong");
         return 1;
     }
-    if (!cnc_load_program(device, program, &refusal)) {
+    if (text && !cnc_load_program(device, program, &refusal)) {
         snprintf(error, DEVICE_ERROR_SIZE, "%s", refusal.text);
         return 2;
     }
@@ -369,6 +375,7 @@ const struct device_kind cnc872_device = {
     .is_program_whole = true,
     .flash_blocks = CNC_BACKUP_BLOCKS,
     .flash_block_size = CNC_BACKUP_BLOCK,
+    .flash_name = "backup",
     .begin = begin,
     .end = end,
     .attach = attach,
@@ -383,6 +390,7 @@ const struct device_kind cnc872_device = {
     .node = node,
     .axis = axis,
     .set_text = set_text,
+    .has_program = has_program,
     .check_text = cnc_check_text,
     .is_stuck = is_stuck,
     .state_name = cnc_state_name,

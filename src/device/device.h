@@ -325,6 +325,7 @@ struct device_kind {
     const struct device_program_message *program_message; /* NULL: scenarios have no steps `set` and `program` */
     bool is_program_whole;   /* a text is for all axes (axis 0), not for one */
     unsigned flash_blocks, flash_block_size; /* 0: no flash */
+    const char *flash_name; /* what people call what lies there, also an option and a key of scenarios: "backup"; NULL: flash */
     unsigned request_max, answer_max; /* bytes of the longest message, without framing; at most DEVICE_MESSAGE_MAX */
 
     /* Power up at us 0 with the node and settings of `config`, which are copied; `port` must stay. The memory is zero before the
@@ -398,6 +399,9 @@ struct device_kind {
     /* A text from `set` or from the key `program:`, for an axis (0: all), at the present us. Returns 0; or a flag from 1, and a
      * message; DEVICE_TEXT_OVERFLOWS: it is taken, and fills the memory. NULL: it takes no texts. */
     int (*set_text)(struct device_unit *unit, unsigned axis, const char *text, size_t length, char error[DEVICE_ERROR_SIZE]);
+
+    /* Do the settings have a program that set_text() with text NULL starts? NULL: no. */
+    bool (*has_program)(const struct device_config *config);
 
     /* Does `text` have anything that a unit with these settings refuses? Then it is reported on `out` (NULL: none), as
      * NAME:LINE:COLUMN: error: … NULL: it takes no texts. */

@@ -99,7 +99,7 @@ static bool check_image(struct flash_file *flash)
         return make_image(flash);
     if (found.st_size == (off_t)size_of(flash))
         return sync_image(flash);
-    log_error("--flash: %s has %lld bytes and is no flash image: expected %u bytes, or a new name", flash->path,
+    log_error("%s has %lld bytes and is no flash image: expected %u bytes, or a new name", flash->path,
               (long long)found.st_size, size_of(flash));
     return false;
 }

@@ -17,6 +17,8 @@
 
 #define LINE_SIZE 8192u /* more than a path and what is said about it; the rest of a longer line is cut */
 
+static const char *program = "rkm04 serve: ";
+
 static struct {
     bool queued;        /* lines go into the queue */
     bool running;       /* the thread */
@@ -145,11 +147,16 @@ static void put_prefixed(const char *head, const char *format, ...)
     va_end(list);
 }
 
+void log_as(const char *head)
+{
+    program = head;
+}
+
 void log_error(const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    put_line("rkm04 serve: ", format, list);
+    put_line(program, format, list);
     va_end(list);
 }
 

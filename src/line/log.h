@@ -22,6 +22,9 @@ void log_start_thread(void);
 /* Wait until everything is written, but at most `milliseconds`. */
 void log_flush(unsigned milliseconds);
 
+/* Before what log_error() reports there is "rkm04 serve: ", or this, which must stay. */
+void log_as(const char *head);
+
 /* One line "rkm04 serve: …": why something failed and what to do. No line end in `format`. */
 void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -20,19 +20,21 @@
 
 struct options {
     struct exec_inputs inputs;
-    const char *trace, *until_text;
+    const char *trace, *until_text, *backup;
     uint64_t until;
     bool json;
     unsigned output_flags; /* of output_file.h */
     struct device_arguments device;
 };
 
-enum option_key { KEY_FORCE = 256 };
+enum option_key { KEY_FORCE = 256, KEY_BACKUP };
 
 static const struct argp_option option_table[] = {
     {"until", 'u', "TIME", 0, "Stop after this time (250us, 1500ms, 2.5s)", 0},
     {"stimulus", 's', "FILE", 0, "Inputs and messages that come while the programs run", 0},
     {"trace", 't', "FILE", 0, "Record every event (" TRACE_ENDINGS "; any other name: CSV); - is CSV on standard output", 0},
+    {"backup", KEY_BACKUP, "FILE", 0,
+     "Of a CNC872: file of its backup memory, read at the start and saved as the PLC program asks for it, and at the end", 0},
     {"json", 'j', NULL, 0, "Print the final state as JSON", 0},
     {"force", KEY_FORCE, NULL, 0,
      "Also overwrite a file of another kind with the trace; never one that is also read or written otherwise", 0},
@@ -79,6 +81,24 @@ static void take_until(struct argp_state *state, struct options *options, const 
     options->until_text = text;
 }
 
+/* A program among the settings of the device is started if none is named besides. */
+static bool has_own_program(const struct options *options)
+{
+    const struct device_kind *device = options->device.kind;
+    return device->has_program && device->has_program(&options->device.config);
+}
+
+static void check_backup(const struct options *options, const struct argp_state *state)
+{
+    const struct device_kind *device = options->device.kind;
+    if (!options->backup)
+        return;
+    if (!device->flash_name || strcmp(device->flash_name, "backup") != 0)
+        argp_error(state, "--backup: the device %s has no backup memory", device->name);
+    if (!output_file_spare(options->backup))
+        argp_failure(state, STATUS_FAILURE, ENOMEM, "%s", options->backup);
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state)
 {
     struct options *options = state->input;
@@ -98,6 +118,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case 'j':
         options->json = true;
         return 0;
+    case KEY_BACKUP:
+        options->backup = text;
+        return 0;
     case KEY_FORCE:
         options->output_flags |= OUTPUT_FORCE;
         return 0;
@@ -105,8 +128,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         exec_inputs_argument(&options->inputs, text);
         return 0;
     case ARGP_KEY_END:
-        if (exec_inputs_are_none(&options->inputs))
+        if (exec_inputs_are_none(&options->inputs) && !has_own_program(options))
             argp_error(state, "no program given");
+        check_backup(options, state);
         exec_inputs_complete(&options->inputs, options->device.kind, state);
         if (options->json && options->trace != NULL && strcmp(options->trace, "-") == 0)
             argp_error(state, "--json and --trace - cannot both use standard output");
@@ -121,6 +145,7 @@ static void parse_options(int argc, char **argv, struct options *options)
     const struct argp_child children[] = {{.argp = device_arguments_argp(&options->device)}, {0}};
     const struct argp argp = {option_table, parse_option, "[M=]FILE...", doc, children, NULL, NULL};
     argp_err_exit_status = STATUS_USAGE;
+    log_as("rkm04 exec: ");
     arguments_parse(&argp, argc, argv, options);
 }
 
@@ -191,19 +216,24 @@ static int run_programs(struct exec_run *run, const struct options *options, FIL
     run->until = options->until;
     run->device = options->device.kind;
     run->config = options->device.config;
+    run->flash_path = options->backup;
     run->progress = isatty(STDERR_FILENO) != 0;
     run->answered = report_answer;
     run->context = &report;
     interrupt_catch(exec_run_interrupt);
     if (!exec_run_begin(run) || !begin_trace(run, options, out, &trace)) {
-        fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
+        if (!options->backup || run->flash_path)
+            fprintf(stderr, "rkm04 exec: %s\n", strerror(ENOMEM));
         return STATUS_FAILURE;
     }
     report_begin(&report, options->json);
     exec_inputs_store(&options->inputs, run);
+    if (exec_inputs_are_none(&options->inputs))
+        exec_run_set(run, 0, NULL, 0, "rkm04 exec");
     enum exec_end end = exec_run(run);
 
-    bool written = trace == NULL || report_trace_error(options, trace_file_end(trace));
+    bool written = exec_run_store(run);
+    written = (trace == NULL || report_trace_error(options, trace_file_end(trace))) && written;
     if (!report_end(&report, run, end, out == stdout ? stderr : stdout))
         written = false;
     return exit_status(run, options, end, written);

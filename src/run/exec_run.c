@@ -29,17 +29,53 @@ void exec_run_interrupt(int signal_number)
 
 /* ---- Begin and end -------------------------------------------------------------------------------------------------- */
 
+static int flash_read(void *context, unsigned number, unsigned block, unsigned offset, void *data, unsigned length)
+{
+    struct exec_run *run = context;
+    (void)number;
+    return flash_file_read(&run->flash, block, offset, data, length);
+}
+
+static int flash_erase(void *context, unsigned number, unsigned block)
+{
+    struct exec_run *run = context;
+    (void)number;
+    return flash_file_erase(&run->flash, block);
+}
+
+static int flash_program(void *context, unsigned number, unsigned block, unsigned offset, const void *data, unsigned length)
+{
+    struct exec_run *run = context;
+    (void)number;
+    return flash_file_program(&run->flash, block, offset, data, length);
+}
+
 bool exec_run_begin(struct exec_run *run)
 {
     struct sim_config config = {.nodes = {.count = 1, .node = {1}}, .device = run->device, .unit = run->config};
+    if (run->flash_path) {
+        config.flash = (struct sim_flash){flash_read, flash_erase, flash_program, run};
+        if (!flash_file_open(&run->flash, run->flash_path, run->device->flash_blocks, run->device->flash_block_size)) {
+            run->flash_path = NULL;
+            return false;
+        }
+    }
     run->repeat = calloc(1, run->device->repeat_size + 1u);
     return run->repeat && sim_begin(&run->sim, &config);
+}
+
+bool exec_run_store(struct exec_run *run)
+{
+    sim_store(&run->sim);
+    return !run->flash_path || flash_file_sync(&run->flash);
 }
 
 void exec_run_end(struct exec_run *run)
 {
     free(run->repeat);
     sim_end(&run->sim);
+    if (run->flash_path)
+        flash_file_close(&run->flash);
 }
 
 struct device_unit *exec_run_unit(struct exec_run *run)

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "line/line.h"
 #include "sim/sim.h"
 #include "stimulus.h"
 #include "trace/trace.h"
@@ -26,6 +27,7 @@ struct exec_run {
     uint64_t until;                 /* last tick to be done; DEVICE_NEVER: no limit */
     const struct device_kind *device; /* of the unit */
     struct device_config config;    /* of the unit */
+    const char *flash_path;         /* file of its flash; NULL: memory, erased at first */
     bool progress;                  /* show a line on stderr while it takes long */
     /* Called with what the unit answered to a message of the stimulus; length 0: nothing. */
     void (*answered)(void *context, uint64_t tick, const struct stimulus *stimulus, const uint8_t *answer, size_t length);
@@ -38,12 +40,16 @@ struct exec_run {
     size_t next;      /* inside: stimuli delivered */
     bool open;        /* inside: there is no `until` */
     void *repeat;     /* inside: of device_kind.find_repeat */
+    struct flash_file flash; /* inside: with `flash_path` */
 };
 
-/* Power up at tick 0 with empty flash. *run must be zero; the members of the first part must be set by exec_run(). Returns false
- * if out of memory; exec_run_end() is due in either case. */
+/* Power up at tick 0. *run must be zero; the members of the first part must be set by exec_run(). Returns false if out of memory, or
+ * if there is no flash file (reported); exec_run_end() is due in either case. */
 bool exec_run_begin(struct exec_run *run);
 void exec_run_end(struct exec_run *run);
+
+/* A regular end: what the unit keeps is stored. Returns false if its file could not be written (reported). */
+bool exec_run_store(struct exec_run *run);
 
 /* The unit. */
 struct device_unit *exec_run_unit(struct exec_run *run);

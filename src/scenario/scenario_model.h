@@ -76,6 +76,7 @@ struct scenario {
     const char *name;
     struct sim_config config;
     unsigned files;
+    char *flash; /* its image at first; NULL: erased */
     char *file[SCENARIO_FILES_MAX]; /* texts that options of the device name */
     char *plant;             /* text of the plant; NULL: none */
     char *plant_name;        /* for messages */

@@ -92,6 +92,8 @@ static bool read_options(struct scenario_reader *reader, const struct config_nod
             *at = *at == '-' ? '_' : *at;
         keys[count++] = own[options++];
     }
+    if (kind->flash_name && count < KEYS_MAX)
+        keys[count++] = kind->flash_name;
     keys[count] = NULL;
     if (!config_keys(root, keys))
         return false;
@@ -216,6 +218,26 @@ static bool read_plant(struct scenario_reader *reader, const struct config_node 
     return true;
 }
 
+/* What is in the flash at first, by the name that it has: an image, which the run does not write. */
+static bool read_flash(struct scenario_reader *reader, const struct config_node *root)
+{
+    struct scenario *scenario = reader->scenario;
+    const struct device_kind *kind = scenario->config.device;
+    const struct config_node *node = kind->flash_name ? config_get(root, kind->flash_name) : NULL;
+    const size_t wanted = (size_t)kind->flash_blocks * kind->flash_block_size;
+    size_t length;
+    char *path = NULL;
+    if (node == NULL)
+        return true;
+    scenario->flash = scenario_file(reader, node, &path, &length);
+    const bool is_right = scenario->flash != NULL &&
+                          (length == wanted || config_error(node, "%s has %zu bytes and is no %s file: expected %zu bytes", path,
+                                                            length, kind->flash_name, wanted));
+    free(path);
+    scenario->config.flash_image = (const uint8_t *)scenario->flash;
+    return is_right;
+}
+
 /* ---- Lists ---------------------------------------------------------------------------------------------------------- */
 
 /* How many there are; -1: it is no list of one or more, reported. */
@@ -336,7 +358,7 @@ static bool read_all(struct scenario_reader *reader, const struct config_node *r
     bool ok = read_options(reader, root);
     ok = read_line(reader->scenario, root) && ok;
     ok = read_rest(reader->scenario, root) && ok;
-    ok = read_plant(reader, root) && ok;
+    ok = read_plant(reader, root) && read_flash(reader, root) && ok;
     if (!ok) /* without a line nothing can be tried out */
         return false;
     reader->sim = calloc(1, sizeof *reader->sim);
@@ -380,6 +402,7 @@ void scenario_free(struct scenario *scenario)
     json_decref(scenario->di);
     free(scenario->plant);
     free(scenario->plant_name);
+    free(scenario->flash);
     for (unsigned i = 0; i < scenario->files; i++)
         free(scenario->file[i]);
     config_free(scenario->tree);

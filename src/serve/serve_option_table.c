@@ -14,6 +14,7 @@ static const struct argp_option table[] = {
     {"flash", KEY_FLASH, "FILE", 0,
      "Flash image of a unit; created if it does not exist. %n in it stands for the unit's address, %l for the number of the bus. "
      "Without it stored programs are lost when the emulator ends", 0},
+    {"backup", KEY_BACKUP, "FILE", 0, "The same of a CNC872, whose flash is its backup memory", 0},
     {NULL, 0, NULL, 0, "The bus:", 2},
     {"link", KEY_LINK, "PATH", 0,
      "Name of the symbolic link to the pty; default $XDG_RUNTIME_DIR/rkm04/bus0, else rkm04-UID/bus0 in the temporary "

@@ -38,7 +38,8 @@ enum serve_option_key {
     KEY_NO_CONTROL,
     KEY_WINDOW,
     KEY_WINE,
-    KEY_CONTROL_FILE
+    KEY_CONTROL_FILE,
+    KEY_BACKUP
 };
 
 /* For argp, with the options that the system does not have hidden. */

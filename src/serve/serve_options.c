@@ -228,6 +228,26 @@ static void check_ports(struct bus_options *options, const struct argp_state *st
         argp_error(state, "expected --tcp, --rfc2217 or --port: Windows has no pty (docs/WINDOWS.md)");
 }
 
+/* --backup is --flash by the name that the flash of the device has. */
+static void check_flash(struct bus_options *options, struct argp_state *state)
+{
+    const struct device_kind *device = options->device.kind;
+    const char *given = options->backup ? "backup" : "flash";
+    if (options->backup && (!device->flash_name || strcmp(device->flash_name, given) != 0))
+        argp_error(state, "--backup: the device %s has no backup memory%s", device->name,
+                   device->flash_blocks > 0 ? ": expected --flash" : "");
+    if (options->backup && options->flash)
+        argp_error(state, "expected either --flash or --backup, which are the same");
+    if (options->backup)
+        options->flash = options->backup;
+    if (options->flash && device->flash_blocks == 0)
+        argp_error(state, "--flash: the device %s has no flash", device->name);
+    if (options->flash && options->lines > 1 && !name_pattern_has(options->flash, 'l'))
+        argp_error(state, "--%s: expected %%l in the name, for the number of the bus, with --lines", given);
+    if (options->flash && options->nodes.count > 1 && !name_pattern_has(options->flash, 'n'))
+        argp_error(state, "--%s: expected %%n in the name, for the address, with several units", given);
+}
+
 /* What does not go together. */
 static void check_combinations(struct bus_options *options, struct argp_state *state)
 {
@@ -243,10 +263,7 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
         argp_error(state, "--link: %%n names a unit, but a bus has one link: expected %%l for the number of the bus");
     if (options->link && options->lines > 1 && !name_pattern_has(options->link, 'l'))
         argp_error(state, "--link: expected %%l in the name, for the number of the bus, with --lines");
-    if (options->flash && options->lines > 1 && !name_pattern_has(options->flash, 'l'))
-        argp_error(state, "--flash: expected %%l in the name, for the number of the bus, with --lines");
-    if (options->flash && options->nodes.count > 1 && !name_pattern_has(options->flash, 'n'))
-        argp_error(state, "--flash: expected %%n in the name, for the address, with several units");
+    check_flash(options, state);
     complete_baud(options, state);
     if (options->baud == 0 && options->strict_line)
         argp_error(state, "--strict-line needs bytes that take time: expected it without --baud 0");
@@ -275,6 +292,9 @@ static error_t read_unit_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_FLASH:
         options->flash = read_pattern("flash", text, state);
+        return 0;
+    case KEY_BACKUP:
+        options->backup = read_pattern("backup", text, state);
         return 0;
     case KEY_CLOCK:
         options->clock_text = text;

@@ -85,7 +85,9 @@ void serve_report_start(const struct bus_options *options, struct bus *const *bu
         log_at(0, "framing %s, bytes paced at %u baud, turnaround %" PRIu32 " us, clock %s", framing_name(options), options->baud,
                options->turnaround, options->clock_text);
     if (!options->flash && options->device.kind->flash_blocks > 0)
-        log_at(0, "no flash image: stored programs are lost when the emulator ends (--flash FILE keeps them)");
+        log_at(0, options->device.kind->flash_name
+                      ? "no file for the backup memory: it is lost when the emulator ends (--backup FILE keeps it)"
+                      : "no flash image: stored programs are lost when the emulator ends (--flash FILE keeps them)");
     for (unsigned i = 0; i < options->lines; i++)
         log_flash(buses[i]);
 }

@@ -539,7 +539,7 @@ static bool add_unit(struct sim *sim, unsigned at)
     };
     node_list_name(&sim->config.nodes, at, unit->name);
     config.node = sim->config.nodes.node[at];
-    return segment_add_unit(&sim->segment, &config, &unit->port, unit) != 0;
+    return sim_flash_fill(unit) && segment_add_unit(&sim->segment, &config, &unit->port, unit) != 0;
 }
 
 bool sim_begin(struct sim *sim, const struct sim_config *config)

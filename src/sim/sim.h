@@ -55,6 +55,7 @@ struct sim_config {
     uint32_t turnaround;           /* ticks (segment.h) */
     uint64_t seed;                 /* of faults with a probability */
     struct sim_flash flash;        /* all NULL: memory that lives as long as the sim */
+    const uint8_t *flash_image;    /* what is in that memory of each unit at first: all its blocks; NULL: it is erased */
     segment_out *out;              /* bytes that reach the host; NULL: none */
     /* Bytes for a client of a server (sim_service_open()); none: it is hung up. NULL: they go nowhere. */
     void (*service_out)(void *context, unsigned client, const uint8_t *bytes, size_t length);
@@ -96,6 +97,9 @@ struct sim {
 /* Power up all units at tick 0. *sim must be zero. Returns false if out of memory. sim_end() is due in either case. */
 bool sim_begin(struct sim *sim, const struct sim_config *config);
 void sim_end(struct sim *sim);
+
+/* Fill the memory of a unit that has no flash outside, from config.flash_image. Returns false if out of memory. For sim.c. */
+bool sim_flash_fill(struct sim_unit *unit);
 
 /* A regular end comes: units that have power store what they keep; flash has to be there still. */
 void sim_store(struct sim *sim);

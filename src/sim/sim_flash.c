@@ -66,6 +66,17 @@ int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, co
     return 0;
 }
 
+bool sim_flash_fill(struct sim_unit *unit)
+{
+    const struct sim_config *config = &unit->sim->config;
+    if (!config->flash_image || config->flash.read)
+        return true;
+    if (!memory_of(unit))
+        return false;
+    invert(unit->memory, config->flash_image, device_of(unit)->flash_blocks * device_of(unit)->flash_block_size);
+    return true;
+}
+
 void sim_store(struct sim *sim)
 {
     const struct device_kind *kind = sim_device(sim); /* NULL: it has not begun */

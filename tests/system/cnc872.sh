@@ -188,6 +188,51 @@ True
 {'t_us': 4000001} {64} 4000 True" "$said" "what the client prints"
 }
 
+# The command line with all files, as docs/CNC872.md has it.
+test_NU1_a_machine_is_served_with_all_its_files() {
+    serve_cnc --config "$example/mill.xml" --nc "$example/part.nc" --plc "$example/mill.plc" \
+        --machine "$example/mill.machine.yaml" --backup "$folder/mill.backup"
+    call cnc.set 'cells={"PLC_MEM_BACKUP[9999]": 5, "REQ_BACKUP_MEM": 1}'
+    call cnc.exchange 'get=["REQ_BACKUP_MEM"]'
+    holds "$said" '"REQ_BACKUP_MEM":0' "it is saved"
+    kill -KILL "$started"
+    status_of "$started"
+    printf 'G1 X1 F1000\n' >"$folder/a.nc"
+    printf 'MODULE_MAIN\n LOD PLC_MEM_BACKUP[9999]\n AD CNST.1\n STO PLC_MEM_BACKUP[9999]\nMODULE_MAIN_END\n' >"$folder/a.plc"
+    exits 0 "$RKM04" exec --device cnc872 --plc "$folder/a.plc" --nc "$folder/a.nc" --backup "$folder/mill.backup"
+    holds "$said" "1000  idle" "exec runs the program of --nc"
+    printf 'device: cnc872\nbackup: mill.backup\nsteps:\n  - expect: {cell: {"PLC_MEM_BACKUP[9999]": %d}}\n%s\n' 101 \
+        '  - call: cnc.exchange
+    params: {set: {"PLC_MEM_BACKUP[9999]": 7, REQ_BACKUP_MEM: 1}, get: [REQ_BACKUP_MEM]}
+    result: {cells: {REQ_BACKUP_MEM: 0}}' >"$folder/a.yaml"
+    exits 0 "$RKM04" test --records "$folder" "$folder/a.yaml"
+    exits 0 "$RKM04" test "$folder/a.yaml" # the first run has not written the file
+    rm "$folder/mill.backup"
+    exits 0 "$RKM04" replay "$folder/a.record"
+}
+
+test_NO3_a_backup_that_cannot_be_is_refused() {
+    exits 2 "$RKM04" serve --backup "$folder/b"
+    holds "$complained" "the device rkm04 has no backup memory: expected --flash" "serve"
+    exits 2 "$RKM04" serve --device cnc872 --backup "$folder/b" --flash "$folder/c"
+    holds "$complained" "either --flash or --backup" "serve with both"
+    exits 2 "$RKM04" serve --device cib --flash "$folder/b"
+    holds "$complained" "the device cib has no flash" "serve of a device without flash"
+    printf 'G1 X1 F1000\n' >"$folder/a.nc"
+    exits 2 "$RKM04" exec --backup "$folder/b" "$folder/a.nc"
+    holds "$complained" "the device rkm04 has no backup memory" "exec"
+    exits 1 "$RKM04" exec --device cnc872 --backup "$folder/no/b" --nc "$folder/a.nc"
+    holds "$complained" "rkm04 exec: cannot open the flash image $folder/no/b" "exec in a folder that is not there"
+    exits 2 "$RKM04" exec --device cnc872
+    holds "$complained" "no program given" "exec without a program"
+    printf 'device: cnc872\nbackup: a.nc\nsteps:\n  - advance: 1ms\n' >"$folder/a.yaml"
+    exits 2 "$RKM04" test "$folder/a.yaml"
+    holds "$complained" "a.yaml:2:9: error: $folder/a.nc has 12 bytes and is no backup file" "a scenario"
+    printf 'backup: b\nsteps:\n  - advance: 1ms\n' >"$folder/a.yaml"
+    exits 2 "$RKM04" test "$folder/a.yaml"
+    holds "$complained" "a.yaml:1:1: error: unknown key" "a scenario of another device"
+}
+
 test_NO3_the_backup_memory_is_kept_in_a_file() {
     serve_cnc --flash "$folder/backup.img"
     call cnc.set 'cells={"PLC_MEM_BACKUP[5]": 77}'
