@@ -12,7 +12,9 @@
 
 enum cnc_text_kind { CNC_TEXT_CONFIG, CNC_TEXT_NC, CNC_TEXT_PLC, CNC_TEXT_MACHINE, CNC_TEXT_KINDS };
 
-#define CNC_TEXTS_MAX 256u /* different texts that a process reads; the same text again is the same one */
+/* Of the different texts that a process reads; the same text again is the same one. */
+#define CNC_TEXTS_MAX 4096u
+#define CNC_TEXTS_BYTES_MAX ((size_t)512 << 20) /* together, with what is made from them */
 
 struct cnc_machine_switches {
     struct cnc_switch *list;

@@ -9,6 +9,8 @@
 #include "text/text.h"
 
 static struct cnc_text *texts; /* all of them */
+static size_t texts_size;      /* bytes of all */
+static unsigned texts_count;
 
 struct error_log {
     FILE *out;
@@ -115,6 +117,13 @@ static bool read_config(struct cnc_text *text, struct error_log *log)
     return config && cnc_config_read(text->text, text->length, config, report, log);
 }
 
+/* Give back what lies behind `count` elements, and one. */
+static void shrink(void **memory, size_t count, size_t size)
+{
+    void *less = realloc(*memory, (count + 1u) * size);
+    *memory = less ? less : *memory;
+}
+
 static bool read_program(struct cnc_text *text, struct error_log *log)
 {
     struct cnc_nc_program *program = calloc(1, sizeof *program);
@@ -125,8 +134,12 @@ static bool read_program(struct cnc_text *text, struct error_log *log)
     program->blocks = calloc(program->block_room + 1u, sizeof *program->blocks);
     program->values = calloc(program->value_room + 1u, sizeof *program->values);
     const struct cnc_config *config = text->needs ? text->needs->config : cnc_default_config();
-    return program->blocks && program->values &&
-           cnc_nc_read(text->text, text->length, config, program, report, log);
+    if (!program->blocks || !program->values || !cnc_nc_read(text->text, text->length, config, program, report, log))
+        return false;
+    /* The rooms were those that the text could have needed. */
+    shrink((void **)&program->blocks, program->block_count, sizeof *program->blocks);
+    shrink((void **)&program->values, program->value_count, sizeof *program->values);
+    return true;
 }
 
 static bool read_plc(struct cnc_text *text, struct error_log *log)
@@ -165,29 +178,62 @@ static struct cnc_text *copy_text(enum cnc_text_kind kind, const struct cnc_text
     return copy;
 }
 
+/* Bytes that a text takes, with what is made from it. */
+static size_t size_of(const struct cnc_text *text)
+{
+    size_t size = sizeof *text + text->length + (text->config ? sizeof *text->config : 0) + (text->plc ? sizeof *text->plc : 0);
+    if (text->program)
+        size += text->program->block_count * sizeof *text->program->blocks +
+                text->program->value_count * sizeof *text->program->values;
+    return size + text->machine.count * sizeof *text->machine.list;
+}
+
+static const struct cnc_text *find_text(enum cnc_text_kind kind, const struct cnc_text *needs, const char *text, size_t length)
+{
+    const struct cnc_text *at = texts;
+    while (at && (at->kind != kind || at->needs != needs || at->length != length || memcmp(at->text, text, length) != 0))
+        at = at->next;
+    return at;
+}
+
+/* One that is right. Nothing that a text is read for gives it back: there is no more room then. */
+static const struct cnc_text *keep(struct cnc_text *made, const char *name, FILE *errors)
+{
+    const size_t size = size_of(made);
+    if (size > CNC_TEXTS_BYTES_MAX - texts_size) {
+        if (errors)
+            fprintf(errors, "%s: error: the texts read so far and this one have more than %zu MiB: start the emulator again\n", name,
+                    CNC_TEXTS_BYTES_MAX >> 20);
+        free_text(made);
+        return NULL;
+    }
+    texts_size += size;
+    texts_count++;
+    made->next = texts;
+    return texts = made;
+}
+
 const struct cnc_text *cnc_text_read(enum cnc_text_kind kind, const struct cnc_text *needs, const char *name, const char *text,
                                      size_t length, FILE *errors)
 {
     struct error_log log = {.out = errors, .name = name};
-    unsigned count = 0;
-    for (const struct cnc_text *at = texts; at; at = at->next, count++)
-        if (at->kind == kind && at->needs == needs && at->length == length && memcmp(at->text, text, length) == 0)
-            return at;
-    struct cnc_text *made = count < CNC_TEXTS_MAX ? copy_text(kind, needs, text, length) : NULL;
+    const struct cnc_text *found = find_text(kind, needs, text, length);
+    if (found)
+        return found;
+    struct cnc_text *made = texts_count < CNC_TEXTS_MAX ? copy_text(kind, needs, text, length) : NULL;
     if (!made) {
-        if (errors)
-            fprintf(errors, "%s: error: %s\n", name,
-                    count < CNC_TEXTS_MAX ? "out of memory" : "256 different texts have been read: start the emulator again");
+        if (errors && texts_count < CNC_TEXTS_MAX)
+            fprintf(errors, "%s: error: out of memory\n", name);
+        else if (errors)
+            fprintf(errors, "%s: error: %u different texts have been read: start the emulator again\n", name, CNC_TEXTS_MAX);
         return NULL;
     }
     const bool is_right = kind == CNC_TEXT_CONFIG ? read_config(made, &log)
                           : kind == CNC_TEXT_NC   ? read_program(made, &log)
                           : kind == CNC_TEXT_PLC  ? read_plc(made, &log)
                                                   : read_machine(made, name, errors);
-    if (!is_right) {
-        free_text(made);
-        return NULL;
-    }
-    made->next = texts;
-    return texts = made;
+    if (is_right)
+        return keep(made, name, errors);
+    free_text(made);
+    return NULL;
 }

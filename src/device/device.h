@@ -39,6 +39,7 @@
 #define DEVICE_ERROR_SIZE 256u    /* bytes of a message */
 #define DEVICE_VALUES_MAX 16u     /* of a unit; value 1..DEVICE_VALUES_MAX */
 #define DEVICE_BIT_NAME_SIZE 16u  /* bytes of the name of an input or output, with its end */
+#define DEVICE_FILE_MIB_MAX 32u   /* of a file that an option names */
 #define DEVICE_TEXT_OVERFLOWS 3   /* flag of set_text: more than the memory holds */
 
 /* A unit of any kind: kind->size bytes of plain memory. Copying them is a snapshot; what is copied back, or elsewhere, needs
@@ -149,6 +150,7 @@ struct device_option {
     const char *argument; /* what it takes, for --help: "TEXT" */
     const char *help;     /* for --help: what it is, values, default */
     unsigned flags;       /* enum device_option_flag */
+    unsigned file_mib;    /* MiB that its file has at most, up to DEVICE_FILE_MIB_MAX; 0: 1 */
     /* Read a value into the config. Returns false and a message that says what was expected. */
     bool (*read)(struct device_config *config, const char *value, char error[DEVICE_ERROR_SIZE]);
     /* The value is a file: read its content, `text` with a zero after it. Errors go to `errors`, a line each,
@@ -481,6 +483,9 @@ const char *device_addresses(const struct device_kind *kind, char text[DEVICE_ER
 /* What inputs, or outputs, are expected, for messages: "1 to 8", "1 to 3 or near, home, z". Returns `text`. */
 const char *device_input_names(const struct device_kind *kind, char text[DEVICE_ERROR_SIZE]);
 const char *device_output_names(const struct device_kind *kind, char text[DEVICE_ERROR_SIZE]);
+
+/* Bytes that the file of an option has at most. */
+size_t device_option_file_max(const struct device_option *option);
 
 /* The option of this name, or the one of this key of scenarios (`-` is `_`). NULL: the kind has none. */
 const struct device_option *device_option_named(const struct device_kind *kind, const char *name);

@@ -12,7 +12,7 @@
 
 #define ROWS_MAX 96u     /* of --help */
 #define NAME_SIZE 96u    /* bytes of a name in --help */
-#define FILE_SIZE_MAX (1u << 20) /* bytes of a file that an option names */
+#define FIRST_ROOM 65536u /* bytes for a file */
 #define GROUP_UNITS 1
 #define GROUP_BUS 2
 #define GROUP_DEVICES 6  /* that of the first kind */
@@ -100,26 +100,44 @@ const struct argp *device_arguments_argp(struct device_arguments *arguments)
 
 /* ---- Reading ---------------------------------------------------------------------------------------------------------- */
 
-/* Read a whole file. Returns a text to be freed, or NULL and in *why the reason. */
-static char *read_text(const char *path, size_t *length, const char **why)
+/* Read up to `most` bytes and one more; *text is to be freed. Returns an errno. */
+static int read_up_to(FILE *file, size_t most, char **text, size_t *length)
+{
+    for (size_t room = FIRST_ROOM;; room *= 2u) {
+        room = room < most + 2u ? room : most + 2u;
+        char *grown = realloc(*text, room);
+        if (!grown)
+            return ENOMEM;
+        *text = grown;
+        *length += fread(*text + *length, 1, room - 1u - *length, file);
+        if (ferror(file))
+            return errno;
+        if (*length < room - 1u || *length > most)
+            return 0;
+    }
+}
+
+/* Read a whole file. Returns a text to be freed, or NULL and the reason. */
+static char *read_text(const char *path, size_t most, size_t *length, char why[DEVICE_ERROR_SIZE])
 {
     FILE *file = fopen(path, "re");
-    char *text = file ? malloc(FILE_SIZE_MAX + 2u) : NULL;
-    *length = text ? fread(text, 1, FILE_SIZE_MAX + 1u, file) : 0;
-    *why = NULL;
-    if (!text || ferror(file))
-        *why = strerror(errno);
-    else if (*length > FILE_SIZE_MAX)
-        *why = "it is longer than 1 MiB";
+    char *text = NULL;
+    *length = 0;
+    const int error = file ? read_up_to(file, most, &text, length) : errno;
+    *why = '\0';
+    if (error != 0)
+        snprintf(why, DEVICE_ERROR_SIZE, "%s", strerror(error));
+    else if (*length > most)
+        snprintf(why, DEVICE_ERROR_SIZE, "it is longer than %zu MiB", most >> 20);
     else if (memchr(text, '\0', *length))
-        *why = "expected text without the character 0";
+        snprintf(why, DEVICE_ERROR_SIZE, "expected text without the character 0");
     else if (!output_file_spare(path))
-        *why = strerror(ENOMEM);
+        snprintf(why, DEVICE_ERROR_SIZE, "%s", strerror(ENOMEM));
     else
         text[*length] = '\0';
     if (file)
         fclose(file);
-    if (!*why)
+    if (*why == '\0')
         return text;
     free(text);
     return NULL;
@@ -129,8 +147,9 @@ static void read_file(struct device_arguments *arguments, unsigned at, const str
                       const struct argp_state *state)
 {
     size_t length;
-    const char *why, *path = arguments->value[at];
-    arguments->text[at] = read_text(path, &length, &why);
+    char why[DEVICE_ERROR_SIZE];
+    const char *path = arguments->value[at];
+    arguments->text[at] = read_text(path, device_option_file_max(option), &length, why);
     if (!arguments->text[at])
         argp_failure(state, 1, 0, "cannot read %s: %s", path, why);
     else if (!option->read_file(&arguments->config, path, arguments->text[at], length, stderr))

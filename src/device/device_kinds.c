@@ -60,6 +60,11 @@ static bool is_key(const char *key, const char *name)
     return *key == '\0' && *name == '\0';
 }
 
+size_t device_option_file_max(const struct device_option *option)
+{
+    return (size_t)(option->file_mib > 0 ? option->file_mib : 1u) << 20;
+}
+
 const struct device_option *device_option_named(const struct device_kind *kind, const char *name)
 {
     for (const struct device_option *option = kind->options; option && option->name; option++)

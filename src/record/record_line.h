@@ -9,7 +9,7 @@
 
 #define RECORD_VERSION 1
 #define RECORD_SPAN UINT64_C(100000)       /* ticks from digest to digest */
-#define RECORD_HEAD_MAX (64u << 20)        /* bytes of the first line, which has the texts of the device's files */
+#define RECORD_HEAD_MAX (128u << 20)       /* bytes of the first line, which has the texts of the device's files */
 #define RECORD_LINE_MAX (2u << 20)         /* bytes of any other */
 #define RECORD_EMBEDDED_MAX (16u << 20)    /* bytes of a file within a recording, and of the journal */
 

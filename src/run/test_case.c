@@ -13,7 +13,8 @@
 #include "file/file.h"
 #include "text/text.h"
 
-#define TEXT_MAX ((size_t)4 << 20) /* bytes of a file */
+#define TEXT_MAX ((size_t)4 << 20)                    /* bytes of a scenario */
+#define FILE_MAX ((size_t)DEVICE_FILE_MIB_MAX << 20) /* bytes of a file that it names */
 #define FIRST_ROOM 4096
 #define PROGRESS_AFTER 0.5 /* s */
 #define PROGRESS_EVERY 0.2
@@ -38,7 +39,7 @@ static char *read_stream(FILE *file, const char *path, size_t *length, const cha
 {
     char *text = NULL;
     *length = 0;
-    for (size_t room = FIRST_ROOM; room <= TEXT_MAX; room *= 2) {
+    for (size_t room = FIRST_ROOM; room <= 2u * FILE_MAX; room *= 2) {
         char *grown = realloc(text, room);
         if (grown == NULL)
             break;
@@ -87,6 +88,11 @@ int test_case_read(struct test_case *test, const char *path, const struct device
     size_t length;
     *test = (struct test_case){.file = standard ? "<stdin>" : path};
     char *text = standard ? read_stream(stdin, path, &length, &why) : read_file(NULL, path, &length, &why);
+    if (text != NULL && length > TEXT_MAX) {
+        free(text);
+        text = NULL;
+        why = "it is too large";
+    }
     if (text == NULL) {
         fprintf(stderr, "rkm04 test: cannot read %s: %s\n", test->file, why);
         return STATUS_FAILURE;

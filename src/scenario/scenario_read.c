@@ -62,6 +62,9 @@ static bool read_option(struct scenario_reader *reader, const struct device_opti
     scenario->file[scenario->files++] = text;
     bool is_right = text != NULL && (!memchr(text, '\0', length) ||
                                      config_error(node, "cannot read %s: expected text without the character 0", path));
+    is_right = is_right && (length <= device_option_file_max(option) ||
+                            config_error(node, "cannot read %s: it is longer than %zu MiB", path,
+                                         device_option_file_max(option) >> 20));
     is_right = is_right && option->read_file(config, path, text, length, reader->errors);
     free(path);
     return is_right;

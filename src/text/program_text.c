@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define FIRST_ROOM 4096
-#define TEXT_MAX ((size_t)16 << 20) /* bytes; more is not a program */
+#define TEXT_MAX ((size_t)32 << 20) /* bytes; more is not a program */
 
 static const struct {
     uint8_t length;
