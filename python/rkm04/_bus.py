@@ -423,7 +423,9 @@ class Bus:
 
     @property
     def host(self) -> Host:
-        """The host's port at the end of the bus."""
+        """The host's port at the end of the bus. Raises ValueError if the device has no bus."""
+        if not self._kind.get("bus", True):
+            raise ValueError(f"the device {self._kind['name']} has no bus")
         if self._host is None:
             self._host = self._transport.host()
         return self._host

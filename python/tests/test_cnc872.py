@@ -54,3 +54,19 @@ def test_exchange_is_a_cycle_in_one_call():
         with pytest.raises(rkm04.RefusedError, match="may only be read"):
             bus.call("cnc.exchange", set={"PO_F": 1})
         assert bus.call("cnc.exchange", get=["PASSES"]) == {"t": 217, "cells": {"PASSES": 217}}
+
+
+@pytest.mark.parametrize("options", [{"units": "1,1"}, {"units": 2}, {"turnaround": 5}, {"timed": False}, {"framing": "plain"},
+                                     {"plant": {"motors": {1: {"turn": 400}}}}, {"readings": {"hold-exit": "latch"}},
+                                     {"version_text": "x"}])
+def test_options_of_a_bus_are_refused(options):
+    with pytest.raises((ValueError, rkm04.Error), match="no bus|address|unknown parameter|make no steps"):
+        rkm04.Bus(device="cnc872", **options)
+
+
+def test_there_is_no_host():
+    with rkm04.Bus(device="cnc872") as bus:
+        with pytest.raises(ValueError, match="the device cnc872 has no bus"):
+            bus.host.write(b"\x04")
+        with pytest.raises(ValueError, match="the device cnc872 has no bus"):
+            bus.exchange(1, b"\x04")

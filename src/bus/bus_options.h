@@ -26,6 +26,7 @@ struct bus_options {
     const char *nodes_text;     /* --node as given; NULL: the default */
     struct node_list nodes;     /* the same */
     unsigned lines;             /* --lines */
+    const char *lines_text, *rts_text; /* --lines, --rts as given; NULL: the default */
     bool pty;                   /* lines have a pty of their own */
     const char *link;           /* NULL: the default */
     const char *wine;           /* NULL: none */

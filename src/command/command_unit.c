@@ -61,7 +61,9 @@ static bool read_inputs(const struct device_kind *kind, const json_t *di, uint32
         unsigned input = device_input_named(kind, name);
         int level = read_level(value);
         if (input == 0) {
-            refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': expected %s", name, device_input_names(kind, expected));
+            refuse(refusal, REFUSED_PARAMS, "di: unknown input `%.40s': %s %s", name,
+                   kind->inputs > 0 ? "expected" : "there are none in the device",
+                   kind->inputs > 0 ? device_input_names(kind, expected) : kind->name);
             return false;
         }
         uint32_t bit = UINT32_C(1) << (input - 1);
@@ -149,6 +151,8 @@ static json_t *command_switch(struct sim *sim, const json_t *params, struct refu
     unsigned number = params_known(params, names, refusal) ? param_unit(sim, params, refusal) : 0;
     const json_t *reset = json_object_get(params, "reset");
     int64_t node;
+    if (number > 0 && !sim_device(sim)->receive)
+        return refuse(refusal, REFUSED_STATE, "the device %s has no bus, and its unit no address", sim_device(sim)->name);
     if (number == 0 || !param_integer(params, "node", 1, sim_device(sim)->addresses, &node, refusal))
         return NULL;
     if (reset && !json_is_boolean(reset))

@@ -202,7 +202,7 @@ static const struct cnc_text *keep(struct cnc_text *made, const char *name, FILE
     const size_t size = size_of(made);
     if (size > CNC_TEXTS_BYTES_MAX - texts_size) {
         if (errors)
-            fprintf(errors, "%s: error: the texts read so far and this one have more than %zu MiB: start the emulator again\n", name,
+            fprintf(errors, "%s: error: all texts together take more than %zu MiB: start the emulator again\n", name,
                     CNC_TEXTS_BYTES_MAX >> 20);
         free_text(made);
         return NULL;

@@ -58,12 +58,24 @@ static bool has_known_keys(const json_t *options, const struct device_kind *kind
     return params_known(options, names, refusal);
 }
 
+/* What is about a bus, of a device that has none. `timed` and `units` may have their defaults. */
+static bool check_bus(const json_t *options, const struct sim_config *config, struct refusal *refusal)
+{
+    const char *given = config->nodes.count > 1                               ? "units"
+                        : json_object_get(options, "turnaround")              ? "turnaround"
+                        : json_is_false(json_object_get(options, "timed"))    ? "timed"
+                                                                              : NULL;
+    if (given && !config->device->receive)
+        refuse(refusal, REFUSED_PARAMS, "%s: the device %s has no bus", given, config->device->name);
+    return !given || config->device->receive;
+}
+
 static bool read_config(const json_t *options, struct sim_config *config, struct refusal *refusal)
 {
     int64_t seed;
     uint64_t turnaround;
     if (!read_device(options, config, refusal) || !has_known_keys(options, config->device, refusal) ||
-        !read_units(options, config, refusal) || !read_own(options, config, refusal) ||
+        !read_units(options, config, refusal) || !check_bus(options, config, refusal) || !read_own(options, config, refusal) ||
         !param_integer_or(options, "seed", 0, INT64_MAX, 1, &seed, refusal) ||
         !param_time(options, "turnaround", device_turnaround(config->device), &turnaround, refusal))
         return false;

@@ -54,6 +54,9 @@ void exec_inputs_complete(struct exec_inputs *inputs, const struct device_kind *
             argp_error(state, "%s: expected a motor 1 to %u, or 0 for all, before '='", program->argument, device->axes);
         if (device->is_program_whole && program->path == program->argument)
             program->motor = 0;
+        if (device->is_program_whole && program->motor != 0)
+            argp_error(state, "%s: a program of the device %s is for all motors: expected none before '='", program->argument,
+                       device->name);
         take_path(inputs, program->path, state);
     }
     if (inputs->programs > 0 && !device->set_text)

@@ -43,8 +43,8 @@ struct exec_run {
     struct flash_file flash; /* inside: with `flash_path` */
 };
 
-/* Power up at tick 0. *run must be zero; the members of the first part must be set by exec_run(). Returns false if out of memory, or
- * if there is no flash file (reported); exec_run_end() is due in either case. */
+/* Power up at tick 0. *run must be zero; the members of the first part must be set by exec_run(). Returns false if out of memory,
+ * or if there is no flash file (reported); exec_run_end() is due in either case. */
 bool exec_run_begin(struct exec_run *run);
 void exec_run_end(struct exec_run *run);
 

@@ -152,6 +152,8 @@ static bool read_message(struct parser *p, struct stimulus *s)
 {
     struct word word = next_word(p);
     s->kind = STIMULUS_MESSAGE;
+    if (!p->device->exchange)
+        return report_expected(p, word, 0, "no message: the device has no bus that takes one at once");
     s->data = p->free_byte;
     s->column = word.at + 1;
     if (word.length == 0 || word.text[0] == '#')

@@ -136,9 +136,19 @@ static bool read_rate(struct sim_config *config, const struct config_node *node,
     return strcmp(text, rate) == 0 || config_error(node, "expected baud, %s or 0, found \"%.20s\"", rate, text);
 }
 
+/* Keys of a bus, of a device that has one. */
+static bool check_bus(const struct device_kind *device, const struct config_node *root)
+{
+    static const char *const keys[] = {"units", "baud", "turnaround"};
+    for (size_t i = 0; !device->receive && i < sizeof keys / sizeof keys[0]; i++)
+        if (config_get(root, keys[i]) != NULL)
+            return config_error(config_get(root, keys[i]), "the device %s has no bus: expected no %s", device->name, keys[i]);
+    return true;
+}
+
 static bool read_line(struct scenario *scenario, const struct config_node *root)
 {
-    bool ok = true;
+    bool ok = check_bus(scenario->config.device, root);
     struct sim_config *config = &scenario->config;
     uint64_t turnaround = device_turnaround(config->device);
     char expected[DEVICE_ERROR_SIZE];

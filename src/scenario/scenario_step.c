@@ -297,6 +297,8 @@ static bool read_pulses(struct scenario_reader *reader, const struct config_node
     struct scenario_pulses *pulses = &step->pulses;
     int64_t motor;
     const unsigned axes = sim_device(reader->sim)->axes;
+    if (sim_device(reader->sim)->has_no_steps)
+        return config_error(map, "the axes of a %s make no steps: expected no pulses", sim_device(reader->sim)->name);
     if (config_type(map) != CONFIG_MAP)
         return config_error(map, "expected a map, as in {motor: 1, count: 5000}");
     const struct config_node *since = config_get(map, "since"), *motor_node = config_get(map, "motor");

@@ -12,6 +12,7 @@
 #include "line/line.h"
 #include "notify.h"
 #include "options/options.h"
+#include "serve_checks.h"
 #include "serve_option_table.h"
 #include "text/text.h"
 #include "trace/trace.h"
@@ -19,8 +20,6 @@
 
 #define IDLE_DEFAULT 10u /* s */
 #define IDLE_MAX 86400   /* s */
-#define NO_TURNAROUND UINT32_MAX /* not given */
-#define NO_BAUD UINT32_MAX          /* --baud is not given */
 
 /* A whole number up to `high`, digits only. Returns -1 if it is none. */
 static int64_t read_number(const char *text, int64_t high)
@@ -51,7 +50,7 @@ static unsigned read_baud(const char *text, struct argp_state *state)
 static void complete_baud(struct bus_options *options, const struct argp_state *state)
 {
     unsigned baud = device_baud(options->device.kind, &options->device.config);
-    if (options->baud != 0 && options->baud != baud && options->baud != NO_BAUD)
+    if (options->baud != 0 && options->baud != baud && options->baud != SERVE_NO_BAUD)
         argp_error(state, "--baud: `%u' is wrong: expected %u, the rate of the unit, or 0 for no pacing", options->baud, baud);
     if (options->baud != 0)
         options->baud = baud;
@@ -192,60 +191,16 @@ static bool read_late(const char *text, struct argp_state *state)
     return strcmp(text, "skip") == 0;
 }
 
-/* A file for each line needs a name for each. */
-static void check_patterns(const struct bus_options *options, struct argp_state *state)
-{
-    const char *const *lists[] = {options->trace, options->wire, &options->record};
-    static const char *const names[] = {"trace", "wire", "record"};
-    for (size_t which = 0; which < sizeof lists / sizeof lists[0]; which++) {
-        for (unsigned at = 0; at < (which < 2 ? BUS_FILES_MAX : 1) && lists[which][at]; at++) {
-            if (name_pattern_has(lists[which][at], 'n'))
-                argp_error(state, "--%s: %%n names a unit, but the file is about the bus: expected %%l", names[which]);
-            if (options->lines > 1 && !name_pattern_has(lists[which][at], 'l'))
-                argp_error(state, "--%s: expected %%l in the name, for the number of the bus, with --lines", names[which]);
-        }
-    }
-}
-
-/* A device without a bus has no ports. */
+/* A device without a bus has no ports; serve_check_bus() refuses what would make some. */
 static void check_ports(struct bus_options *options, const struct argp_state *state)
 {
     const struct device_kind *device = options->device.kind;
-    const char *given = options->port      ? "port"
-                        : options->link    ? "link"
-                        : options->tcp     ? "tcp"
-                        : options->rfc2217 ? "rfc2217"
-                        : options->wine    ? "wine"
-                        : options->wire[0] ? "wire"
-                                           : NULL;
     bool net = options->tcp || options->rfc2217;
     for (unsigned at = 0; at < DEVICE_SERVICES_MAX && options->service_text[at]; at++)
         read_service(options, at, state);
     options->pty = device->receive && !options->port && (!net || options->link || options->wine);
-    if (given && !device->receive)
-        argp_error(state, "--%s: the device %s has no bus", given, device->name);
     if (options->pty && serve_option_missing(KEY_LINK))
         argp_error(state, "expected --tcp, --rfc2217 or --port: Windows has no pty (docs/WINDOWS.md)");
-}
-
-/* --backup is --flash by the name that the flash of the device has. */
-static void check_flash(struct bus_options *options, struct argp_state *state)
-{
-    const struct device_kind *device = options->device.kind;
-    const char *given = options->backup ? "backup" : "flash";
-    if (options->backup && (!device->flash_name || strcmp(device->flash_name, given) != 0))
-        argp_error(state, "--backup: the device %s has no backup memory%s", device->name,
-                   device->flash_blocks > 0 ? ": expected --flash" : "");
-    if (options->backup && options->flash)
-        argp_error(state, "expected either --flash or --backup, which are the same");
-    if (options->backup)
-        options->flash = options->backup;
-    if (options->flash && device->flash_blocks == 0)
-        argp_error(state, "--flash: the device %s has no flash", device->name);
-    if (options->flash && options->lines > 1 && !name_pattern_has(options->flash, 'l'))
-        argp_error(state, "--%s: expected %%l in the name, for the number of the bus, with --lines", given);
-    if (options->flash && options->nodes.count > 1 && !name_pattern_has(options->flash, 'n'))
-        argp_error(state, "--%s: expected %%n in the name, for the address, with several units", given);
 }
 
 /* What does not go together. */
@@ -263,13 +218,13 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
         argp_error(state, "--link: %%n names a unit, but a bus has one link: expected %%l for the number of the bus");
     if (options->link && options->lines > 1 && !name_pattern_has(options->link, 'l'))
         argp_error(state, "--link: expected %%l in the name, for the number of the bus, with --lines");
-    check_flash(options, state);
+    serve_check_flash(options, state);
     complete_baud(options, state);
     if (options->baud == 0 && options->strict_line)
         argp_error(state, "--strict-line needs bytes that take time: expected it without --baud 0");
-    if (options->baud == 0 && options->turnaround != NO_TURNAROUND)
+    if (options->baud == 0 && options->turnaround != SERVE_NO_TURNAROUND)
         argp_error(state, "--turnaround needs bytes that take time: expected it without --baud 0");
-    if (options->turnaround == NO_TURNAROUND)
+    if (options->turnaround == SERVE_NO_TURNAROUND)
         options->turnaround = options->baud != 0 ? device_turnaround(options->device.kind) : 0;
     if ((options->control || options->control_tcp || options->control_file) && options->no_control)
         argp_error(state, "expected either --control or --no-control");
@@ -279,7 +234,7 @@ static void check_combinations(struct bus_options *options, struct argp_state *s
         options->control = options->control_file;
     if (options->window && options->no_control)
         argp_error(state, "--window needs the control socket: expected it without --no-control");
-    check_patterns(options, state);
+    serve_check_patterns(options, state);
 }
 
 /* Options of the units and of time. */
@@ -319,6 +274,7 @@ static error_t read_line_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_LINES:
         options->lines = read_bounded_number("lines", text, 1, BUS_LINES_MAX, "", state);
+        options->lines_text = text;
         return 0;
     case KEY_LINK:
         options->link = read_pattern("link", text, state);
@@ -333,6 +289,7 @@ static error_t read_line_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_RTS:
         options->rts = read_rts(text, state);
+        options->rts_text = text;
         return 0;
     case KEY_TCP:
         options->tcp = read_address("tcp", text, state);
@@ -446,6 +403,7 @@ static error_t read_option(int key, char *text, struct argp_state *state)
         argp_error(state, "`%s': expected options only", text);
         return 0;
     case ARGP_KEY_END:
+        serve_check_bus(options, state);
         check_device(options, state);
         check_ports(options, state);
         check_combinations(options, state);
@@ -461,8 +419,8 @@ void serve_options_read(struct bus_options *options, int argc, char **argv)
         .nodes = {.count = 1, .node = {1}},
         .lines = 1,
         .clock_text = "real",
-        .baud = NO_BAUD,
-        .turnaround = NO_TURNAROUND,
+        .baud = SERVE_NO_BAUD,
+        .turnaround = SERVE_NO_TURNAROUND,
         .min_coverage = -1,
         .seed = 1,
         .ready_fd = -1,

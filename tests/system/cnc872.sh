@@ -113,12 +113,52 @@ test_NU1_exec_reports_a_stop_once() {
 
 test_NU1_what_is_about_a_bus_is_refused() {
     local option
-    for option in "--link $folder/l" "--tcp 127.0.0.1:0" "--rfc2217 127.0.0.1:0" "--port /dev/null" "--wire $folder/w.log"; do
+    for option in "--link $folder/l" "--tcp 127.0.0.1:0" "--rfc2217 127.0.0.1:0" "--port /dev/null" "--wire $folder/w.log" \
+        "--node 1" "--node 2" "--baud 0" "--baud 19200" "--baud 9600" "--turnaround 0" "--turnaround 5" --strict-line "--lines 1" \
+        "--lines 2" "--rts driver" "--rts toggles" --verbose --exit-when-idle=1 "--coverage $folder/c" "--min-coverage 0" \
+        "--wine $folder:COM3"; do
         exits 2 "$RKM04" serve --device cnc872 $option
         holds "$complained" "cnc872 has no bus" "serve $option"
     done
+    for option in "--service modbus-tcp=127.0.0.1:0" "--framing plain" "--readings hold-exit=latch" "--version-text x"; do
+        exits 2 "$RKM04" serve --device cnc872 $option
+        holds "$complained" "the device cnc872 has no" "serve $option"
+    done
+    printf 'motors: {1: {turn: 400}}\n' >"$folder/p.yaml"
+    exits 2 "$RKM04" serve --device cnc872 --plant "$folder/p.yaml"
+    holds "$complained" "make no steps" "serve --plant"
     exits 2 "$RKM04" serve --device cnc872 --framing plain
     holds "$complained" "no such option" "serve --framing"
+}
+
+# Keys of scenarios, lines of stimulus files, methods of the control socket.
+test_NU1_what_is_about_a_bus_is_refused_everywhere() {
+    local key
+    for key in "units: 1" "baud: 0" "baud: 19200" "turnaround: 1ms"; do
+        printf 'device: cnc872\n%s\nsteps: [advance: 1ms]\n' "$key" >"$folder/a.yaml"
+        exits 2 "$RKM04" test "$folder/a.yaml"
+        holds "$complained" "a.yaml:2:" "$key"
+        holds "$complained" "the device cnc872 has no bus" "$key"
+    done
+    for key in "plant: {motors: {1: {turn: 400}}}" "di: {1: 1}" "framing: plain" "steps: [message: '04']" "steps: [bytes: '04']" \
+        "steps: [set: R]" "steps: [pulses: {motor: 1, count: 0}]" "steps: [di: {1: 1}]" "steps: [fault: {kind: drop}]"; do
+        printf 'device: cnc872\n%s\n' "$key" >"$folder/a.yaml"
+        [[ $key == steps* ]] || echo 'steps: [advance: 1ms]' >>"$folder/a.yaml"
+        exits 2 "$RKM04" test "$folder/a.yaml"
+        holds "$complained" "a.yaml:2:" "$key"
+        holds "$complained" cnc872 "$key"
+    done
+    printf 'G1 X1 F1000\n' >"$folder/a.nc"
+    for key in "1ms di 01 1" "1ms message 04"; do
+        echo "$key" >"$folder/stimulus"
+        exits 2 "$RKM04" exec --device cnc872 --stimulus "$folder/stimulus" "$folder/a.nc"
+        holds "$complained" "stimulus:1:" "$key"
+    done
+    exits 2 "$RKM04" exec --device cnc872 "1=$folder/a.nc"
+    holds "$complained" "for all motors" "exec with a motor"
+    serve_cnc
+    exits 1 "$RKMCTL" -c "$folder/control" call switch node=1
+    holds "$complained" "the device cnc872 has no bus" "switch"
 }
 
 test_NP8_wrong_files_are_named_with_line_and_column() {
