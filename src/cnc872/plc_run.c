@@ -2,6 +2,10 @@
 /* Runs PLC programs: registers, sections, mechanisms that wait (NP5, NP6, NP7). */
 #include "plc_code.h"
 
+#ifdef __FLT_EVAL_METHOD__
+_Static_assert(__FLT_EVAL_METHOD__ == 0 || __FLT_EVAL_METHOD__ == 1, "REAL is IEEE double: -msse2 -mfpmath=sse on i386");
+#endif
+
 struct run {
     struct cnc_plc *plc;
     const struct cnc_plc_program *program;

@@ -5,6 +5,7 @@
  *     bench_cnc [--quick] [NAME]...
  *
  * one: one axis moves, no PLC program. sixteen: sixteen axes move. plc: they move, and a PLC program of 500 instructions runs. */
+#include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,8 +106,8 @@ static void measure(const char *name, unsigned axes, bool with_plc, unsigned run
     for (unsigned i = 0; i < runs; i++)
         ns[i] = run(with_plc);
     qsort(ns, runs, sizeof ns[0], by_size);
-    printf("{\"bench\":\"cnc_%s\",\"axes\":%u,\"instructions\":%u,\"us_per_cycle\":%.3f,\"simulated_s_per_s\":%.0f}\n", name,
-           axes, with_plc ? INSTRUCTIONS : 0, ns[runs / 2] / 1000, 1e9 / (ns[runs / 2] * CYCLES_PER_SECOND));
+    printf("{\"bench\":\"cnc_%s\",\"axes\":%u,\"instructions\":%u,\"cycles\":%" PRIu64 ",\"us_per_cycle\":%.3f,\"simulated_s_per_s\":%.0f}\n", name,
+           axes, with_plc ? INSTRUCTIONS : 0, cycles, ns[runs / 2] / 1000, 1e9 / (ns[runs / 2] * CYCLES_PER_SECOND));
 }
 
 int main(int argc, char **argv)

@@ -6,7 +6,8 @@
 #
 # Counted is what is spent inside rkm04_advance, the sink included, which stores one time stamp a pulse: once with pulses in
 # blocks (port.steps), once one by one (port.step, "single"). Of the CIB module (work "cib…") the same inside cib_advance, slot by
-# slot; "single" is with the outputs.
+# slot; "single" is with the outputs. Of the CNC872 (work "cnc…") a cycle inside cnc_advance: one axis, sixteen, these with a PLC
+# program of 500 instructions.
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 command -v valgrind >/dev/null || { echo "valgrind not found: apt-get install valgrind" >&2; exit 1; }
@@ -21,6 +22,9 @@ read -ra flags <<<"${CFLAGS:-$release}"
     -o "$folder/cib_bench" || exit 1
 "${CC:-gcc}" -std=c11 -D_GNU_SOURCE -g "${flags[@]}" -Iinclude -Isrc src/{ramp,ramp_pulses,wide,crc32}.c src/pmc/pmc_*.c \
     tests/bench/bench_pmc.c -o "$folder/bench_pmc" || exit 1
+
+"${CC:-gcc}" -std=c11 -D_GNU_SOURCE -g "${flags[@]}" -Iinclude -Isrc src/{wide,crc32}.c src/cnc872/*.c tests/bench/bench_cnc.c \
+    -o "$folder/bench_cnc" || exit 1
 
 # count FUNCTION PROGRAM [OPTION]... NAME: sets `instructions`, and `line`, what the benchmark printed.
 count() {
@@ -45,6 +49,13 @@ for name in constant ramp mixed exec cibconstant cibramp pmcconstant pmcramp pmc
             printf "{\"bench\":\"instructions\",\"work\":\"%s\",\"sink\":\"%s\",\"pulses\":%d,\"instructions_per_pulse\":%.2f}\n",
                 name, sink, pulses, instructions / pulses }'
     done
+done
+for name in one sixteen plc; do
+    count cnc_advance bench_cnc --quick "$name"
+    cycles=$(sed 's/.*"cycles":\([0-9]*\).*/\1/' <<<"$line")
+    awk -v name="cnc$name" -v cycles="$cycles" -v instructions="$instructions" 'BEGIN {
+        printf "{\"bench\":\"instructions\",\"work\":\"%s\",\"sink\":\"none\",\"cycles\":%d,\"instructions_per_cycle\":%.2f}\n",
+            name, cycles, instructions / cycles }'
 done
 for name in idle_hour wait_hour; do
     count rkm04_advance bench --repeat=1 "$name"
