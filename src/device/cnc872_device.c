@@ -285,7 +285,8 @@ static void axis(const struct device_unit *unit, unsigned number, struct device_
 {
     const struct cnc_device *device = cnc_in(unit);
     const struct cnc *cnc = &device->cnc;
-    const bool is_busy = cnc->machine.phase != CNC_IDLE && !cnc_bit(&cnc->cells, CNC_BIT_PO_STOP);
+    const bool is_asked = cnc->machine.start != 0 || cnc->machine.annulment != 0;
+    const bool is_busy = is_asked || (cnc->machine.phase != CNC_IDLE && !cnc_bit(&cnc->cells, CNC_BIT_PO_STOP));
     const bool moves = ((unsigned)device->moving >> (number - 1u) & 1u) != 0;
     *state = (struct device_axis){
         .position = cnc_shown_position(cnc, number - 1u),

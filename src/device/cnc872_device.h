@@ -16,6 +16,8 @@ enum cnc_text_kind { CNC_TEXT_CONFIG, CNC_TEXT_NC, CNC_TEXT_PLC, CNC_TEXT_MACHIN
 #define CNC_TEXTS_MAX 4096u
 #define CNC_TEXTS_BYTES_MAX ((size_t)512 << 20) /* together, with what is made from them */
 
+#define CNC_SWITCHES_MAX 10000u /* of a machine: a YAML file of the emulator has at most 65 536 values */
+
 struct cnc_machine_switches {
     struct cnc_switch *list;
     uint16_t count;

@@ -77,7 +77,7 @@ const struct device_option cnc_options[] = {
      .help = "PLC program, a text in the language of the CNC872"},
     {.name = "nc", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .file_mib = DEVICE_FILE_MIB_MAX, .read_file = read_nc,
      .help = "NC program that is loaded at the start"},
-    {.name = "machine", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .file_mib = 8, .read_file = read_machine,
+    {.name = "machine", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .read_file = read_machine,
      .help = "Switches of the machine, YAML: bits that follow the positions of axes"},
     {.name = NULL}
 };

@@ -83,8 +83,8 @@ static bool read_switches(const struct config_node *root, const struct cnc_names
         return config_error(list ? list : root, "expected switches, a list");
     if (!config_keys(root, keys))
         return false;
-    if (config_count(list) > UINT16_MAX)
-        return config_error(list, "expected at most %u switches", UINT16_MAX);
+    if (config_count(list) > CNC_SWITCHES_MAX)
+        return config_error(list, "expected at most %u switches", CNC_SWITCHES_MAX);
     machine->list = calloc(config_count(list) + 1u, sizeof *machine->list);
     for (size_t at = 0; machine->list && at < config_count(list); at++)
         is_right = read_switch(config_at(list, at), names, &machine->list[at]) && is_right;

@@ -91,12 +91,8 @@ static bool has_own_program(const struct options *options)
 static void check_backup(const struct options *options, const struct argp_state *state)
 {
     const struct device_kind *device = options->device.kind;
-    if (!options->backup)
-        return;
-    if (!device->flash_name || strcmp(device->flash_name, "backup") != 0)
+    if (options->backup && (!device->flash_name || strcmp(device->flash_name, "backup") != 0))
         argp_error(state, "--backup: the device %s has no backup memory", device->name);
-    if (!output_file_spare(options->backup))
-        argp_failure(state, STATUS_FAILURE, ENOMEM, "%s", options->backup);
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state)

@@ -365,6 +365,8 @@ static void check_device(struct bus_options *options, const struct argp_state *s
     if (options->nodes_text && !node_list_read_up_to(&options->nodes, options->nodes_text, device->addresses))
         argp_error(state, "--node: `%s' is wrong: %s", options->nodes_text, device_addresses(device, expected));
     options->device.config.node = options->nodes.node[0];
+    if (options->plant && device->has_no_steps)
+        argp_error(state, "--plant: the axes of a %s make no steps that a plant could follow", device->name);
     if ((options->coverage || options->min_coverage >= 0) && !device->coverage)
         argp_error(state, "--coverage: not known for the device %s", device->name);
 }

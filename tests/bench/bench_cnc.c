@@ -106,8 +106,9 @@ static void measure(const char *name, unsigned axes, bool with_plc, unsigned run
     for (unsigned i = 0; i < runs; i++)
         ns[i] = run(with_plc);
     qsort(ns, runs, sizeof ns[0], by_size);
-    printf("{\"bench\":\"cnc_%s\",\"axes\":%u,\"instructions\":%u,\"cycles\":%" PRIu64 ",\"us_per_cycle\":%.3f,\"simulated_s_per_s\":%.0f}\n", name,
-           axes, with_plc ? INSTRUCTIONS : 0, cycles, ns[runs / 2] / 1000, 1e9 / (ns[runs / 2] * CYCLES_PER_SECOND));
+    printf("{\"bench\":\"cnc_%s\",\"axes\":%u,\"instructions\":%u,\"cycles\":%" PRIu64, name, axes,
+           with_plc ? INSTRUCTIONS : 0, cycles);
+    printf(",\"us_per_cycle\":%.3f,\"simulated_s_per_s\":%.0f}\n", ns[runs / 2] / 1000, 1e9 / (ns[runs / 2] * CYCLES_PER_SECOND));
 }
 
 int main(int argc, char **argv)

@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# regression.sh: fails if a pulse, or a cycle of the CNC872, takes more than 3 % more instructions than tests/bench/figures.txt says. Counted by callgrind
-# with gcc 12, whose figures these are; skipped without (the test `cost` counts basic blocks on every machine).
+# regression.sh: fails if a pulse, or a cycle of the CNC872, takes more than 3 % more instructions than tests/bench/figures.txt
+# says. Counted by callgrind with gcc 12, whose figures these are; skipped without (the test `cost` counts basic blocks on every
+# machine).
 #
 #   regression.sh           compare
 #   regression.sh --renew   write the file anew, after a change that is worth its price
@@ -14,10 +15,12 @@ command -v valgrind >/dev/null || { echo "skipped: valgrind not found"; exit 77;
 export CC=gcc
 unset CFLAGS
 
-found=$(./instructions.sh | sed -n 's/.*"work":"\([a-z]*\)","sink":"\([a-z]*\)".*instructions_per_[a-z]*":\([0-9.]*\)}/\1 \2 \3/p')
+found=$(./instructions.sh |
+    sed -n 's/.*"work":"\([a-z]*\)","sink":"\([a-z]*\)".*instructions_per_[a-z]*":\([0-9.]*\)}/\1 \2 \3/p')
 [[ $(wc -l <<<"$found") == 18 ]] || { echo "regression: instructions.sh did not count eighteen figures" >&2; exit 1; }
 if [[ ${1-} == --renew ]]; then
-    printf '%s\n' '# SPDX-License-Identifier: MIT' '# work, sink, instructions a pulse, of cnc… a cycle: regression.sh --renew' "$found" >$figures
+    printf '%s\n' '# SPDX-License-Identifier: MIT' '# work, sink, instructions a pulse, of cnc… a cycle: regression.sh --renew' \
+        "$found" >$figures
     cat $figures
     exit
 fi

@@ -229,6 +229,22 @@ START_TEST(NL2_events_of_cells_leave_recordings_as_they_are)
 }
 END_TEST
 
+/* Texts stay to the end of the process: the last test of this one. */
+START_TEST(NL4_so_many_texts_are_read_and_no_more)
+{
+    char params[80];
+    for (unsigned text = 0; text < 4096; text++) {
+        snprintf(params, sizeof params, "{\"text\": \"G1 X%u.5 F1000\"}", text);
+        fake_rig_do(&rig, "cnc.load", params);
+    }
+    fake_rig_expect_refusal(&rig, "cnc.load", "{\"text\": \"G1 X1 F1000\"}", "4096 different texts have been read: start");
+    fake_rig_do(&rig, "cnc.load", "{\"text\": \"G1 X7.5 F1000\"}"); /* it is there */
+    fake_rig_do(&rig, "cnc.panel", "{\"start\": true}");
+    sim_advance(&rig.sim, 1000000);
+    fake_rig_expect_state(&rig, "motors.0.position", "7500");
+}
+END_TEST
+
 static Suite *cnc872_cells_suite(void)
 {
     Suite *suite = suite_create("cnc872_cells");
@@ -239,11 +255,12 @@ static Suite *cnc872_cells_suite(void)
     tcase_add_test(tests, NL2_cells_have_a_limit_and_belong_to_their_watcher);
     tcase_add_test(tests, NL2_wrong_subscriptions_are_refused);
     tcase_add_test(tests, NL2_events_of_cells_leave_recordings_as_they_are);
+    tcase_add_test(tests, NL4_so_many_texts_are_read_and_no_more);
     suite_add_tcase(suite, tests);
     return suite;
 }
 
 int main(void)
 {
-    return rig_run(cnc872_cells_suite(), "./test_cnc872_device");
+    return rig_run(cnc872_cells_suite(), "./test_cnc872_cells");
 }

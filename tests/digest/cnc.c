@@ -144,8 +144,8 @@ static void mix_cell(const char *name)
 
 static void look(void)
 {
-    static const char *const names[] = {"QWRD.X", "QWRD.N", "TIME_DIST", "DIFCIT_X[1]", "VYSOVERS", "REQ_SPEED_PM", "B_POL", "B_INK",
-                                        "STATUS_RESTART", "PB06", "QWRD.rAxGParabAccel"};
+    static const char *const names[] = {"QWRD.X", "QWRD.N", "TIME_DIST", "DIFCIT_X[1]", "VYSOVERS", "REQ_SPEED_PM", "B_POL",
+                                        "B_INK", "STATUS_RESTART", "PB06", "QWRD.rAxGParabAccel"};
     for (unsigned axis = 0; axis < 3; axis++) {
         mix(&digest, (uint64_t)cnc.axis[axis].position);
         mix(&digest, (uint64_t)cnc.axis[axis].actual);

@@ -114,9 +114,9 @@ test_NU1_exec_reports_a_stop_once() {
 test_NU1_what_is_about_a_bus_is_refused() {
     local option
     for option in "--link $folder/l" "--tcp 127.0.0.1:0" "--rfc2217 127.0.0.1:0" "--port /dev/null" "--wire $folder/w.log" \
-        "--node 1" "--node 2" "--baud 0" "--baud 19200" "--baud 9600" "--turnaround 0" "--turnaround 5" --strict-line "--lines 1" \
-        "--lines 2" "--rts driver" "--rts toggles" --verbose --exit-when-idle=1 "--coverage $folder/c" "--min-coverage 0" \
-        "--wine $folder:COM3"; do
+        "--node 1" "--node 2" "--baud 0" "--baud 19200" "--baud 9600" "--turnaround 0" "--turnaround 5" --strict-line \
+        "--lines 1" "--lines 2" "--rts driver" "--rts toggles" --verbose --exit-when-idle=1 "--coverage $folder/c" \
+        "--min-coverage 0" "--wine $folder:COM3"; do
         exits 2 "$RKM04" serve --device cnc872 $option
         holds "$complained" "cnc872 has no bus" "serve $option"
     done
@@ -140,8 +140,8 @@ test_NU1_what_is_about_a_bus_is_refused_everywhere() {
         holds "$complained" "a.yaml:2:" "$key"
         holds "$complained" "the device cnc872 has no bus" "$key"
     done
-    for key in "plant: {motors: {1: {turn: 400}}}" "di: {1: 1}" "framing: plain" "steps: [message: '04']" "steps: [bytes: '04']" \
-        "steps: [set: R]" "steps: [pulses: {motor: 1, count: 0}]" "steps: [di: {1: 1}]" "steps: [fault: {kind: drop}]"; do
+    for key in "plant: {motors: {1: {turn: 400}}}" "di: {1: 1}" "steps: [message: '04']" "steps: [bytes: '04']" \
+        "steps: [set: R]" "steps: [pulses: {motor: 1, count: 0}]" "steps: [di: {1: 1}]"; do
         printf 'device: cnc872\n%s\n' "$key" >"$folder/a.yaml"
         [[ $key == steps* ]] || echo 'steps: [advance: 1ms]' >>"$folder/a.yaml"
         exits 2 "$RKM04" test "$folder/a.yaml"
@@ -151,7 +151,7 @@ test_NU1_what_is_about_a_bus_is_refused_everywhere() {
     printf 'G1 X1 F1000\n' >"$folder/a.nc"
     for key in "1ms di 01 1" "1ms message 04"; do
         echo "$key" >"$folder/stimulus"
-        exits 2 "$RKM04" exec --device cnc872 --stimulus "$folder/stimulus" "$folder/a.nc"
+        exits 1 "$RKM04" exec --device cnc872 --stimulus "$folder/stimulus" "$folder/a.nc"
         holds "$complained" "stimulus:1:" "$key"
     done
     exits 2 "$RKM04" exec --device cnc872 "1=$folder/a.nc"
@@ -205,6 +205,34 @@ test_a_recording_has_the_files_of_its_machine() {
     holds "$said" "the same" "the replay"
 }
 
+# A million blocks are the limit of an NC program, 32 MiB that of its file, 10 000 that of switches.
+test_NL4_files_may_be_as_long_as_their_limits() {
+    { echo 'G1 F1000'; yes 'X1 Y-2.5' | head -n 999999; } >"$folder/a.nc"
+    exits 0 "$RKM04" check "$folder/a.nc"
+    serve_cnc --nc "$folder/a.nc"
+    call cnc.state
+    holds "$said" '"blocks":1000000' "the program"
+    call shutdown
+    status_of "$started"
+    echo 'X1' >>"$folder/a.nc"
+    exits 2 "$RKM04" serve --device cnc872 --nc "$folder/a.nc"
+    holds "$complained" "a.nc:1000001:1: error: expected at most 1000000 blocks" "one block more"
+    { echo 'G1 X1 F1000'; yes '(                            )' | head -c $((32 << 20)); } >"$folder/b.nc"
+    exits 1 "$RKM04" serve --device cnc872 --nc "$folder/b.nc"
+    holds "$complained" "b.nc: it is longer than 32 MiB" "a file that is too long"
+    printf 'device: cnc872\nnc: b.nc\nsteps: [advance: 1ms]\n' >"$folder/a.yaml"
+    exits 2 "$RKM04" test "$folder/a.yaml"
+    holds "$complained" "b.nc: it is" "the same in a scenario"
+    { echo 'switches:'; yes '  - {cell: KHX0, axis: X, at_least: 5, at_most: 6}' | head -n 10000; } >"$folder/m.yaml"
+    serve_cnc --machine "$folder/m.yaml"
+    call advance 'ticks="3ms"'
+    call shutdown
+    status_of "$started"
+    echo '  - {cell: KHX1, axis: X, at_least: 5}' >>"$folder/m.yaml"
+    exits 2 "$RKM04" serve --device cnc872 --machine "$folder/m.yaml"
+    holds "$complained" "m.yaml:2:3: error: expected at most 10000 switches" "one switch more"
+}
+
 test_NL2_rkmctl_shows_cells_that_change() {
     printf 'G1 X10 F1000\n' >"$folder/a.nc"
     serve_cnc --nc "$folder/a.nc"
@@ -241,14 +269,17 @@ test_NU1_a_machine_is_served_with_all_its_files() {
     printf 'MODULE_MAIN\n LOD PLC_MEM_BACKUP[9999]\n AD CNST.1\n STO PLC_MEM_BACKUP[9999]\nMODULE_MAIN_END\n' >"$folder/a.plc"
     exits 0 "$RKM04" exec --device cnc872 --plc "$folder/a.plc" --nc "$folder/a.nc" --backup "$folder/mill.backup"
     holds "$said" "1000  idle" "exec runs the program of --nc"
-    printf 'device: cnc872\nbackup: mill.backup\nsteps:\n  - expect: {cell: {"PLC_MEM_BACKUP[9999]": %d}}\n%s\n' 101 \
+    printf 'device: cnc872\nbackup: mill.backup\nsteps:\n  - expect: {cell: {"PLC_MEM_BACKUP[9999]": %d}}\n%s\n' 100 \
         '  - call: cnc.exchange
     params: {set: {"PLC_MEM_BACKUP[9999]": 7, REQ_BACKUP_MEM: 1}, get: [REQ_BACKUP_MEM]}
     result: {cells: {REQ_BACKUP_MEM: 0}}' >"$folder/a.yaml"
-    exits 0 "$RKM04" test --records "$folder" "$folder/a.yaml"
+    exits 0 "$RKM04" test "$folder/a.yaml"
     exits 0 "$RKM04" test "$folder/a.yaml" # the first run has not written the file
+    echo '  - expect: {cell: {"PLC_MEM_BACKUP[9999]": 8}}' >>"$folder/a.yaml"
+    exits 3 "$RKM04" test --records "$folder" "$folder/a.yaml"
     rm "$folder/mill.backup"
     exits 0 "$RKM04" replay "$folder/a.record"
+    holds "$said" "the same" "the replay"
 }
 
 test_NO3_a_backup_that_cannot_be_is_refused() {
@@ -270,7 +301,8 @@ test_NO3_a_backup_that_cannot_be_is_refused() {
     holds "$complained" "a.yaml:2:9: error: $folder/a.nc has 12 bytes and is no backup file" "a scenario"
     printf 'backup: b\nsteps:\n  - advance: 1ms\n' >"$folder/a.yaml"
     exits 2 "$RKM04" test "$folder/a.yaml"
-    holds "$complained" "a.yaml:1:1: error: unknown key" "a scenario of another device"
+    holds "$complained" "a.yaml:1:1: error: expected" "a scenario of another device"
+    holds "$complained" 'found "backup"' "a scenario of another device"
 }
 
 test_NO3_the_backup_memory_is_kept_in_a_file() {
