@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* report.c: what is wrong with a document, as the editor shows it. */
 #include <string.h>
+#include <strings.h>
 
 #include "features.h"
 
@@ -39,17 +40,76 @@ static void send(struct session *session, const char *uri, const json_int_t *ver
     session_notify(session, "textDocument/publishDiagnostics", params);
 }
 
-void lsp_report(struct session *session, struct document *document)
+/* Bytes of a URI up to the name of its file. */
+static size_t folder_length(const char *uri)
+{
+    const char *slash = strrchr(uri, '/');
+    return slash == NULL ? 0 : (size_t)(slash + 1 - uri);
+}
+
+static bool has_end(const char *uri, const char *end)
+{
+    const size_t length = strlen(uri);
+    return length >= strlen(end) && strcasecmp(uri + length - strlen(end), end) == 0;
+}
+
+/* Are both in the same folder, the one a configuration and the other an NC program of a CNC872? */
+static bool is_machine_of(const struct document *machine, const struct document *program)
+{
+    const size_t length = folder_length(program->uri);
+    return has_end(machine->uri, ".xml") && has_end(program->uri, ".nc") && folder_length(machine->uri) == length &&
+           strncmp(machine->uri, program->uri, length) == 0;
+}
+
+static bool check_text(const struct document *document, struct cnc_config *machine, struct diagnostics *found)
+{
+    struct program_source source = document_source(document);
+    source.name = document->uri;
+    return check_cnc(&source, machine, found);
+}
+
+/* A text of a CNC872; an NC program with the configuration that is open beside it, if that has no errors. */
+static bool check_cnc_document(const struct session *session, const struct document *document, struct diagnostics *found)
+{
+    struct cnc_config machine;
+    cnc_config_clear(&machine);
+    for (size_t i = 0; i < session->count; i++) {
+        struct diagnostics of_machine;
+        if (!is_machine_of(session->documents[i], document) || session->documents[i]->is_unknown)
+            continue;
+        if (!check_text(session->documents[i], &machine, &of_machine) || of_machine.errors > 0)
+            cnc_config_clear(&machine);
+        diagnostics_free(&of_machine);
+    }
+    return check_text(document, &machine, found);
+}
+
+static bool check_document(const struct session *session, const struct document *document, struct diagnostics *found)
 {
     const struct check_options options = {.off = session->options.off};
     const struct program_source source = document_source(document);
+    if (check_cnc_takes(document->uri))
+        return check_cnc_document(session, document, found);
+    return check_programs(&source, 1, &options, found);
+}
+
+/* The NC programs of a configuration may be wrong or right now. */
+static void report_programs(struct session *session, const struct document *machine)
+{
+    for (size_t i = 0; i < session->count; i++)
+        if (is_machine_of(machine, session->documents[i]))
+            lsp_report(session, session->documents[i]);
+}
+
+void lsp_report(struct session *session, struct document *document)
+{
     const json_int_t version = document->version;
     struct diagnostics found;
     json_t *list = json_array();
     if (document->is_unknown) {
         json_array_append_new(list, unknown_json());
     } else {
-        if (!check_programs(&source, 1, &options, &found))
+        if (!check_document(session, document, &found))
             session_log(session, "out of memory");
         for (size_t i = 0; i < found.count; i++)
             json_array_append_new(list, diagnostic_json(document, &found.list[i]));
@@ -57,6 +117,7 @@ void lsp_report(struct session *session, struct document *document)
     }
     document->has_changed = false;
     send(session, document->uri, &version, list);
+    report_programs(session, document);
 }
 
 void lsp_report_none(struct session *session, const char *uri)

@@ -4,6 +4,7 @@
  *
  *     diagnostic    errors and warnings with their places
  *     check         find them: check_programs()
+ *     check_cnc     the same of texts of a CNC872
  *     check_print   print them as text, JSON, SARIF, for GitHub, as gcc does
  *     format        the canonical layout of a text
  *     explain       a program in words; explain_at() for a place
@@ -27,6 +28,7 @@
 #define RKM04_PROGRAM_TOOLS_H
 
 #include "check.h"
+#include "check_cnc.h"
 #include "check_print.h"
 #include "diagnostic.h"
 #include "estimate.h"

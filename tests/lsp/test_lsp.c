@@ -497,6 +497,44 @@ START_TEST(what_is_no_frame_ends_the_stream)
 }
 END_TEST
 
+/* ---- Texts of a CNC872 -------------------------------------------------------------------------------------------------- */
+
+static const char *put_file(const char *method, const char *uri, const char *text)
+{
+    char message[2000];
+    snprintf(message, sizeof message,
+             "{\"method\":\"textDocument/%s\",\"params\":{\"textDocument\":{\"uri\":\"%s\",\"version\":1,\"text\":\"%s\"},"
+             "\"contentChanges\":[{\"text\":\"%s\"}]}}",
+             method, uri, text, text);
+    return send(message);
+}
+
+START_TEST(texts_of_a_cnc_have_the_errors_of_check)
+{
+    initialize();
+    holds(put_file("didOpen", "file:///m/a.nc", "G1 X1 F100\\nG1 Q1"), RANGE(1, 3, 3));
+    holds(answer, "\"code\":\"nc-error\"");
+    holds(put_file("didOpen", "file:///m/a.plc", "MODULE_MAIN\\n TIM 3\\nMODULE_MAIN_END"), "\"code\":\"plc-error\"");
+    holds(put_file("didChange", "file:///m/a.plc", "MODULE_MAIN\\nMODULE_MAIN_END"), "\"diagnostics\":[]");
+    holds(put_file("didOpen", "file:///m/a.xml", "<ChannelConfig><Axis Name=\\\"Q\\\"/></ChannelConfig>"),
+          "\"diagnostics\""); /* of the NC program, which is reported again */
+    holds(send("{\"id\":7,\"method\":\"textDocument/hover\",\"params\":{\"textDocument\":{\"uri\":\"file:///m/a.nc\"},"
+               "\"position\":{\"line\":0,\"character\":0}}}"),
+          "\"result\":null");
+}
+END_TEST
+
+START_TEST(an_nc_program_has_the_axes_of_the_configuration_beside_it)
+{
+    initialize();
+    holds(put_file("didOpen", "file:///m/a.nc", "G1 A4=1 F100"), "nc-error");
+    holds(put_file("didOpen", "file:///other/a.xml", "<ChannelConfig><Axis Name=\\\"4\\\"/></ChannelConfig>"), "a.xml");
+    holds(put_file("didOpen", "file:///m/a.xml", "<ChannelConfig><Axis Name=\\\"4\\\"/></ChannelConfig>"), "m/a.nc");
+    holds(answer, "\"diagnostics\":[]");
+    holds(put_file("didChange", "file:///m/a.xml", "<ChannelConfig><Axis Name=\\\"X\\\"/></ChannelConfig>"), "nc-error");
+}
+END_TEST
+
 static void add_case(Suite *suite, const char *name, const TTest *const *tests)
 {
     TCase *one = tcase_create(name);
@@ -523,6 +561,9 @@ int main(void)
              (const TTest *const[]){requests_have_their_order, wrong_parameters_are_named,
                                     an_edit_that_is_none_makes_the_text_unknown_until_it_is_opened_again,
                                     a_text_that_is_too_long_is_not_checked, a_document_too_many_is_not_checked, NULL});
+    add_case(suite, "cnc",
+             (const TTest *const[]){texts_of_a_cnc_have_the_errors_of_check,
+                                    an_nc_program_has_the_axes_of_the_configuration_beside_it, NULL});
     add_case(suite, "frames",
              (const TTest *const[]){frames_come_in_any_pieces, a_frame_too_long_is_skipped, what_is_no_frame_ends_the_stream,
                                     NULL});
