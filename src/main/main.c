@@ -80,7 +80,7 @@ static const struct {
 
 int main(int argc, char **argv)
 {
-    process_begin();
+    process_begin(argv);
     signal(SIGXFSZ, SIG_IGN); /* writing says so, too */
     argp_err_exit_status = STATUS_USAGE;
     if (argc < 2) {

@@ -353,7 +353,7 @@ static int run_line(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    process_begin();
+    process_begin(argv);
     if (argc > 1 && strcmp(argv[1], "window") == 0)
         return (int)client_window(argv);
     argp_err_exit_status = STATUS_USAGE;

@@ -63,7 +63,7 @@ int main(int argc, char **argv)
 {
     static const struct argp argp = {.options = option_table, .parser = parse_option, .doc = doc};
     struct window_options options = {.http = "127.0.0.1:0"};
-    process_begin();
+    process_begin(argv);
     argp_err_exit_status = STATUS_USAGE;
     arguments_parse(&argp, argc, argv, &options);
     return (int)window_run(&options);

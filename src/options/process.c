@@ -28,8 +28,9 @@ static void unblock_signals(void)
     sigprocmask(SIG_UNBLOCK, &ends, NULL);
 }
 
-void process_begin(void)
+void process_begin(char **argv)
 {
+    (void)argv;
     fill_standard_streams();
     unblock_signals();
 }

@@ -8,8 +8,9 @@
 
 /* The first thing in main(): standard streams that are closed become /dev/null, so that no file or device of ours takes their
  * numbers, and messages for people do not go there; SIGINT, SIGTERM and SIGHUP are let through, whatever the parent had blocked.
- * Ends the program with status 1 if there is no /dev/null. */
-void process_begin(void);
+ * Ends the program with status 1 if there is no /dev/null. `argv`: what main() has, NULL after the last; on Windows, paths in it
+ * have / instead of \ afterwards. */
+void process_begin(char **argv);
 
 /* Does the path begin at the root of the files, or of a drive? */
 bool process_path_is_absolute(const char *path);

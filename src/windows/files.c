@@ -85,6 +85,16 @@ static SECURITY_ATTRIBUTES *private_attributes(void)
     return known ? &attributes : NULL;
 }
 
+/* A name such as `con' or `aux.txt' in any folder, which is none of a file. Reading it may wait for ever. */
+static bool is_device(const wchar_t *path)
+{
+    static const wchar_t begin[] = L"\\\\.\\";
+    wchar_t full[WIDE_MAX];
+    DWORD length = GetFullPathNameW(path, WIDE_MAX, full, NULL);
+    return length > 0 && length < WIDE_MAX && wcsncmp(full, begin, 4) == 0 && _wcsicmp(full + 4, L"NUL") != 0 &&
+           _wcsnicmp(full + 4, L"pipe\\", 5) != 0;
+}
+
 int windows_open(const char *path, int flags, ...)
 {
     static const DWORD accesses[] = {GENERIC_READ, GENERIC_WRITE, GENERIC_READ | GENERIC_WRITE};
@@ -98,6 +108,10 @@ int windows_open(const char *path, int flags, ...)
     wchar_t wide[WIDE_MAX];
     if (!native(path, wide))
         return -1;
+    if (is_device(wide)) {
+        errno = ENODEV;
+        return -1;
+    }
     DWORD how = (flags & O_EXCL) ? CREATE_NEW : (flags & O_CREAT) ? OPEN_ALWAYS : OPEN_EXISTING;
     HANDLE file = CreateFileW(wide, accesses[flags & (O_WRONLY | O_RDWR)],
                               FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,

@@ -12,19 +12,12 @@ int windows_exit_status;
 static void (*at_end)(int status, void *context);
 static void *at_end_context;
 
-/* The path in an argument: behind `--option=', behind `M='. NULL: there is none with a \ in it. */
-static char *path_in(char *argument)
-{
-    char *equals = strchr(argument, '='), *path = argument;
-    if (equals && (argument[0] == '-' || (equals == argument + 1 && argument[0] >= '0' && argument[0] <= '9')))
-        path = equals + 1;
-    return strchr(path, '\\') && (path[0] != '\\' || path[1] == '\\') ? path : NULL;
-}
-
 /* Does the path lead to something, or its folder? A program text with a \ does not. */
 static bool leads_somewhere(char *path)
 {
     char *last = strrchr(path, '\\');
+    if (!last || last == path || (last == path + 1 && path[0] == '\\')) /* `\' and `\\' are program texts, too */
+        return false;
     DWORD there = GetFileAttributesA(path);
     if (there == INVALID_FILE_ATTRIBUTES) {
         *last = '\0';
@@ -34,17 +27,25 @@ static bool leads_somewhere(char *path)
     return there != INVALID_FILE_ATTRIBUTES;
 }
 
+/* The path in an argument: FILE, --option=FILE, M=FILE, NAME=FILE, --option=NAME=FILE. NULL: there is none with a \ in it. */
+static char *path_in(char *argument)
+{
+    char *path = argument;
+    while (path && !leads_somewhere(path)) {
+        path = strchr(path, '=');
+        path = path ? path + 1 : NULL;
+    }
+    return path;
+}
+
 /* Bytes go out as they are. Paths have / as everywhere else in the programs, which Windows understands, too. */
-void process_begin(void)
+void process_begin(char **argv)
 {
     for (int fd = 0; fd <= 2; fd++)
         _setmode(fd, _O_BINARY);
-    for (int i = 1; i < __argc; i++) {
-        char *path = path_in(__argv[i]);
-        if (path && leads_somewhere(path))
-            for (; *path; path++)
-                *path = *path == '\\' ? '/' : *path;
-    }
+    for (; *argv; argv++)
+        for (char *path = path_in(*argv); path && *path; path++)
+            *path = *path == '\\' ? '/' : *path;
 }
 
 bool process_path_is_absolute(const char *path)

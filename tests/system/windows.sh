@@ -104,6 +104,37 @@ test_paths_may_have_backslashes_and_letters_of_any_language() {
     [[ -s "žluťoučký kůň/t.csv" ]] || fail "the trace is elsewhere"
 }
 
+test_files_beside_a_scenario_are_found_by_backslashes_and_may_have_CRLF() {
+    local file
+    cd "$folder" || fail "cd"
+    mkdir "kůň 1" "kůň 2"
+    cp "$examples"/{linear-axis,linear-axis.plant,pmc-drill}.yaml "$examples"/pmc-drill.pmc "kůň 1"
+    cp "$examples"/cnc872/*.{xml,plc,nc,yaml} "kůň 1"
+    for file in "kůň 1"/*; do
+        sed 's/$/\r/' "$file" >"kůň 2/${file##*/}"
+    done
+    for name in linear-axis pmc-drill part; do
+        for file in "kůň 1\\$name.yaml" "kůň 2\\$name.yaml" "Z:${folder//\//\\}\\kůň 1\\$name.yaml"; do
+            exits 0 exe test "$file"
+            holds "$said" "pass " "the result of $file"
+        done
+    done
+    exits 0 exe check --config="kůň 2\\mill.xml" "kůň 2\\mill.plc" "kůň 2\\part.nc"
+    exits 1 exe exec --device pmc-1hs --device-option "program=kůň 1\\none.pmc" -
+    holds "$complained" "kůň 1/none.pmc" "the message"
+}
+
+test_names_of_devices_are_no_files() {
+    local name
+    begin
+    for name in con aux AUX.rks com1 prn lpt1.txt; do
+        exits 1 exe exec "$name"
+        holds "$complained" "$name: Windows has a device of this name" "the message"
+    done
+    exits 1 exe exec --trace con.csv program.rks
+    exits 0 exe exec --trace nul program.rks
+}
+
 test_the_zip_has_the_program_documents_and_a_prompt() {
     begin
     (cd "${RKM04_EXE%/*}" && cpack -G ZIP -B "$folder/zip") >"$folder/cpack.err" 2>&1 || fail "cpack"
