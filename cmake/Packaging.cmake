@@ -2,7 +2,7 @@
 # The Debian package (docs/INSTALL.md) and what else a system wants beside programs and library: units of systemd, documents.
 #
 # It is one package: the library is static and small, nothing on the system loads it, and who writes a test bench with it wants
-# the emulator and the client at hand. A -dev package would be a second thing to install and save nobody anything.
+# the emulator and the client at hand. A -dev package would be a second thing to install and be of no use.
 
 # Paths below the prefix, as systemd looks for them in /usr and in /usr/local.
 if(RKM04_HOST)

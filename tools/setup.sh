@@ -37,7 +37,7 @@ missing_packages() {
     done
 }
 
-# What cannot be found, whoever installed it: one line each.
+# What cannot be found, however it was installed: one line each.
 missing_tools() {
     local tool
     for tool in cc make cmake pkg-config; do
@@ -73,7 +73,7 @@ install_packages() {
         as_root=(sudo)
     fi
     say "installing $*"
-    # The list of packages first: on a fresh machine it is empty. What apt tells goes to stderr, stdout is for results.
+    # The list of packages first: on a fresh machine it is empty. What apt prints goes to stderr, stdout is for results.
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q update </dev/null >&2 &&
         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install "$@" </dev/null >&2
 }

@@ -80,7 +80,7 @@ size_t cnc_quoted_length(const char *text, size_t length, int64_t *value)
     size_t after = mark_length(text + before + 1, length - before - 1);
     if (after == 0)
         return 0;
-    *value = text[before];
+    *value = (unsigned char)text[before];
     return before + 1 + after;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* cib_bus.h: a bus with CIB modules in virtual time, and what the host hears of it, in hexadecimal. */
+/* cib_bus.h: a bus with CIB modules in virtual time, and what the host receives of it, in hexadecimal. */
 #ifndef RKM04_TESTS_CIB_BUS_H
 #define RKM04_TESTS_CIB_BUS_H
 
@@ -20,7 +20,7 @@ void cib_bus_end(struct cib_bus *bus);
 /* Advance to a tick: what the host sends then comes in it. */
 void cib_bus_to(struct cib_bus *bus, uint64_t tick);
 
-/* The host sends these bytes now; what was heard before is forgotten. */
+/* The host sends these bytes now; what was received before is forgotten. */
 void cib_bus_send(struct cib_bus *bus, const char *hex);
 
 /* Without time on the wires: the host sends a request, and gets exactly this answer in the same tick; "": none. */

@@ -136,7 +136,7 @@ START_TEST(a_trace_has_the_duties_of_pwm)
 }
 END_TEST
 
-/* PWM1 with a period of 1000 and a duty of 25 %: levels of the output, edge by edge, while somebody wants pulses. */
+/* PWM1 with a period of 1000 and a duty of 25 %: levels of the output, edge by edge, while a watcher wants pulses. */
 START_TEST(a_trace_has_the_edges_of_pwm)
 {
     cib_bus_do(&bus, "cib.config.put", "{\"setup\": {\"do1-2\": {\"use\": \"pwm\"}, \"do3-4\": {\"use\": \"do\"}}}");

@@ -53,7 +53,7 @@ static void say(unsigned number, const char *line)
     send_bytes(number, "\r\n", 2);
 }
 
-/* Whatever the client has heard since the last call. */
+/* Whatever the client has received since the last call. */
 static void expect_heard(unsigned number, const char *expected)
 {
     ck_assert_str_eq(heard[number], expected);

@@ -156,7 +156,7 @@ START_TEST(bl2_all_modules_obey_writes_to_0_and_do_not_answer_reads)
 }
 END_TEST
 
-/* Where bytes take time, units hear the answers of others: a frame for another lasts until silence, and so does its answer. */
+/* Where bytes take time, units receive the answers of others: a frame for another lasts until silence, and so does its answer. */
 START_TEST(bl2_answers_of_others_are_no_requests)
 {
     cib_bus_begin(&bus, "1,2,3", true, NULL);

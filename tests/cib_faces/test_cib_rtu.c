@@ -66,7 +66,7 @@ START_TEST(bl4_a_byte_after_a_request_that_waits_is_lost)
 }
 END_TEST
 
-/* What is no request is dropped by silence, and the next one is heard. */
+/* What is no request is dropped by silence, and the next one is received. */
 START_TEST(bl3_silence_drops_what_is_no_request)
 {
     static const struct {

@@ -5,7 +5,7 @@
 
 #include "cnc872/plc.h"
 
-/* What the surroundings have been told, and what they answer. */
+/* What has been reported to the surroundings, and what they answer. */
 struct plc_rig {
     struct cnc_plc_program program;
     struct cnc_plc plc;

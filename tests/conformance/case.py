@@ -6,7 +6,7 @@ A file is a list of cases:
     {"name": "a sentence", "clauses": ["P1", "M5.3.2"], "needs": ["inputs"], "moves": [1], "steps": [...]}
 
 `clauses` are those of docs/SPEC.md; M is a section of the manual. `moves` names the motors that turn. `needs`: `inputs`
-(somebody sets them), `outputs` (somebody reads them), `time` (things happen at ticks of our choice), `flash` (stored
+(a person sets them), `outputs` (a person reads them), `time` (things happen at ticks of our choice), `flash` (stored
 programs are lost), `power` (off and on again). A step is an object; which one it is stands in its first member:
 
     set TEXT       Set Command to `motor` (1); answered by `flag` (0) and `ch` (none); `times`: the text so often in one message
@@ -262,7 +262,7 @@ class Run:
             raise Mismatch(what, wanted.hex(" "), got.hex(" ") or "silence")
 
     def arrive(self, what, before, length):
-        """Nothing answers: wait until so many bytes have been on the line, if the target can tell."""
+        """Nothing answers: wait until so many bytes have been on the line, if the target knows."""
         end = time.monotonic() + self.line.timeout
         while before is not None and (passed := self.target.bytes_passed() - before) < length:
             if time.monotonic() > end:

@@ -108,7 +108,7 @@ class Hdlc:
 
     @staticmethod
     def take(heard, node):
-        """The message of the first whole frame in what was heard; None: there is none yet. ValueError: it is wrong."""
+        """The message of the first whole frame in what was received; None: there is none yet. ValueError: it is wrong."""
         begin = heard.find(b"\x7e")
         while begin >= 0:
             end = heard.find(b"\x7e", begin + 1)

@@ -137,7 +137,7 @@ class Probes:
     # Times
 
     def speed_change(self):
-        """The break points of the motion say at which step the change was obeyed, two looks at its progress when it was asked
+        """The break points of the motion say at which step the change was executed, two looks at its progress when it was asked
         for."""
         speed = 500  # 2 ms a step
         self.run.set(f"S{speed} V{speed} A60000 G+")

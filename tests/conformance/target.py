@@ -44,8 +44,8 @@ class Control:
 
 
 class Real:
-    """Time as it is, `speed` times as fast; inputs and power are in the hands of whoever sits there. A host may see things late
-    by `latency` seconds: adapters, drivers, a busy machine."""
+    """Time as it is, `speed` times as fast; inputs and power are in the hands of a person. A host may see things late by
+    `latency` seconds: adapters, drivers, a busy machine."""
     exact = sees_outputs = False
     silence = 0.3  # seconds after which a unit that has to be silent has been
 
@@ -114,7 +114,7 @@ class Real:
 
 
 class Stepped:
-    """rkm04 serve with its control socket: time stands but when it is told to pass, bytes take none."""
+    """rkm04 serve with its control socket: time is stopped until it is advanced; bytes are transferred in no time."""
     exact = sees_outputs = True
     silence = 0.05
     has = {"inputs", "outputs", "time", "flash", "power"}
@@ -138,7 +138,7 @@ class Stepped:
         return self.control.call("clock")["t_us"]
 
     def start(self):
-        """Time is counted from a slot; the request arrives one tick behind it, so that the next slot, 1000, obeys it."""
+        """Time is counted from a slot; the request arrives one tick behind it, so that the next slot, 1000, executes it."""
         state = self.state()
         begin = state["since_us"]
         behind = (state["t_us"] - begin - 1) % 1000
@@ -176,7 +176,7 @@ class Stepped:
         return self.state()["do"]
 
     def bytes_passed(self):
-        """How many bytes have been on the line; None: nobody can tell. Time comes another way here, and could overtake them."""
+        """How many bytes have been on the line; None: not known. Time comes another way here, and could overtake them."""
         return self.state()["line"]["bytes"]
 
     def events(self, kind, motor=None):
@@ -230,7 +230,7 @@ class Process:
 
 
 class Board(Process, Real):
-    """A program that is a board with its firmware, in time of its own, which stands but when it is told to pass: however busy
+    """A program that is a board with its firmware, in time of its own, which is stopped until it is advanced: however busy
     the machine is, nothing comes late. Requests: `bytes HEX`, they go to the bus; `wait TICKS`, until the board sends something;
     `advance TICKS`; `inputs MASK`; `outputs`; `reset`, power off and on. Each is answered by `= TICK`, after `wait` with what was
     sent in hexadecimal, if anything was, after `outputs` with their mask."""

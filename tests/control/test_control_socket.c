@@ -201,7 +201,7 @@ START_TEST(what_took_the_place_of_ours_is_not_removed_at_the_end)
 }
 END_TEST
 
-/* Somebody has cleaned the folder, and another emulator has taken the place. */
+/* The folder has been cleaned, and another emulator has taken the place. */
 START_TEST(a_successor_keeps_its_lock_file_and_socket)
 {
     struct opened before;

@@ -138,7 +138,7 @@ static enum flash_fault due(const struct flash_fake *flash, unsigned block, bool
     }
 }
 
-/* Count an operation on a block, apply it with the fault that is due, if any. Returns what the caller is told. */
+/* Count an operation on a block, apply it with the fault that is due, if any. Returns what is reported to the caller. */
 static int operate(struct flash_fake *flash, unsigned block, unsigned offset, const uint8_t *wanted, unsigned length,
                    bool erasing)
 {
@@ -193,7 +193,7 @@ int flash_fake_erase(void *context, unsigned block)
     uint8_t erased[RKM04_FLASH_BLOCK_SIZE];
     memset(erased, 0xff, sizeof erased);
     int result = operate(flash, block, 0, erased, sizeof erased, true);
-    /* What an erase left halfway has to be erased again before it is programmed, but the caller has to be told so. */
+    /* What an erase left halfway has to be erased again before it is programmed, but the caller has to get an error. */
     bool whole = memcmp(flash->data[block], erased, sizeof erased) == 0;
     memset(flash->used[block], !whole && result != 0, sizeof flash->used[block]);
     return result;

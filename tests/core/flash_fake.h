@@ -2,7 +2,7 @@
 /* flash_fake.h: a flash in memory that knows the rules of real ones and breaks on demand, for tests.
  *
  * RKM04_FLASH_BLOCKS blocks of RKM04_FLASH_BLOCK_SIZE bytes. An erased byte reads FF. Programming works on units of 8 bytes,
- * each once after an erase, and makes only 0 of 1. Whoever breaks a rule gets an error and is counted in `misuse`: a test
+ * each once after an erase, and makes only 0 of 1. A caller that breaks a rule gets an error, counted in `misuse`: a test
  * asserts that it is 0.
  *
  *     flash_fake_init(&flash);

@@ -40,7 +40,7 @@ void motion_want(struct motion_rig *rig, const uint64_t *wanted, size_t count);
 /* Send motor 1 a text at the present tick; it must be taken. */
 void motion_send(struct motion_rig *rig, const char *text);
 
-/* From now on nobody listens to the pulses, or somebody does again; rig->steps continues where the unit is. */
+/* From now on pulses are not listened to, or are again; rig->steps continues where the unit is. */
 void motion_listen(struct motion_rig *rig, bool listen);
 
 /* Do all ticks before this one. */

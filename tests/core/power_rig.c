@@ -178,7 +178,7 @@ static void assert_untouched(unsigned i, const char *where)
                   "%s: a block of motor %u was touched", where, i + 1);
 }
 
-/* Look at every slot after a power-up. `stored`: the host was told that it had worked. */
+/* Look at every slot after a power-up. `stored`: the host was answered that it had worked. */
 static void assert_old_or_new(bool stored, const char *where)
 {
     bool new_so_far = true;

@@ -52,7 +52,7 @@ enum pace {
 /* Make the story of a seed, `end` ticks long. slow: motions of seconds and dwells of up to 0.3 s, otherwise of milliseconds. */
 void story_tell(struct story *story, unsigned seed, uint64_t end, bool slow);
 
-/* A number below `below` from the dice of the story told last. */
+/* A number below `below` from the dice of the last story. */
 uint64_t story_draw(uint64_t below);
 
 /* Power a unit up for it. The record begins again. */
@@ -65,7 +65,7 @@ void run_act(struct run *run, const struct action *action);
 void run_until(struct run *run, const struct story *story, uint64_t until, enum pace pace);
 
 /* Every pulse, output, event and answer, the state and what the unit would answer to questions are the same. Sorts the
- * records. `what` tells people which two were compared. */
+ * records. `what` names the two that were compared. */
 void run_compare(struct run *wanted, struct run *got, unsigned seed, const char *what);
 
 #endif

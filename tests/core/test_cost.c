@@ -130,7 +130,7 @@ START_TEST(K3_no_pulse_and_no_slot_costs_much_more_than_others)
 }
 END_TEST
 
-/* ---- Pulses that nobody sees ---- */
+/* ---- Pulses that no watcher sees ---- */
 
 static const struct {
     const char *text;

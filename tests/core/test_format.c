@@ -240,7 +240,7 @@ static size_t put_space(char *text, bool comments)
     return length;
 }
 
-/* The command as somebody careless might write it. */
+/* The command as a careless author might write it. */
 static size_t put_command(char *text, struct rkm04_command command)
 {
     char canonical[RKM04_COMMAND_TEXT_MAX];

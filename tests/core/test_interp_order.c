@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_interp_order.c: what meets in one slot: K, C75, V, new commands and inputs (K2, C3, C4, C6); what is told of it. */
+/* test_interp_order.c: what meets in one slot: K, C75, V, new commands and inputs (K2, C3, C4, C6); what is reported of it. */
 #include <check.h>
 
 #include "rig.h"
@@ -211,7 +211,7 @@ START_TEST(K3_a_unit_without_programs_has_nothing_to_do)
 }
 END_TEST
 
-/* ---- What is told ---- */
+/* ---- What is reported ---- */
 
 static size_t events_of(enum rkm04_event what)
 {

@@ -83,7 +83,7 @@ START_TEST(C3_fault_exit_new_loops_and_calls_of_the_faulty_program_are_dropped)
     rig_accept(&rig, '1', "E");
     rig_to(&rig, 300 * MS);
     expect_fault(RKM04_FAULT_NO_LOOP, 6);
-    ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_CALL, 1)); /* told again */
+    ck_assert_ptr_nonnull(recorder_event(&rig.record, 1, RKM04_EVENT_FAULT, RKM04_FAULT_NO_CALL, 1)); /* reported again */
 }
 END_TEST
 
@@ -252,7 +252,7 @@ START_TEST(P1_negative_position_no_a_counter_below_0_is_a_bad_value)
     READ(.negative_position = RKM04_NEGATIVE_POSITION_NO);
     ck_assert_int_eq(rkm04_set_command(&rig.unit, '1', "T01 =-5 Q", 9, &character), 1);
     ck_assert_uint_eq(character, '=');
-    ck_assert_int_eq(rkm04_set_command(&rig.unit, '1', "Q =-5", 5, &character), 2); /* the first error is told */
+    ck_assert_int_eq(rkm04_set_command(&rig.unit, '1', "Q =-5", 5, &character), 2); /* the first error is reported */
     rig_accept(&rig, '1', "=0 =2000000000");
     ck_assert_str_eq(rig_program(&rig, 1), "=0 =2000000000");
 }

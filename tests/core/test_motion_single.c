@@ -281,7 +281,7 @@ static void put_counter(int32_t position)
     rig.position = position;
 }
 
-/* From -2147483648 to 2000000000. Nobody listens to most of the way, unless RKM04_TEST_LONG is set. */
+/* From -2147483648 to 2000000000. Most of the way has no listener, unless RKM04_TEST_LONG is set. */
 START_TEST(U3_an_absolute_motion_over_4147483648_steps_is_exact)
 {
     static uint64_t wanted[WANTED_MAX];

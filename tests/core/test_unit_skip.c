@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Pulses that nobody sees one by one are passed over (K3: the same positions at the same ticks, motions that end at the same
+/* Pulses that no watcher sees one by one are passed over (K3: the same positions at the same ticks, motions that end at the same
  * tick), at a cost that does not depend on their number. */
 #include <check.h>
 #include <stdio.h>

@@ -13,7 +13,7 @@
 
 static struct story story;
 static struct run first, second;
-static unsigned long long happenings; /* so that a test can tell that its stories had some */
+static unsigned long long happenings; /* so that a test can show that its stories had some */
 
 static void setup(void)
 {

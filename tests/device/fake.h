@@ -9,7 +9,7 @@
  *     POS?       answers the position          IN?      answers the inputs, 0..1048575
  *
  * The others answer OK, or: E1 unknown, E2 out of range, E3 the limit switch is on, E4 the flash failed. A request that is too
- * long is not answered. Input 1 is the limit switch: it ends motions forward. Nothing is heard while an answer is being sent.
+ * long is not answered. Input 1 is the limit switch: it ends motions forward. Nothing is received while an answer is being sent.
  * Time is counted in ticks of 0.25 us.
  *
  * With `silent` requests and answers have a check byte, the sum of the others, in place of CR, and end with FAKE_SILENCE us in

@@ -242,7 +242,7 @@ static json_t *describe(const struct device_unit *unit, uint64_t t_us)
 
 /* ---- Methods and settings ------------------------------------------------------------------------------------------- */
 
-/* alone.obey {text}: a request as fake.h has it, without the bus. */
+/* `alone.obey {text}`: a request as fake.h has it, without the bus. */
 static json_t *call_obey(struct device_unit *unit, const json_t *params, struct device_refusal *refusal)
 {
     const char *text = json_string_value(json_object_get(params, "text"));

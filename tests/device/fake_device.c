@@ -32,7 +32,7 @@ static const struct fake_unit *core_of(const struct device_unit *unit)
 struct fake_settings {
     int32_t rate;      /* steps/s at power-up; 0: 100, or that of the flash */
     bool silent;       /* messages end with a silence */
-    const char *start; /* texts to obey at power-up, a line each; NULL: none */
+    const char *start; /* texts to execute at power-up, a line each; NULL: none */
 };
 
 _Static_assert(sizeof(struct fake_settings) <= DEVICE_SETTINGS_SIZE, "the settings have to fit");

@@ -3,7 +3,7 @@
 
 #define FETCH_AT_ONCE 16
 
-/* A digest has lanes, put together at the end: the unit tells about two motors in any order within a slot. */
+/* A digest has lanes, put together at the end: the unit reports two motors in any order within a slot. */
 enum { LANE_COMMON, LANE_ANSWERS = RKM04_MOTORS + 1, LANE_FLASH, LANES };
 
 static struct rkm04_unit unit;

@@ -115,7 +115,7 @@ static const struct example chapter_9[] = {
     {"9.9", 26 * SECOND, {SET(0, '1', M9_9)}},
 };
 
-/* Motions so long that nobody asks for their pulses. */
+/* Motions so long that no test asks for their pulses. */
 static const struct example long_motions[] = {
     {"longest", 2000 * SECOND,
      {SET(0, '1', "S2000 V16000 A60000 F16000000 R"), SET(0, '2', "S1 V16000 A1 F16000000 R"),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* fault_rig.h: a line with faults, and a host that keeps all it hears, for tests. */
+/* fault_rig.h: a line with faults, and a host that keeps all it receives, for tests. */
 #ifndef RKM04_TESTS_FAULT_RIG_H
 #define RKM04_TESTS_FAULT_RIG_H
 
@@ -49,7 +49,7 @@ void rig_end(void);
 /* fault.inject with these parameters (printf-like; ' stands for "). Returns the id. */
 uint32_t inject(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Any command, which must be obeyed. Returns the result, which is to be freed. */
+/* Any command, which must be executed. Returns the result, which is to be freed. */
 json_t *run_command(const char *method, const char *params);
 
 /* Any command, which must be refused. Returns "CODE TEXT". */
@@ -64,7 +64,7 @@ size_t set(uint8_t dnode, const char *text);
 /* Let time pass until nothing is under way on the line. */
 void settle(void);
 
-/* ask(), settle(). Forgets what was heard before. Returns how many whole, well-checked answers the host has got. */
+/* ask(), settle(). Forgets what was received before. Returns how many whole, well-checked answers the host has got. */
 unsigned answers_to(uint8_t dnode, const void *message, size_t length);
 
 void forget(void);
@@ -77,7 +77,7 @@ void run(uint64_t ticks);
 
 struct rkm04_counters counters(unsigned number);
 
-/* What the watchers were told, from 0 on. */
+/* What was reported to the watchers, from 0 on. */
 #define assert_news(at, string) ck_assert_str_eq(rig.told[at].text, string)
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_fault.c: when a fault on demand acts, and what can be said about it. One case alone: CK_RUN_CASE=CASE ./test_fault */
+/* test_fault.c: when an injected fault acts, and what can be said about it. One case alone: CK_RUN_CASE=CASE ./test_fault */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 
 #define BYTES 2000u
 
-/* Send BYTES bytes to nobody, one a millisecond from tick 0 on: those that fault 1 has acted on become 'B'. */
+/* Send BYTES bytes to no client, one a millisecond from tick 0 on: those that fault 1 has acted on become 'B'. */
 static void send_all(void)
 {
     uint8_t bytes[BYTES];
@@ -298,7 +298,7 @@ START_TEST(a_wrong_fault_is_refused_with_what_was_expected)
 }
 END_TEST
 
-/* ---- What is told of kinds ------------------------------------------------------------------------------------------ */
+/* ---- What is reported of kinds ------------------------------------------------------------------------------------------ */
 
 /* A value that a parameter takes. */
 static json_t *sample(const json_t *parameter)

@@ -161,7 +161,7 @@ END_TEST
 
 /* ---- Wrong ---------------------------------------------------------------------------------------------------------- */
 
-/* What a master's receiver says to what it has heard. */
+/* What a host's receiver makes of what it has received. */
 static struct rkm04_receiver judge(unsigned *whole)
 {
     static uint8_t message[RKM04_MESSAGE_MAX];

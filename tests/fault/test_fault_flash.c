@@ -108,7 +108,7 @@ END_TEST
 
 /* ---- Power ---------------------------------------------------------------------------------------------------------- */
 
-/* For every operation of a store: nothing is heard, the unit is off, and what is found later is whole. */
+/* For every operation of a store: nothing is received, the unit is off, and what is found later is whole. */
 START_TEST(P6_power_lost_at_any_operation_leaves_the_old_program_or_the_new_one)
 {
     unsigned found_old = 0, found_new = 0, n;

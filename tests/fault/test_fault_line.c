@@ -329,7 +329,7 @@ START_TEST(a_cable_cut_during_an_answer_ends_it_at_the_host_and_not_at_the_unit)
     ck_assert_uint_le(rig.host.tick[rig.host.count - 1], BEGIN + 9000);
     ck_assert_uint_gt(clean.tick[rig.host.count], BEGIN + 9000);
     ck_assert_uint_eq(counters(1).answers, 1);
-    ck_assert_uint_eq(counters(2).others, 2); /* the others hear it on their side of the cut */
+    ck_assert_uint_eq(counters(2).others, 2); /* the others receive it on their side of the cut */
     run(1000000);
     assert_answered();
 }

@@ -209,7 +209,7 @@ START_TEST(pipes_and_folders_are_no_outputs_unless_one_may_wait)
     refused("pipe", &trace_csv.kind, OUTPUT_FORCE, "it is not a regular file");
     output_file_close(opened("pipe", &trace_csv.kind, OUTPUT_MAY_WAIT));
     close(reader);
-    refused("pipe", &trace_csv.kind, 0, strerror(ENXIO)); /* nobody reads: no waiting */
+    refused("pipe", &trace_csv.kind, 0, strerror(ENXIO)); /* no reader: no waiting */
     refused(".", &trace_csv.kind, OUTPUT_FORCE, strerror(EISDIR));
     refused("no/folder", &trace_csv.kind, OUTPUT_FORCE, strerror(ENOENT));
 }

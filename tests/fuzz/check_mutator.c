@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* check_mutator.c: are mutants of recordings recordings? Mutates the files given and replays the mutants: more than half must be
- * obeyed to their end or to a refusal by a command, and there must be some of each kind. */
+ * executed to their end or to a refusal by a command, and there must be some of each kind. */
 #include <string.h>
 
 #include "fuzz.h"

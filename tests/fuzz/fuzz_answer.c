@@ -2,7 +2,7 @@
 /* fuzz_answer.c: rkmctl and what comes back to it. Either a command to an emulator (client_control*.c), which gets any bytes in
  * any pieces (cut at `~`) and then the end of the connection (client_rpc.c); or any message shown as the answer of a unit
  * (client_answer.c). Whatever comes: an exit status of those there are, with --json nothing but JSON, and of a unit nothing that
- * a terminal could obey. First byte: bit 7 who is asked; the others which command, or which message; second byte: options. */
+ * a terminal acts on. First byte: bit 7 who is asked; the others which command, or which message; second byte: options. */
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -98,7 +98,7 @@ bool __wrap_client_rpc_open(struct client_rpc *rpc, const char *path)
     return true;
 }
 
-/* Nobody holds the connection any more. */
+/* No client holds the connection any more. */
 static void check_hung_up(void)
 {
     char request[1000];

@@ -212,7 +212,7 @@ static void act(struct fuzz *fuzz, uint8_t what, uint8_t value)
                    net_port_client(bus->ports.tcp) == NULL || net_port_client(bus->ports.rfc2217) == NULL, "two have the line");
 }
 
-/* Whoever comes now is answered. */
+/* A client that comes now is answered. */
 static void check_answer(unsigned way)
 {
     uint8_t bytes[4096];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_control.c: any lines as requests of the control socket to a line of units: each is refused with a code and a reason, or
- * obeyed with a result, and the answer is JSON on one line. A line "+N" lets N ms pass, "<HEX" are bytes of the host. Files
+ * executed with a result, and the answer is JSON on one line. A line "+N" lets N ms pass, "<HEX" are bytes of the host. Files
  * are left alone. First byte: how many units, and of which kind; CNC872s have a PLC program and an NC program. */
 #include <string.h>
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_line_pty.c: a real pty, and clients that open, close, lock (TIOCEXCL), set up, write and read it in any order. Whenever
- * the line has been followed it knows whether a client is there; a client has the settings that were made last; whoever comes
- * to a line on which nobody was finds nothing to read, no lock, and a raw line; bytes pass in order; nobody makes the line
- * fail.
+ * the line has been followed it knows whether a client is there; a client has the settings that were made last; one that
+ * comes to a line without a client finds nothing to read, no lock, and a raw line; bytes pass in order; none makes the line fail.
  *
  * First byte: 1: inotify is used up. Then two bytes an action: what and who, and a value. */
 #include <errno.h>
@@ -125,7 +124,7 @@ static void go(unsigned who)
     client[who] = -1;
     there--;
     if (there == 0 && line_is_cooked(&set))
-        known = false; /* it will be made raw, unless somebody comes first */
+        known = false; /* it will be made raw, unless a client comes first */
 }
 
 static void set_up(unsigned who, uint8_t value)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_line_settings.c: two ends of a line with any settings, bytes at any times up to the end of virtual time (10^15 us). What
- * is heard is never more than a caller has room for, in order, within the receiver's data bits, and not before it was sent;
- * ends that agree hear what was sent; a change of settings is told once. */
+ * is received is never more than a caller has room for, in order, within the receiver's data bits, and not before it was sent;
+ * ends that agree receive what was sent; a change of settings is reported once. */
 #include "fuzz.h"
 #include "line/line_settings.h"
 
@@ -32,7 +32,7 @@ static void check_news(struct line_settings settings)
 
 struct session {
     struct line_receiver receiver;
-    uint64_t tick, last; /* of sending; of the last byte heard */
+    uint64_t tick, last; /* of sending; of the last byte received */
 };
 
 static void check_received(struct session *session, const struct line_received *received, size_t count)

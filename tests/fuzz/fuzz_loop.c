@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_loop.c: the event loop of `rkm04 serve` with its control socket: real lines (bus*.c), real sockets (control*.c, libuv),
  * time and files of loop_machine.c, so that the same bytes do the same again. Clients send any bytes in any pieces, stop reading,
- * leave in the middle, hang up; each checks what it gets (loop_client.c). When nothing is left to do, nothing is due, and nobody
- * waits for what has come true; at the end nothing is open.
+ * leave in the middle, hang up; each checks what it gets (loop_client.c). When nothing is left to do, nothing is due, none waits
+ * for what has come true; at the end nothing is open.
  *
  * First byte: units, how long bytes take, a pty or none, the clock. Then lines:
  *     A… B… C…   a client sends … and a newline; then everything is done that can be done
- *     a… b… c…   a client sends … alone, its `~` being newlines; nobody looks yet
+ *     a… b… c…   a client sends … alone, its `~` being newlines; not looked at yet
  *     -A /A      it hangs up; it ends its sending (the next thing it says makes it come again)
  *     !A ?A      it reads no more; it reads again
  *     *AN        it sends N thousand blanks and x
@@ -184,7 +184,7 @@ static bool turn(void)
     return taken || (rung && stepped) || control->working || control->restore.client || there != control_clients(control);
 }
 
-/* Nobody waits for what has come true, or for a time that is over. */
+/* No client waits for what has come true, or for a time that is over. */
 static void check_waiters(void)
 {
     for (unsigned i = 0; i < options.lines; i++) {
@@ -244,7 +244,7 @@ static void say(struct client *one, const uint8_t *text, size_t length, bool who
         done += client_send(one, copy + done, length - done);
         if (done == length)
             break;
-        turn(); /* nobody has read yet */
+        turn(); /* not read yet */
     }
 }
 
@@ -330,7 +330,7 @@ static void act(uint8_t what, const uint8_t *text, size_t length)
 
 /* ---- The end -------------------------------------------------------------------------------------------------------- */
 
-/* Somebody has asked for the end, and been told that it comes, unless he wanted no answer, does not listen, or has gone. */
+/* A client has asked for the end and got the answer that it comes, unless it wanted none, does not read, or has gone. */
 static void check_shutdown(void)
 {
     unsigned asked = shutdowns_gone, answered = 0;
@@ -358,7 +358,7 @@ static void say_goodbye(bool leave)
         hang_up(&client[i]);
     while (crowd_count > 0)
         close(crowd[--crowd_count]);
-    machine_pass(UINT64_C(1000000000)); /* one that had ended its sending is not heard: it is checked now and then */
+    machine_pass(UINT64_C(1000000000)); /* one that had ended its sending is not read: it is checked now and then */
     if (settle(TURNS_AT_END))
         FUZZ_CHECK(control_clients(control) == 0, "%u clients are still there", control_clients(control));
 }

@@ -2,7 +2,7 @@
 /* fuzz_net_port.c: a line over TCP, raw or by RFC 2217, and clients that come, send anything, stop sending, go, are torn away
  * and read or do not, in any order; an owner who has room or not, sends, has the line himself, pulls the plug. Time is that of
  * loop_machine.c, the sockets are real. At most one client has the line; the owner never gets more bytes than there is room
- * for, nor more than clients have sent; when all have gone the next client gets the line, and is heard.
+ * for, nor more than clients have sent; when all have gone the next client gets the line, and is read.
  *
  * First byte: 1: RFC 2217. Then two bytes an action: what and who, and a value; a sender takes as many more bytes. */
 #include <arpa/inet.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* fuzz_record.c: any bytes as a record: wrong with a reason, or a replay that comes to an end. A record that is the same once
- * is the same again, and so is the record of its replay, in which all that went out is told. */
+ * is the same again, and so is the record of its replay, in which all that went out is reported. */
 #include <string.h>
 
 #include "fuzz.h"
@@ -14,7 +14,7 @@ static bool is_enough(void *context)
     return ++*looks > LOOKS_MAX;
 }
 
-/* Replay it; *copy, unless NULL: take down what happens, too. */
+/* Replay it; *copy, unless NULL: record what happens, too. */
 static enum replay_end replay(const uint8_t *data, size_t size, FILE *copy)
 {
     unsigned looks = 0;

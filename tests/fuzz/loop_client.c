@@ -131,7 +131,7 @@ static uint64_t tick_of(const json_t *object, const char *name, const char *text
 }
 
 /* An answer is behind the events up to its tick, and those to requests of a line are in the order of time; a wait may have come
- * true while a later one was obeyed. */
+ * true while a later one was executed. */
 static void answered(struct client *client, const struct due *due, uint64_t tick, const char *text)
 {
     if (tick > client->told[due->line])

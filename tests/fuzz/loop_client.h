@@ -22,7 +22,7 @@ struct due {
     json_t *id;
     json_t *params;    /* NULL: the request is none */
     unsigned line;
-    bool doubtful;     /* several at a time have this id: nobody knows which of them is answered */
+    bool doubtful;     /* several at a time have this id: it is not known which of them is answered */
     struct due *next;
 };
 
@@ -45,18 +45,18 @@ struct client {
     char *in;          /* received, not yet a line */
     size_t in_length, in_room;
     struct due *first; /* dues, in the order of the requests */
-    bool silent_subscribe; /* without an id, or one of several: nobody knows what came of it */
+    bool silent_subscribe; /* without an id, or one of several: it is not known what came of it */
     struct subscribed subscription[CLIENT_SUBSCRIPTIONS];
     uint64_t told[CLIENT_LINES];     /* tick of a line before which no event may come any more */
     uint64_t latest;                 /* tick of the latest event */
     uint64_t answered[CLIENT_LINES]; /* tick of the latest answer, waits apart */
-    unsigned shutdowns, shutdowns_silent, shutdowns_answered; /* requests; of them, without an id; those obeyed */
+    unsigned shutdowns, shutdowns_silent, shutdowns_answered; /* requests; of them, without an id; those executed */
     size_t received, events;   /* bytes; notifications in them */
 };
 
 void client_none(struct client *client);
 
-/* Connect to the socket `path` of an emulator with so many lines. Returns false if nobody listens any more. */
+/* Connect to the socket `path` of an emulator with so many lines. Returns false if none listens any more. */
 bool client_connect(struct client *client, const char *path, unsigned lines);
 
 /* Send; what the other end does not take is lost, and not expected to be answered. Returns the bytes that it took. */

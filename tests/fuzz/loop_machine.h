@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* loop_machine.h: the machine under the event loop of `rkm04 serve`, as far as it could make a run depend on the moment: its
  * time, which continues when the caller says so and a little with every look at it; its timers, which are due by that time; its
- * files, which all lie in one temporary folder whatever their names; and the log, which nobody reads.
+ * files, which all lie in one temporary folder whatever their names; and the log, which is not read.
  *
  * It is in for uv_hrtime(), timerfd_*(), uv_timer_*(), for what opens files by names that clients give (linked with --wrap),
  * and for log.c. */
@@ -15,7 +15,7 @@
 /* Time begins; every look at it takes `look` ns. */
 void machine_begin(uint64_t look);
 
-/* Nobody has a timer any more. Files that were made are gone. */
+/* No timer is left. Files that were made are gone. */
 void machine_end(void);
 
 uint64_t machine_now(void);

@@ -33,7 +33,7 @@ struct oracle {
     uint64_t calls;             /* of the port */
     uint64_t switched;          /* tick at which T41 or C41 was executed last */
     uint64_t held_up;           /* tick of the slot before which no motor executes a command (reading `store-time`) */
-    bool in_message;            /* a message is being obeyed */
+    bool in_message;            /* a message is being executed */
     uint8_t writers;            /* motors that wrote VAR or T41, also by `\` (reading `reset-t41`): motor 1 in bit 0 */
     uint8_t flash[RKM04_FLASH_BLOCKS][RKM04_FLASH_BLOCK_SIZE];
 };

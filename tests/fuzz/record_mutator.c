@@ -27,7 +27,7 @@ static const char head[] =
     "{\"rkm04_record\":1,\"emulator\":\"rkm04\",\"nodes\":[1,2],\"framing\":\"hdlc\",\"timed\":true,\"turnaround\":521,"
     "\"seed\":\"1\",\"outputs\":false}";
 
-/* What can come in, with parameters that are obeyed: mutants of these are near to them. */
+/* What can come in, with parameters that are executed: mutants of these are near to them. */
 static const char *const inputs[] = {
     "{\"t\":0,\"purge\":true}",
     "{\"t\":0,\"break\":true}",

@@ -158,7 +158,7 @@ static void over_the_line(const struct rkm04_framing *framing, struct bytes requ
     uint8_t got[512];
     size_t length = 0;
     rig.unit.config.framing = framing;
-    memset(&rig.unit.receiver, 0, sizeof rig.unit.receiver); /* nothing heard yet in this framing */
+    memset(&rig.unit.receiver, 0, sizeof rig.unit.receiver); /* nothing received yet in this framing */
     for (size_t i = 0; i < request.length; i++) {
         ck_assert_msg(!rkm04_sending(&rig.unit), "%s: an answer after %zu of %zu bytes", framing->name, i, request.length);
         ck_assert_uint_eq(rkm04_receive(&rig.unit, (const uint8_t *)request.text + i, 1), 1);

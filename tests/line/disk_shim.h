@@ -16,7 +16,7 @@ enum disk_fault {
     DISK_KILL,        /* the process ends in the middle of the call; what was written stays */
     DISK_POWER,       /* the machine loses its power there */
     DISK_FULL,        /* from this call on nothing more can be written, but for what the call itself still can */
-    DISK_FULL_LATE,   /* writes go well, and it is the syncs that tell */
+    DISK_FULL_LATE,   /* writes go well, and the syncs report the failure */
 };
 
 /* Calls so far that write or sync (pwrite, fdatasync, fsync), and those of fsync for a folder. */

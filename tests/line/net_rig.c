@@ -124,7 +124,7 @@ int connect_client(void)
     struct sockaddr_in to = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     to.sin_port = htons((uint16_t)atoi(strrchr(line.port.address, ':') + 1));
     int fd = socket(AF_INET, SOCK_STREAM, 0);
-    fcntl(fd, F_SETFL, O_NONBLOCK); /* the line may have to let somebody else go first */
+    fcntl(fd, F_SETFL, O_NONBLOCK); /* the line may have to let another client go first */
     ck_assert(connect(fd, (void *)&to, sizeof to) == 0 || errno == EINPROGRESS);
     return fd;
 }

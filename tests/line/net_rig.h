@@ -46,7 +46,7 @@ int attach_client(void);
 size_t receive(int fd, void *bytes, size_t length);
 void send_all(int fd, const void *bytes, size_t length);
 
-/* The units have heard this and nothing else. */
+/* The units have received this and nothing else. */
 void is_heard(const char *text);
 
 /* The client gets these bytes. */

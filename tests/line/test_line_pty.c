@@ -167,7 +167,7 @@ static void end(void)
     line_watch_close(&watch);
 }
 
-/* Nobody comes or goes any more: the emulator has followed when the loop has nothing more to do. */
+/* No client comes or goes any more: the emulator has followed when the loop has nothing more to do. */
 static void come_to_rest(void)
 {
     struct pollfd readable = {.fd = watch.fd, .events = POLLIN};
@@ -252,7 +252,7 @@ START_TEST(a_second_client_is_told_whatever_was_before)
 }
 END_TEST
 
-/* A client stays; another one comes and goes. Nobody may take it for gone. */
+/* A client stays; another one comes and goes. It must not be taken for gone. */
 START_TEST(a_client_that_stays_is_not_lost_beside_one_that_comes_and_goes)
 {
     begin((uint64_t)_i);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_line_settings.c: the client's settings, and what is heard between ends that do not agree (U7).
+/* test_line_settings.c: the client's settings, and what is received between ends that do not agree (U7).
  * One test alone: CK_RUN_CASE=ear ./test_line_settings */
 #include <asm/termbits.h>
 #include <check.h>
@@ -17,7 +17,7 @@
 
 static const struct line_settings at_9600 = {9600, 8, 'N', 2}, at_19200 = {19200, 8, 'N', 2}, at_38400 = {38400, 8, 'N', 2};
 
-/* What has been heard since listen_to(). */
+/* What has been received since listen_to(). */
 static struct line_received received[RECEIVED_MAX];
 static size_t count;
 static struct line_receiver receiver;
@@ -98,7 +98,7 @@ START_TEST(U7_a_difference_is_told_once_and_again_when_it_changes)
 }
 END_TEST
 
-/* ---- What is heard ------------------------------------------------------------------------------------------------------ */
+/* ---- What is received ------------------------------------------------------------------------------------------------------ */
 
 static void say(uint8_t byte, uint64_t tick)
 {
@@ -121,7 +121,7 @@ static void hear_all(struct line_settings from, struct line_settings to, bool ke
     count += line_receiver_silence(&receiver, received + count);
 }
 
-/* One byte alone; `expected` is what is heard. */
+/* One byte alone; `expected` is what is received. */
 static void assert_heard(struct line_settings from, struct line_settings to, uint8_t byte, size_t length, const char *expected,
                          unsigned framing_errors)
 {
@@ -335,7 +335,7 @@ START_TEST(U7_two_per_cent_off_the_speed_does_no_harm)
 }
 END_TEST
 
-/* Requests that a unit takes out of a well-framed one, heard at the unit's speed. */
+/* Requests that a unit takes out of a well-framed one, received at the unit's speed. */
 static unsigned requests_taken(struct line_settings client)
 {
     static struct rkm04_unit unit;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* plant_rig.h: a line of one unit with a plant, for tests: what moves, what is told. */
+/* plant_rig.h: a line of one unit with a plant, for tests: what moves, what is reported. */
 #ifndef RKM04_TESTS_PLANT_RIG_H
 #define RKM04_TESTS_PLANT_RIG_H
 

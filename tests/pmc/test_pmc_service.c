@@ -59,7 +59,7 @@ static void begin_client(void)
     do_it("service.open", "{\"service\": \"modbus-tcp\"}");
 }
 
-/* Client 1 sends bytes; what it hears, and whether it is connected afterwards. */
+/* Client 1 sends bytes; what it receives, and whether it is connected afterwards. */
 static void expect(const char *request, const char *answer, bool open)
 {
     char text[600];

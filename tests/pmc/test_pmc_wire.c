@@ -13,7 +13,7 @@
 
 static struct sim sim;
 static char heard[512];
-static uint64_t last; /* us at which the last byte was heard */
+static uint64_t last; /* us at which the last byte was received */
 
 static void hear(void *context, const uint8_t *bytes, size_t length)
 {
@@ -115,7 +115,7 @@ START_TEST(AS4_a_byte_without_a_stop_bit_spoils_its_line)
 }
 END_TEST
 
-/* The unit's answer is disturbed: the unit does not hear itself. */
+/* The unit's answer is disturbed: the unit does not receive what it sends. */
 START_TEST(AS4_a_disturbed_answer_is_no_line)
 {
     power_up("ascii", true);

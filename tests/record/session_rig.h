@@ -61,7 +61,7 @@ void session_ask(struct session *session, uint8_t node, const void *message, siz
 /* Set Command. */
 void session_set(struct session *session, uint8_t node, char motor, const char *text);
 
-/* A command, which must be obeyed (session_command), or its refusal: "" if it is obeyed. `params` is JSON. Static memory. */
+/* A command, which must be executed (session_command), or its refusal: "" if it is executed. `params` is JSON. Static memory. */
 void session_command(struct session *session, const char *method, const char *params);
 const char *session_refusal(struct session *session, const char *method, const char *params);
 

@@ -30,7 +30,7 @@ static void live_on(uint64_t dice, char **seen, char **state)
     *state = session_state(&here);
 }
 
-/* What coming back changes is told at once, and is no part of what follows. */
+/* What coming back changes is reported at once, and is no part of what follows. */
 static void restore(const struct snapshot *snapshot)
 {
     ck_assert(snapshot_restore(&here.sim, snapshot));
@@ -448,7 +448,7 @@ START_TEST(taking_and_coming_back_by_turns_keeps_nothing_of_what_is_over)
     sim_advance(&here.sim, sim_now(&here.sim) + SECOND);
     char *wanted = strdup(session_seen(&here)), *state = session_state(&here);
     session_command(&here, "restore", params);
-    sim_advance(&here.sim, sim_now(&here.sim) + 1u); /* what coming back changes is told */
+    sim_advance(&here.sim, sim_now(&here.sim) + 1u); /* what coming back changes is reported */
     session_forget(&here);
     sim_advance(&here.sim, sim_now(&here.sim) + SECOND);
     char *again = session_state(&here);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Stories: what a unit is told and asked, and when. A line each:
+"""Stories: what a unit receives, and when. A line each:
 
     readings NAME=VALUE,...   what is not the default (section 10); first, may be missing
     input TICK MASK           inputs from this tick on, bit 0 is DI 01

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* subject: runs stories of the differential test on the core and tells what happened.
+/* subject: runs stories of the differential test on the core and prints what happened.
  *
  * Standard input, a line each: `i TICK MASK` inputs, `m TICK HEX` a message, `q NUMBER...` a new unit with its thirteen
  * readings in the order of struct rkm04_readings, `e TICK` the end of the story. Standard output: `a HEX` the answer,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* subject_input.h: a program that obeys standard input with a rig. Rigs assert: they need a test of Check around them. */
+/* subject_input.h: a program that executes standard input with a rig. Rigs assert: they need a test of Check around them. */
 #ifndef RKM04_TESTS_SUBJECT_INPUT_H
 #define RKM04_TESTS_SUBJECT_INPUT_H
 

@@ -77,7 +77,7 @@ static int read_number(int fd)
     return notify_fd_read(text);
 }
 
-/* What went to stderr while the service manager was told at this address. */
+/* What went to stderr while the service manager was notified at this address. */
 static const char *complaint_about(const char *address)
 {
     int ends[2], before = dup(STDERR_FILENO);

@@ -20,7 +20,7 @@ struct seen {
     struct sim sim;
     struct watcher watcher;
     size_t length;
-    bool backwards; /* something was told after something later */
+    bool backwards; /* something was reported after something later */
     uint64_t last;
     char text[LINES_MAX];
 };

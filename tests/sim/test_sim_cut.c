@@ -208,7 +208,7 @@ struct seen {
     size_t length; /* of the recording */
 };
 
-/* The lines about bytes that the host hears, or the others; to be freed. What is heard is told at once, events later. */
+/* The lines about bytes that the host receives, or the others; to be freed. Bytes are reported at once, events later. */
 static char *pick(const char *text, bool heard)
 {
     char *picked = calloc(1, strlen(text) + 1), *to = picked;

@@ -74,7 +74,7 @@ size_t host_ask(struct soak *soak, unsigned unit, const void *message, size_t le
     uint8_t node = (uint8_t)(unit + 1u);
     send_request(soak, node, message, length);
     for (unsigned i = 0; i < UNITS; i++)
-        soak->unit[i].others += i == unit ? 0 : 2; /* hears the request and the answer */
+        soak->unit[i].others += i == unit ? 0 : 2; /* receives the request and the answer */
     soak->unit[unit].requests++;
     soak->unit[unit].answers++;
     if (!soak->exact)
@@ -230,7 +230,7 @@ static void ask_wrongly(struct soak *soak, unsigned unit)
     }
 }
 
-/* Programs of which nothing is obeyed (P2). */
+/* Programs of which nothing is executed (P2). */
 static void set_wrongly(struct soak *soak, unsigned unit, unsigned motor)
 {
     static const struct {

@@ -319,7 +319,7 @@ static void flood(struct soak *soak)
     pass_by(soak, NULL, 0);
 }
 
-/* For somebody else: nodes that nobody has, and answers of units. */
+/* For other units: nodes that no unit has, and answers of units. */
 static void for_others(struct soak *soak)
 {
     uint8_t frame[64];

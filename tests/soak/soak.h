@@ -42,7 +42,7 @@ struct soak {
     struct rkm04_receiver receiver;
     uint8_t answer[RKM04_MESSAGE_MAX];
     size_t heard;            /* length of the message in `answer`; 0: none yet */
-    uint64_t out, in;        /* bytes sent and heard by the host */
+    uint64_t out, in;        /* bytes sent and received by the host */
     uint64_t line_begin;     /* bytes on the line when the round began, and the master's */
     uint64_t host_begin;
 
@@ -69,7 +69,7 @@ size_t host_frame(uint8_t node, uint8_t snode, const void *message, size_t lengt
 /* A request that is answered; the answer is in soak->answer. Returns its length. */
 size_t host_ask(struct soak *soak, unsigned unit, const void *message, size_t length);
 
-/* A request to all units, which nobody answers. */
+/* A request to all units, which no unit answers. */
 void host_send_all(struct soak *soak, const void *message, size_t length);
 
 /* Set Command: is answered with this flag and character. */

@@ -322,7 +322,7 @@ class Soak:
                 time.sleep(self.dice.random() * 0.02)
 
     def put_back(self):
-        """As at the beginning: nobody is there but this one, and the units are as they were."""
+        """As at the beginning: no client is there but this one, and the units are as they were."""
         while self.lines:
             self.detach()
         while self.clients:
@@ -355,7 +355,7 @@ class Soak:
         return self.control.call("state", unit=unit)
 
     def check(self):
-        """Units answer, obey and count."""
+        """Units answer, execute and count."""
         if self.control.call("fault.list")["faults"]:
             raise Wrong("there are faults left")
         line = Line(self)

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 # The tests of the pty as an ordinary user: the system lets root open what a client has taken for itself (TIOCEXCL). Run as root,
-# this becomes the user 65534 (nobody); an ordinary user stays what he is.
+# this becomes the user 65534 (`nobody`); an ordinary user stays what he is.
 
 set -u
 : "${RKM04:=rkm04}" "${RKMCTL:=rkmctl}" "${PTY_CLIENT:=pty_client}" "${CC:=cc}"

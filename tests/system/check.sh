@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# rkm04 check: what is told, in which form, with which exit status; every program of docs/CHECK.md.
+# rkm04 check: what is reported, in which form, with which exit status; every program of docs/CHECK.md.
 
 . "$(dirname "$0")/lib.sh"
 here=$(cd "$(dirname "$0")" && pwd)
@@ -10,7 +10,7 @@ test_every_program_of_the_pages() {
     told=$(python3 "$here/check_pages.py" "$RKM04" "$here/../../docs/CHECK.md" "$folder") || fail "$told"
 }
 
-# checked STATUS TEXT OPTIONS...: the check of a program text ends with this status; what it told is in $said.
+# checked STATUS TEXT OPTIONS...: the check of a program text ends with this status; what it printed is in $said.
 checked() {
     printf '%s' "$2" >"$folder/p.rks"
     cd "$folder" || exit 1

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """check_pages.py RKM04 DOCUMENT FOLDER: the programs of docs/CHECK.md. Each warning has a section with a bad and a good program;
-of the bad one this warning alone is told, of the good one nothing."""
+of the bad one this warning alone is reported, of the good one nothing."""
 import json
 import os
 import re

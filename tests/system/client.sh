@@ -5,7 +5,7 @@
 . "$(dirname "$0")/lib.sh"
 
 test_no_answer_in_time_is_exit_3_with_advice() {
-    serve bus --node 2 --no-control # as at a real bus: nobody can be asked
+    serve bus --node 2 --no-control # as at a real bus: no client can be asked
     exits 3 ctl bus -n 5 --timeout 200 version
     holds "$complained" 5 "the message names the node"
     holds "${complained,,}" framing "the message says what to check"
@@ -59,7 +59,7 @@ test_two_units_of_one_address_with_different_delays_are_named() {
     serve bus --node 5,5
     exits 0 "$RKMCTL" -c "$folder/bus.control" --unit 5-2 fault inject delay delay=700us
     silent "2 units of this emulator have the address 5: their answers collide" -n 5
-    rm "$folder/bus.control" # as at a real bus: nobody can be asked
+    rm "$folder/bus.control" # as at a real bus: no client can be asked
     silent "do two units have the address 5" -n 5
 }
 

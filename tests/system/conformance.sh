@@ -150,7 +150,7 @@ test_no_pulse_leaves_a_unit_that_is_held_still() {
 
 test_somebody_sets_the_inputs_when_asked() {
     serve bus
-    exits 3 "$python" "$kit" --port "$folder/bus" --has inputs --only M7.32 # nobody does: standard input is empty
+    exits 3 "$python" "$kit" --port "$folder/bus" --has inputs --only M7.32 # there is none: standard input is empty
     holds "$complained" "set input 03 to 0, then press Enter" "what is asked"
     holds "$complained" "nobody is there" "what is told"
 }

@@ -135,7 +135,7 @@ def test_a_flood_of_requests_does_not_hold_up_others(emulator):
     line = b'{"jsonrpc":"2.0","id":1,"method":"state"}\n' * 1000
     flood.socket.settimeout(0.2)
     before, sent = emulator.memory(), 0
-    for _ in range(400):  # far more answers than are kept for it: it is not heard any more
+    for _ in range(400):  # far more answers than are kept for it: it is not read any more
         try:
             sent += flood.socket.send(line)
         except TimeoutError:
@@ -159,7 +159,7 @@ def test_the_unit_answers_its_master_meanwhile(emulator):
                 flood.socket.recv(MIB)
             except BlockingIOError:
                 pass
-        emulator.program(1, "F1 R")  # is told that all is right, within the time that rkmctl waits
+        emulator.program(1, "F1 R")  # gets the answer that it is accepted, within the time that rkmctl waits
 
 
 def test_a_client_that_leaves_in_the_middle_does_no_harm(emulator):
@@ -175,7 +175,7 @@ def test_a_client_that_leaves_in_the_middle_does_no_harm(emulator):
         bad.send(beginning)
         bad.close()
     brisk(good)
-    good.call("di.set", mask=1)  # events for nobody
+    good.call("di.set", mask=1)  # events without a client
     soon("all of them are gone", lambda: emulator.files() == files)
     emulator.program(1, "F9 R")
     good.call("advance", ticks="1s")
@@ -184,7 +184,7 @@ def test_a_client_that_leaves_in_the_middle_does_no_harm(emulator):
 
 def test_one_that_only_ends_its_sending_gets_its_answers(emulator):
     if "CONTROL" in os.environ:
-        return  # the system does not tell it from one that has gone
+        return  # to the system it is like one that has gone
     client, other = emulator.client(), emulator.client()
     client.send(b'{"jsonrpc":"2.0","id":1,"method":"wait","params":{"until":{"di":{"1":1}}}}\n'
                 b'{"jsonrpc":"2.0","id":2,"method":"units"}\n{"jsonrpc":"2.0","id":3,"method":"units"}')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""estimate_random.py RKM04 FOLDER SEED COUNT: random programs of two motors. What `rkm04 estimate` tells of steps, positions and
+"""estimate_random.py RKM04 FOLDER SEED COUNT: random programs of two motors. What `rkm04 estimate` prints of steps, positions and
 the end is what a trace of `rkm04 exec` has."""
 import json
 import os

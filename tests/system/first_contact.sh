@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# What somebody sees who starts a unit for the first time: hints that work, a control socket in every mode, a log that is quiet.
+# What a newcomer sees who starts a unit for the first time: hints that work, a control socket in every mode, a log that is quiet.
 
 . "$(dirname "$0")/lib.sh"
 tools=$(cd "$(dirname "$0")/../../tools" && pwd)
@@ -104,7 +104,7 @@ test_Enter_shows_the_hints_again_and_nothing_is_left_at_the_end() {
     grep -q 'building: 100 %' "$folder/run.err" || fail "no progress of the build"
 }
 
-# Nobody has the pipe open that stands for the terminal.
+# No process has the pipe open that stands for the terminal.
 nobody_reads() {
     ! (echo >&8) 2>/dev/null
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# What `cmake --install` puts in place is enough for a program of somebody else.
+# What `cmake --install` puts in place is enough for a program of others.
 # BUILD: the build folder; CC: the compiler; SANITIZE: its options if the library was built with sanitizers.
 
 . "$(dirname "$0")/lib.sh"

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# The line as clients meet it: their settings, several ways in, the end when nobody is there, coverage, load.
+# The line as clients meet it: their settings, several ways in, the end when no client is there, coverage, load.
 
 . "$(dirname "$0")/lib.sh"
 
@@ -82,7 +82,7 @@ test_with_a_link_there_is_a_pty_beside_tcp() {
     holds "$said" "motor 1: 25" "over TCP the same unit"
 }
 
-# sent_away KEY: whoever comes by this way is told that the line is in use.
+# sent_away KEY: a client that comes by this way gets the message that the line is in use.
 sent_away() {
     exec 4<>"/dev/tcp/127.0.0.1/$(address "$1" | sed 's/.*://')"
     holds "$(timeout "$limit" cat <&4)" "refused: the bus is in use by $2" "what a second client by $1 is told"

@@ -26,7 +26,7 @@ build_package() {
     [[ -s $package ]] || fail "cpack made no package"
 }
 
-# A system that has nothing but dpkg's own files. What the package depends on is the host's, so dpkg is told not to ask for it.
+# A system that has nothing but dpkg's own files. What the package depends on is the host's, so dpkg does not ask for it.
 empty_system() {
     root=$folder/root
     mkdir -p "$root"/var/lib/dpkg/{info,updates}

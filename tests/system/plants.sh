@@ -12,7 +12,7 @@ emulator() {
     export RKM04_CONTROL=$folder/bus.control
 }
 
-# told: position and true position of motor 1 as the control socket has them.
+# `told`: position and true position of motor 1 as the control socket has them.
 told() {
     exits 0 "$RKMCTL" --json state
     python3 -c 'import json, sys; motor = json.load(sys.stdin)["motors"][0]; print(motor["position"], motor["true_position"])' \

@@ -83,7 +83,7 @@ def keep(url):
 
 
 def slow(url):
-    """A client of 9600 baud asks twice and tells what it hears within half a second."""
+    """A client of 9600 baud asks twice and prints what it receives within half a second."""
     with opened(url, baudrate=9600, timeout=0.5) as port:
         for _ in range(2):
             port.write(POSITION[0])

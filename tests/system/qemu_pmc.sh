@@ -26,7 +26,7 @@ pmc() { "$RKMCTL" --timeout 20000 -p "$line" "${face[@]}" pmc "$@"; }
 
 stands_at() { [[ $(pmc position) == "x: $1"$'\n'"y: $2" ]]; }
 
-# tell LINE: a line of text that has no answer. ask LINE ANSWER: one that has.
+# `tell LINE`: a line of text that has no answer. ask LINE ANSWER: one that has.
 tell() { stty -F "$line" raw -echo; printf '%s\r' "$1" >&9; }
 
 ask() {
@@ -34,7 +34,7 @@ ask() {
     same "$2" "$(heard)" "$1"
 }
 
-# heard: an answer.
+# `heard`: an answer.
 heard() {
     local byte='' text=''
     until [[ $byte == $'\r.' || $byte == . ]]; do # the end of the answer, or no byte

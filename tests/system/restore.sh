@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# Restoring a file whose recording lasts long holds up nobody, can be given up, and has a limit.
+# Restoring a file whose recording lasts long delays no client, can be given up, and has a limit.
 
 . "$(dirname "$0")/lib.sh"
 

@@ -99,7 +99,7 @@ test_the_client_does_not_believe_the_emulator_of_another_user() {
     soon "the other user's emulator is ready" ready foreign
     exits 1 env -u XDG_RUNTIME_DIR -u RKM04_CONTROL TMPDIR="$shared" "$RKMCTL" state
     holds "$complained" "another user's emulator" "the message"
-    exits 0 "$RKMCTL" -c "$shared/rkm04-0/bus0.control" state # whoever names it means it
+    exits 0 "$RKMCTL" -c "$shared/rkm04-0/bus0.control" state # who names it means it
 }
 
 test_another_user_cannot_connect_to_the_control_socket() {
@@ -179,8 +179,8 @@ is_hardened() {
         ! grep -qE '^RKM04_(SANITIZE:BOOL=ON|HARDEN:BOOL=OFF)$' "$1/CMakeCache.txt"
 }
 
-# is_guarded PROGRAM: functions begin with the mark for indirect jumps. The note of the program cannot tell: it needs a C library
-# that is built so, too.
+# is_guarded PROGRAM: functions begin with the mark for indirect jumps. The note of the program does not show it: it
+# needs a C library that is built so, too.
 is_guarded() {
     local mark
     case $(uname -m) in

@@ -46,7 +46,7 @@ test_a_signal_during_the_start_leaves_no_files() {
     done
 }
 
-# Whoever closes them must not find messages in the file that took their number.
+# Code that closes them must not find messages in the file that took their number.
 test_with_standard_streams_closed_messages_go_nowhere() {
     printf 'S100 V1000 A300 F5000 R\n' >"$folder/program.rks"
     (exec 0<&- 1>&- 2>&-; exec "$RKM04" exec --trace "$folder/exec.csv" "$folder/program.rks" "$folder/missing.rks")

@@ -62,8 +62,8 @@ unit_line() {
         sed "s,%i,$instance,g; s,%t,$folder/run,g; s,%S,$folder/state,g; s,%%,%,g"
 }
 
-# Do what systemd does for an instance: make its folders, set its variables (further ones: the arguments), listen to what it
-# tells, and start it. $started is its process.
+# Do what systemd does for an instance: make its folders, set its variables (further ones: the arguments), listen to its
+# notifications, and start it. $started is its process.
 start_instance() {
     local variables command
     mkdir -p "$folder/run/$(unit_line RuntimeDirectory)" "$folder/state/$(unit_line StateDirectory)"

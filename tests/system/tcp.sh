@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# The line over TCP: where it listens, who gets in, what is left when somebody ends.
+# The line over TCP: where it listens, who gets in, what is left when one ends.
 
 . "$(dirname "$0")/lib.sh"
 
@@ -170,7 +170,7 @@ test_random_bytes_do_no_harm() {
     done
 }
 
-# A broadcast, or so much that the units have not heard half of it; then the same client comes again at once.
+# A broadcast, or so much that the units have not received half of it; then the same client comes again at once.
 test_a_client_that_comes_again_at_once_is_served() {
     serve_tcp --tcp 0
     exits 0 timeout "$limit" python3 "$(dirname "$0")/tcp_client.py" again "${address##*:}"

@@ -8,7 +8,7 @@ BROADCAST = bytes.fromhex("7e00000158107e")
 
 
 def session(sent, wanted):
-    """Connect, send, hear what is wanted, close."""
+    """Connect, send, receive what is wanted, close."""
     with socket.create_connection(("127.0.0.1", int(sys.argv[2])), timeout=30) as client:
         client.sendall(sent)
         heard = b""
@@ -20,7 +20,7 @@ def session(sent, wanted):
 
 
 def again():
-    """What has gone does not keep out what comes: a broadcast, and more than the units can hear in half a minute."""
+    """What has gone does not keep out what comes: a broadcast, and more than the units can receive in half a minute."""
     for _ in range(int(sys.argv[3]) if len(sys.argv) > 3 else 100):
         session(BROADCAST, b"")
         session(REQUEST, ANSWER)

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# Several units on one line: each has its own address, state and flash; all hear everything (U4, L1, L3).
+# Several units on one line: each has its own address, state and flash; all receive everything (U4, L1, L3).
 
 . "$(dirname "$0")/lib.sh"
 
@@ -134,7 +134,7 @@ test_two_units_with_the_same_address_answer_at_once_and_spoil_it() {
     ! grep -q 'collisions 0,' "$folder/bus.err" || fail "no collision counted: $(tail -n 1 "$folder/bus.err")"
 }
 
-# The answer is heard as the AND of both: 111 is blanks (20) where 22222 has 2 (32), so 20; 1 (31) AND 2 (32) is 0 (30).
+# The answer is received as the AND of both: 111 is blanks (20) where 22222 has 2 (32), so 20; 1 (31) AND 2 (32) is 0 (30).
 collide() {
     say_bytes 3 "$(frame 05 00 04 31)"
     [[ $(hear_bytes 3 18) == 7e000504310a"2020202020"2020303030* ]]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""unread.py: `rkm04 serve` whose log or READY line nobody reads. The units answer all the same, and SIGTERM ends it.
+"""unread.py: `rkm04 serve` whose log or READY line is not read. The units answer all the same, and SIGTERM ends it.
 
     RKM04=… RKMCTL=… unread.py CASE | --list"""
 import json

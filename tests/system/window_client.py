@@ -169,7 +169,7 @@ def limits(window):
 
 
 def nonsense(window):
-    """Whatever a page sends, it is told what is wrong."""
+    """Whatever a page sends, the answer names what is wrong."""
     page = window.socket()
     for text in ("", "{", "[]", "7", '"x"', "{}", '{"do": 7}', '{"do": "shutdown"}', '{"do": "open"}',
                  '{"do": "open", "port": ""}',

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 # Programs for Windows under the Wine of an ordinary user, who has fewer rights and descriptors. Run as root, some cases of the
-# other tests are run as the user 65534 (nobody), with a home of his own; an ordinary user runs all of them as himself.
+# other tests are run as the user 65534 (`nobody`), with a home of his own; an ordinary user runs all of them as himself.
 
 set -u
 : "${RKM04:=rkm04}" "${RKMCTL:=rkmctl}" "${RKM04_EXE=}"

@@ -16,7 +16,7 @@ look() {
 
 fields() { look -T fields "${@/#/-e}"; }
 
-# A session in both formats: a good dialogue, a refusal, a wrong FCS, nobody's address.
+# A session in both formats: a good dialogue, a refusal, a wrong FCS, a frame for no unit.
 session() {
     serve bus --node 3,5 --wire "$folder/bus.pcapng" --wire "$folder/bus.log" "$@"
     exec 3<>"$folder/bus"

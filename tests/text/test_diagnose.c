@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_diagnose.c: what people are told about a text that the unit would refuse (P1, specification section 5).
+/* test_diagnose.c: what is reported about a text that the unit would refuse (P1, specification section 5).
  * One case alone: CK_RUN_CASE=messages ./test_diagnose */
 #include <check.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* test_wire_log.c: the files that take down what passes on the wires. What tshark makes of the capture file is tested in
+/* test_wire_log.c: the files that record what passes on the wires. What tshark makes of the capture file is tested in
  * system/wire.sh. One case alone: CK_RUN_CASE=CASE ./test_wire_log */
 #include <errno.h>
 #include <stdio.h>

@@ -18,13 +18,13 @@ struct sim *trace_rig_sim(void);
 /* A program for motor '0'..'4' of unit `number`. */
 void trace_rig_set(unsigned number, char motor, const char *text);
 
-/* Something happens to unit 1, or so the watchers are told. */
+/* Something happens to unit 1, or so it is reported to the watchers. */
 void happens(uint64_t tick, enum watch_phase phase, unsigned motor, enum watch_kind kind, int32_t value);
 
 /* What has been written up to now. */
 const char *trace_rig_so_far(void);
 
-/* Let everything be told, end the trace, and return all of it. */
+/* Let everything be reported, end the trace, and return all of it. */
 const char *trace_rig_text(void);
 
 #endif

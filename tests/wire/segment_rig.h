@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* segment_rig.h: one RS485 line with a host that keeps all it hears, for tests. */
+/* segment_rig.h: one RS485 line with a host that keeps all it receives, for tests. */
 #ifndef RKM04_TESTS_SEGMENT_RIG_H
 #define RKM04_TESTS_SEGMENT_RIG_H
 

@@ -230,7 +230,7 @@ static void ask_too_early(uint64_t ticks)
 START_TEST(a_request_that_begins_during_an_answer_collides_with_it)
 {
     ask_too_early(SEGMENT_TURNAROUND + (uint64_t)_i * 97); /* somewhere within the answer, at all parts of a bit and a byte */
-    ck_assert_uint_eq(line_unit_counters(1).requests, 1); /* it did not hear the second */
+    ck_assert_uint_eq(line_unit_counters(1).requests, 1); /* it did not receive the second */
     ck_assert_uint_eq(line_unit_counters(1).others, 2);   /* only the third, and its answer */
 }
 END_TEST

@@ -94,7 +94,7 @@ START_TEST(L2_units_are_addressed_and_answer_in_plain)
         tick = line_settle();
         line_ask(7, VERSION, 1, tick);
         tick = line_settle();
-        line_set(0, '1', "F1", tick); /* and nobody answers */
+        line_set(0, '1', "F1", tick); /* and none answers */
         tick = line_settle();
     }
     ck_assert_uint_eq(line_answers(2, 4), 3);

@@ -30,7 +30,7 @@ static void begin(unsigned units)
         wire_join(&wire, unit, 0);
 }
 
-/* The n-th (0..) byte that an ear has heard, lost ones included; NULL if there are fewer. */
+/* The n-th (0..) byte that an ear has received, lost ones included; NULL if there are fewer. */
 static const struct wire_byte *at(unsigned receiver, size_t n)
 {
     for (size_t i = 0; i < count; i++)
@@ -184,7 +184,7 @@ START_TEST(bytes_that_touch_do_not_collide)
 }
 END_TEST
 
-/* ---- Who sends does not hear ------------------------------------------------------------------------------------------ */
+/* ---- Who sends does not receive ------------------------------------------------------------------------------------------ */
 
 START_TEST(who_begins_to_send_within_a_byte_does_not_receive_it)
 {
@@ -202,7 +202,7 @@ START_TEST(who_has_sent_joins_in_the_middle_of_what_others_send)
 {
     begin(2);
     wire_send(&wire, 1, 0xFF, 0);
-    wire_send(&wire, 2, 0x00, 5 * BIT); /* 0 from 5 to 14 bits; 1 hears from 10 bits on: 0 for 4 bits */
+    wire_send(&wire, 2, 0x00, 5 * BIT); /* 0 from 5 to 14 bits; 1 receives from 10 bits on: 0 for 4 bits */
     hear(RKM04_NEVER);
     expect(1, 0, 10 * BIT, 0xF8, 1u << 2);
 }
@@ -270,7 +270,7 @@ START_TEST(what_is_sent_during_a_break_is_not_received)
     ck_assert_uint_eq(number(2), 0);
     ck_assert_uint_eq(number(WIRE_HOST), 0);
     ck_assert_uint_eq(wire.collisions, 1);
-    wire_send(&wire, WIRE_HOST, 0x55, 30 * BYTE); /* nobody collides with himself */
+    wire_send(&wire, WIRE_HOST, 0x55, 30 * BYTE); /* none collides with itself */
     ck_assert_uint_eq(wire.collisions, 1);
 }
 END_TEST
@@ -364,7 +364,7 @@ static size_t draw(struct send *sends, uint64_t off, int round)
     return n;
 }
 
-/* Step a UART through the line and compare all it hears with what the ear has heard. */
+/* Step a UART through the line and compare all it receives with what the ear has received. */
 static void compare(unsigned receiver, int round)
 {
     bool within = false, before = true;

@@ -85,7 +85,7 @@ START_TEST(the_longest_message_is_told_whole)
 }
 END_TEST
 
-/* With plain there is no check sum: what noise has made of a message is told as far as it goes. */
+/* With plain there is no check sum: what noise has made of a message is reported as far as it goes. */
 START_TEST(damaged_messages_are_told_in_characters_that_can_be_seen)
 {
     uint32_t random = 54321;
@@ -242,7 +242,7 @@ START_TEST(U4_answers_of_two_units_of_one_address_are_a_collision)
     wire_rig_begin("5,5", HDLC);
     wire_rig_ask(5, "\1", 1);
     wire_rig_says("master > 5: 1 Version");
-    wire_rig_says("5+5-2 > master: 1 Version -> \"01.02,06.03.2009\"; collision: 5+5-2"); /* the same bits: nobody can tell */
+    wire_rig_says("5+5-2 > master: 1 Version -> \"01.02,06.03.2009\"; collision: 5+5-2"); /* the same bits */
     sim_power(sim, 2, true);
     wire_rig_ask(5, "\2" "1F7 R", 6);
     wire_rig_says("master > 5: 2 Set Command m1 \"F7 R\"");
@@ -396,7 +396,7 @@ START_TEST(a_copy_goes_on_with_what_was_half_received)
 }
 END_TEST
 
-/* No bytes of a client may make the monitor stumble, and the counters of the unit agree with what is told. */
+/* No bytes of a client may make the monitor stumble, and the counters of the unit agree with what is reported. */
 START_TEST(noise_is_told_as_often_as_the_unit_drops_it)
 {
     uint32_t random = 12345;
