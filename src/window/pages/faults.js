@@ -77,5 +77,6 @@ export async function showFaults(act) {
     };
     return make("li", {}, make("button", { onclick: clear }, `${word("clearone")} ${fault.id}`), make("span", {}, text));
   });
-  $("faults").replaceChildren(...items);
+  if (items.map((item) => item.textContent).join() !== [...$("faults").children].map((item) => item.textContent).join())
+    $("faults").replaceChildren(...items);
 }

@@ -10,6 +10,7 @@ import { make, write } from "./make.js";
 const $ = (id) => document.getElementById(id);
 const LINES_MAX = 500;
 const STEPS = ["1ms", "10ms", "100ms", "1s"];
+const LOOK_MS = 1000; // at plants and faults: another page or client may have changed them
 const views = new Map();
 let emulator = { control: "", units: [], connected: false };
 const events = [];
@@ -228,6 +229,14 @@ $("clear-faults").onclick = async () => {
   await act("fault.clear", {});
   showFaults(act);
 };
+setInterval(() => {
+  if (!visible || document.hidden || !emulator.connected)
+    return;
+  for (const view of views.values())
+    view.lookAtPlant();
+  if (hasFaults())
+    showFaults(act);
+}, LOOK_MS);
 on("emulator", showEmulator);
 on("found", (emulators) => { found = emulators; showEmulators(); });
 on("state", ({ unit, state }) => {

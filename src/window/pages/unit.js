@@ -186,6 +186,11 @@ export class UnitView {
 
   // ---- Plant ----
 
+  lookAtPlant() {
+    if (this.axes.length > 0)
+      this.askPlant();
+  }
+
   async askPlant() {
     const now = performance.now();
     if (now - this.plantAsked < PLANT_MS) {

@@ -2,7 +2,7 @@
 // service.mjs: the service view.
 import { readFileSync, writeFileSync } from "node:fs";
 import assert from "node:assert/strict";
-import { connect, folder, openPage, openPanel, port, says, send, shows, write } from "./page.mjs";
+import { AXIS, connect, folder, openPage, openPanel, port, says, send, shows, write } from "./page.mjs";
 
 export const cases = {
   // Each message of the service program, open and save, errors, format, search.
@@ -144,6 +144,15 @@ export const cases = {
     await openPanel(other);
     await page.locator(".unit").first().getByRole("button", { name: "07", exact: true }).click();
     await shows(other, ".unit button[aria-pressed=true]", "element.textContent === '07'");
+    // What has no event of its own: a jam, a fault.
+    writeFileSync(folder + "/axis.yaml", AXIS);
+    await page.setInputFiles("#plant-file", folder + "/axis.yaml");
+    await shows(other, ".axis svg .carriage");
+    await page.locator(".axis label.check").first().click();
+    await shows(other, ".axis svg .carriage.held");
+    await page.selectOption("#fault select[name=kind]", "flash");
+    await page.press("#fault input[name=count]", "Enter");
+    await shows(other, "#faults li", "element.textContent.includes('flash: armed')");
     await page.close();
     await other.locator(".unit").first().getByRole("button", { name: "07", exact: true }).click();
     await shows(other, ".unit button[aria-pressed=false]", "element.textContent === '07'");
