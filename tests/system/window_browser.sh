@@ -8,6 +8,7 @@
 test_the_service_view_sends_each_message() { drive service; }
 test_the_editor_marks_explains_formats_opens_and_saves() { drive editor; }
 test_each_control_of_the_panel_acts() { drive panel; }
+test_mistakes_of_an_operator_do_no_harm() { drive mistakes; }
 test_a_program_is_listed_with_the_present_command_in_it() { drive listing; }
 test_axes_are_drawn_and_dragged_between_their_stops() { drive axes; }
 test_faults_of_flash_and_power_are_injected_by_the_form() { drive faults; }
@@ -77,6 +78,14 @@ test_cells_of_a_CNC872_are_found_shown_and_set() { show_cnc cnccells; }
 test_cells_that_change_without_motion_are_seen_soon() {
     export RKMCTL
     show_cnc cncnews
+}
+test_an_emulator_of_a_CNC872_that_comes_again_shows_what_it_has() {
+    export RKM04 RKMCTL
+    printf 'MODULE_MAIN\nMECH_BEGIN WAIT\n EX\nMECH_END WAIT\nMODULE_MAIN_END\n' >"$folder/wait.plc"
+    start bus "$RKM04" serve --device cnc872 --control "$folder/bus.control"
+    export EMULATOR_PID=$started
+    soon "the unit is ready" ready bus
+    drive_with cncloss "$folder/bus.control"
 }
 test_all_axes_of_a_CNC872_have_their_curves() {
     {

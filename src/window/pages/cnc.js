@@ -50,6 +50,12 @@ export class CncPanel {
     this.curves = new Curves(["cnc-feed-curve", "cnc-position-curve"]);
     this.text = new CncText((text, name) => this.call("cnc.load", { text, name }));
     this.cells = new Cells(unit, (cells) => this.call("cnc.set", { cells }));
+    this.begin();
+  }
+
+  // The emulator is another one, or the same one again.
+  begin() {
+    this.text.loaded = null;
     this.cells.begin();
   }
 

@@ -64,10 +64,11 @@ showLanguage();
 document.addEventListener("keydown", (event) => {
   const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   const name = (event.ctrlKey ? "Control+" : "") + (event.altKey ? "Alt+" : "") + key;
-  if (service.keys[name] && !event.shiftKey && !event.metaKey) {
-    event.preventDefault();
+  if (!service.keys[name] || event.shiftKey || event.metaKey || ($("service").hidden && name !== "F8"))
+    return; // but for Stop all they are keys of the service view
+  event.preventDefault();
+  if (!event.repeat) // a key that is held sends once
     service.keys[name]();
-  }
 });
 
 // A file that is dropped beside its place does not take the page away.

@@ -10,14 +10,17 @@ import { make, write } from "./make.js";
 const $ = (id) => document.getElementById(id);
 const LINES_MAX = 500;
 const STEPS = ["1ms", "10ms", "100ms", "1s"];
+const STOP_MS = 2000; // until a unit that has not answered counts as not stopped
 const LOOK_MS = 1000; // at plants and faults: another page or client may have changed them
 const views = new Map();
 let emulator = { control: "", units: [], connected: false };
+let known = ""; // what the views are of
 const events = [];
 let found = [];
 let visible = false;
 let trace = null;
 let traces = 0;
+let isRecordChanging = false;
 
 export function report(answer) {
   $("panel-text").textContent = answer.error ?? "";
@@ -50,11 +53,12 @@ function showParts() {
 const identity = ({ control, bus, units, device }) => [control, bus, units.join(), device?.name].join("\n");
 
 function showEmulator(now) {
-  const changed = identity(now) !== identity(emulator);
+  const changed = now.connected && identity(now) !== known, isAgain = now.connected && !emulator.connected;
   emulator = now;
   showEmulators();
   $("inside").hidden = !now.connected;
-  if (changed) {
+  if (changed) { // what is typed stays while an emulator is away
+    known = identity(now);
     views.clear();
     $("units").replaceChildren();
     for (const name of now.units) {
@@ -62,9 +66,15 @@ function showEmulator(now) {
       views.set(name, view);
       $("units").append(view.element);
     }
+  } else if (isAgain) { // with other files, perhaps
+    for (const view of views.values())
+      view.panel?.begin?.();
   }
-  if (!now.connected)
+  if (!now.connected) {
+    trace = null; // it has ended, too
+    $("record").textContent = word("record");
     return;
+  }
   readKinds().then(() => {
     showFaultForm(act, () => emulator);
     showParts();
@@ -131,6 +141,14 @@ function offer(file) {
 }
 
 $("record").onclick = async () => {
+  if (isRecordChanging)
+    return; // the second click of two
+  isRecordChanging = true;
+  await changeRecord();
+  isRecordChanging = false;
+};
+
+async function changeRecord() {
   if (trace) {
     const { number, file } = trace;
     trace = null;
@@ -143,7 +161,7 @@ $("record").onclick = async () => {
       trace = { number: answer.trace, file };
   }
   showWords();
-};
+}
 
 $("recording").onclick = async () => {
   const file = `bus-${Date.now().toString(36)}-${++traces}.record`;
@@ -198,11 +216,14 @@ function addEvent({ bus }) {
 
 // ---- All ----
 
-// Stop all motors of units of other devices than the RKM04, which has K for it. Returns how many units there were.
+// Stop all motors of units of other devices than the RKM04, which has K for it. Returns how many did, and why others did not.
 export async function stopUnits() {
-  const stopped = [...views.values()].filter((view) => emulator.connected && view.panel).map((view) => view.panel.stop());
-  await Promise.all(stopped);
-  return stopped.length;
+  const late = () => new Promise((done) => setTimeout(() => done({ error: word("stop-silent") }), STOP_MS));
+  const stopped = [...views].filter(([, view]) => emulator.connected && view.panel)
+    .map(async ([name, view]) => ({ name, ...await Promise.race([view.panel.stop(), late()]) }));
+  const answers = await Promise.all(stopped), failed = answers.filter((answer) => answer.error !== undefined);
+  const why = failed[0]?.error || word("stop-silent");
+  return { done: answers.length - failed.length, failed: failed.map(({ name }) => name).join(" "), why };
 }
 
 export function showWords() {

@@ -223,10 +223,12 @@ $("request").onchange = showChoices;
 async function stopAll() {
   const begun = performance.now(), took = () => Math.round(performance.now() - begun);
   const [answer, units] = await Promise.all([ask("stop", { node: Number($("node").value) }), stopUnits()]);
-  if (answer.outcome === "sent")
+  if (units.failed)
+    say(word("stop-units-failed", units.failed, units.why), true);
+  else if (answer.outcome === "sent")
     say(word("stop-done", took()));
-  else if (units > 0)
-    say(word("stop-units", units, took()));
+  else if (units.done > 0)
+    say(word("stop-units", units.done, took()));
   else
     say(word("stop-failed"), true);
 }

@@ -76,6 +76,7 @@ export class UnitView {
   buildGraph() {
     const canvas = make("canvas", { class: "graph", role: "img", "aria-label": word("speed-graph") }), old = this.graph;
     this.graph = new Graph(canvas, 2, this.device.axes);
+    this.graph.titles = [word("speed"), word("position")];
     if (old)
       this.graph.take(old);
     return canvas;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // cnc.mjs: the panel of a CNC872, a device without a bus.
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
 import assert from "node:assert/strict";
@@ -300,6 +300,30 @@ export const cases = {
     }
     console.log(`seen after ${times.join(", ")} ms`);
     assert.ok(times.sort((a, b) => a - b)[7] <= 300 || loadavg()[0] > cpus().length, "seen late");
+  },
+
+  // The emulator ends, and comes again with a PLC program: what was typed stays, what it has is shown. A stop that nobody
+  // answers is no stop.
+  async cncloss(page) {
+    const control = folder + "/bus.control";
+    await page.fill(".program textarea", "G0 X1\n");
+    process.kill(Number(process.env.EMULATOR_PID), "SIGSTOP");
+    await page.press("body", "F8");
+    await shows(page, "#status", "element.textContent.includes('Stop was not done by units: 1. no answer')");
+    process.kill(Number(process.env.EMULATOR_PID), "SIGCONT");
+    execFileSync(process.env.RKMCTL, ["-c", control, "shutdown"]);
+    await shows(page, "#inside", "element.hidden");
+    const again = spawn(process.env.RKM04, ["serve", "--device", "cnc872", "--control", control, "--plc", folder + "/wait.plc"],
+      { stdio: "ignore" });
+    try {
+      await shows(page, "#inside", "!element.hidden");
+      await shows(page, ".device .lamp", "element.textContent === 'WAIT'");
+      assert.equal(await page.inputValue(".program textarea"), "G0 X1\n");
+      await page.press("body", "F8");
+      await shows(page, "#status", "element.textContent.includes('Stop sent to units: 1')");
+    } finally {
+      again.kill();
+    }
   },
 
   // Sixteen axes: those of the configuration, each with its curve; a rotary one in degrees.

@@ -69,6 +69,47 @@ export const cases = {
     await shows(page, ".unit.off");
   },
 
+  // Two clicks where one was meant start one trace; keys of the service view do nothing in this one, and a key that is held sends
+  // once; the page zoomed to 400 % has room, and Stop all stays in sight.
+  async mistakes(page) {
+    const answers = () => page.locator("#answers p").count();
+    await connect(page);
+    await page.selectOption("#message", "1");
+    await page.keyboard.down("Control");
+    await page.keyboard.down("Enter");
+    await page.keyboard.down("Enter"); // as a keyboard repeats it
+    await page.keyboard.up("Enter");
+    await page.keyboard.up("Control");
+    await says(page, "answers", "01.02,06.03.2009");
+    const before = await answers();
+    await openPanel(page);
+    await page.keyboard.press("Control+Enter");
+    await page.keyboard.press("F2");
+    await page.click("#tab-service");
+    await says(page, "status", port);
+    await page.click("#send");
+    await page.waitForFunction((count) => document.querySelectorAll("#answers p").length > count, before);
+    assert.equal(await answers() - before, before, "one request was sent by the key, none from the panel");
+    await page.click("#tab-panel");
+    await page.dblclick("#record");
+    await says(page, "record", "Stop");
+    await page.click("#record");
+    await says(page, "record", "Start");
+    await shows(page, "#downloads a");
+    assert.equal(await page.locator("#downloads a").count(), 1);
+    await page.setViewportSize({ width: 320, height: 256 });
+    for (const view of ["service", "panel"]) {
+      await page.click("#tab-" + view);
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      assert.ok(wide <= 0, `${view} is ${wide} pixels too wide`);
+      await page.evaluate(() => scrollTo(0, 600));
+      assert.ok((await page.locator("header").boundingBox()).y < -100, "the head is scrolled away");
+      const stop = await page.locator("#stop").boundingBox();
+      assert.ok(stop.y > 0 && stop.y + stop.height <= 256 && stop.x + stop.width <= 320, "Stop all is in sight");
+      await page.evaluate(() => scrollTo(0, 0));
+    }
+  },
+
   // A program listing with the present command in it, which follows the motor; and again after another program has come.
   async listing(page) {
     await connect(page);
