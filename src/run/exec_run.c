@@ -192,15 +192,6 @@ static bool repeats(struct exec_run *run)
     return run->period > 0;
 }
 
-/* Has a device in which something always happens of itself, as a PLC program in each cycle, nothing more to do? */
-static bool is_over(struct exec_run *run)
-{
-    struct device_axis state = {.idle = true};
-    for (unsigned axis = 1; axis <= run->device->axes && state.idle; axis++)
-        run->device->axis(exec_run_unit(run), axis, &state);
-    return run->device->has_program && state.idle;
-}
-
 static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
 {
     while (!interrupted) {
@@ -222,8 +213,6 @@ static enum exec_end run_loop(struct exec_run *run, struct progress *progress)
             run->advanced(run->context);
         if (run->trace != NULL && trace_file_failed(run->trace) != 0)
             return EXEC_NO_TRACE;
-        if (!left && is_over(run))
-            return EXEC_DONE;
         if (run->open && !left && repeats(run))
             return EXEC_ENDLESS;
         progress_update(progress, run);

@@ -104,10 +104,8 @@ static bool read_input(struct parser *p, struct stimulus *s)
     s->input = word.length < sizeof name ? (uint8_t)device_input_named(p->device, name) : 0;
     if (p->device->input_names || p->device->inputs == 0)
         snprintf(what, sizeof what, "an input %s", device_input_names(p->device, names));
-    else if (p->device->inputs > 0)
-        snprintf(what, sizeof what, "an input 01 to %02u", p->device->inputs);
     else
-        snprintf(what, sizeof what, "no input: the device has none");
+        snprintf(what, sizeof what, "an input 01 to %02u", p->device->inputs);
     if (s->input == 0)
         return report_expected(p, word, 0, what);
     word = next_word(p);
