@@ -56,6 +56,7 @@ START_TEST(w1_conversions)
     ck_assert_int_eq(cnc_speed_of(300000), 327680);
     ck_assert_int_eq(cnc_speed_of(12000000), 13107200);
     ck_assert_int_eq(cnc_acceleration_of(500000), 32768);
+    ck_assert_int_eq(cnc_acceleration_of(1000000000), 65536000);
     ck_assert_int_eq(cnc_acceleration_of(1), 1); /* never 0 */
     ck_assert_int_eq(cnc_acceleration_of(23), 2); /* 1.507: the nearest */
 }
@@ -215,6 +216,8 @@ START_TEST(nj1_wrong_texts_are_refused)
         {"<ChannelConfig><Axis Name=\"X\" [=\"1\"/></ChannelConfig>", "1:31: expected an attribute, > or />\n"},
         {"<ChannelConfig><Axis Name=\"X\"Feed=\"1\"/></ChannelConfig>", "1:30: expected an attribute, > or />\n"},
         {"<ChannelConfig><Axis Name=\"X\" A_1=\"1\"/></ChannelConfig>", "1:31: expected an attribute of Axis\n"},
+        {"<ChannelConfig><Axis Name=\"X\" Feed0=\"1\"/></ChannelConfig>", "1:31: expected an attribute of Axis\n"},
+        {"<ChannelConfig><Axis Name=\"X\" Feed9=\"1\"/></ChannelConfig>", "1:31: expected an attribute of Axis\n"},
         {"<ChannelConfig AccelerationType=\"<\"/>", "1:34: expected a value without < and &\n"},
         {"<!-- ", "1:6: expected --> behind a comment\n"},
         {"<?xml ", "1:7: expected ?> behind the XML line\n"},
@@ -277,6 +280,8 @@ START_TEST(nj1_licences_and_smoothing)
               "<Axis Name=\"X\" LinearAccel=\"1\" ParabAccel=\"4\"/></ChannelConfig>");
     ck_assert_uint_eq(config.no_license, 1u | 1u << 1 | 1u << 10);
     ck_assert_uint_eq(config.axis[0].smoothing[CNC_SET_NORMAL], 1); /* 0.25 */
+    read_well("<ChannelConfig NoLicense=\" FeaturePlc8  FeaturePlc1 \"/>");
+    ck_assert_uint_eq(config.no_license, 1u << 9 | 1u << 2);
 }
 END_TEST
 

@@ -219,6 +219,19 @@ START_TEST(nl4_blocks_beyond_the_room_are_refused)
 }
 END_TEST
 
+START_TEST(nl4_room_that_a_text_takes)
+{
+    uint32_t blocks, values;
+    static const char text[] = "N1 G1 x1 Z2 (A z)\n\nM3 @[`{;";
+    cnc_nc_measure(text_before_hole(text, sizeof text - 1), sizeof text - 1, &blocks, &values);
+    ck_assert_uint_eq(blocks, 3);
+    ck_assert_uint_eq(values, 7);
+    cnc_nc_measure("", 0, &blocks, &values);
+    ck_assert_uint_eq(blocks, 1);
+    ck_assert_uint_eq(values, 0);
+}
+END_TEST
+
 START_TEST(nl4_a_million_blocks)
 {
     const size_t length = (CNC_NC_BLOCKS_MAX + 1) * 3;
@@ -256,6 +269,7 @@ int main(void)
     tcase_add_test(all, nn2_a_byte_0_is_not_a_word);
     tcase_add_test(all, nn2_the_first_twenty_errors);
     tcase_add_test(all, nl4_blocks_beyond_the_room_are_refused);
+    tcase_add_test(all, nl4_room_that_a_text_takes);
     tcase_add_test(all, nl4_a_million_blocks);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cnc872/operand.h"
+#include "text_rig.h"
 
 static struct cnc_names names;
 static struct cnc_operand operand;
@@ -28,7 +29,9 @@ static void declare_names(void)
 
 static const struct cnc_operand *parse(const char *text)
 {
-    ck_assert_msg(cnc_parse_operand(text, strlen(text), &names, &operand, &fault), "%s: %s", text, fault.reason);
+    const size_t length = strlen(text);
+    ck_assert_msg(cnc_parse_operand(text_before_hole(text, length), length, &names, &operand, &fault), "%s: %s", text,
+                  fault.reason);
     return &operand;
 }
 
@@ -204,8 +207,14 @@ static const struct {
     {"BLK", "there is no cell", "BLK"},
     {"CNST.'\x01'", "expected a number or a constant", ""},
     {"CNST.'\x7F'", "expected a number or a constant", ""},
+    {"CNST.'", "expected a number or a constant", ""},
+    {"CNST.'A", "expected a number or a constant", ""},
+    {"CNST.\xE2\x80\x98", "expected a number or a constant", ""},
     {"CNST.\xE2\x80", "expected a number or a constant", ""},
     {"CNST.9223372036854775810", "expected a number or a constant", "9223372036854775810"},
+    {"BLK", "there is no cell", "BLK"},
+    {"CNST", "expected CNST.value", ""},
+    {"WORD", "expected `.' and a name behind the type", ""},
     {"STRUCTURE.T", "there is no cell", "STRUCTURE"},
     {"BIT.STOPPI", "there is no cell", "BIT"},
 };
@@ -213,13 +222,13 @@ static const struct {
 START_TEST(what_is_wrong_is_named)
 {
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        const char *text = wrong[i].text;
-        ck_assert_msg(!cnc_parse_operand(text, strlen(text), &names, &operand, &fault), "%s", text);
+        const char *shown = wrong[i].text, *text = text_before_hole(shown, strlen(shown));
+        ck_assert_msg(!cnc_parse_operand(text, strlen(shown), &names, &operand, &fault), "%s", shown);
         ck_assert_str_eq(fault.reason, wrong[i].reason);
-        ck_assert_uint_le(fault.at + fault.length, strlen(text));
+        ck_assert_uint_le(fault.at + fault.length, strlen(shown));
         if (wrong[i].word[0])
             ck_assert_msg(fault.length == strlen(wrong[i].word) &&
-                          strncmp(text + fault.at, wrong[i].word, fault.length) == 0, "%s: `%.*s'", text, (int)fault.length,
+                          strncmp(text + fault.at, wrong[i].word, fault.length) == 0, "%s: `%.*s'", shown, (int)fault.length,
                           text + fault.at);
     }
 }

@@ -179,14 +179,15 @@ END_TEST
 
 START_TEST(errors_licences_and_the_spindle_reach_the_surroundings)
 {
-    ck_assert_int_eq(rig_run("A BIT 0\nB BIT 0", "LOD CNST.15h\nESET\nLDR_LIC HwKeyConnected\nWR A\nSPI_AX_4\nSPI_AX_16"), 0x15);
+    ck_assert_int_eq(rig_run("A BIT 0\nB BIT 0",
+                             "LOD CNST.15h\nESET\nLDR_LIC HwKeyConnected\nWR A\nSPI_AX_X\nSPI_AX_4\nSPI_AX_16"), 0x15);
     ck_assert_int_eq(rig.event, CNC_PLC_ERROR_SET);
     ck_assert_int_eq(rig.event_value, 0x15);
     ck_assert_int_eq(rig_value("PLC_ERROR"), 0x15);
     ck_assert_int_eq(rig_value("A"), 1);
     ck_assert_int_eq(rig_value("MPXPI"), 1); /* what is in the first place is as it was */
     ck_assert_int_eq(rig_value("B_POL"), 0);
-    ck_assert_uint_eq(rig.axes, 1u << 3 | 1u << 15);
+    ck_assert_uint_eq(rig.axes, 1u | 1u << 3 | 1u << 15);
     rig_load("DATA\nA BIT 0\nB BIT 0\nDATA_END\n"
              "MODULE_MAIN\nLDR_LIC FeaturePlc9\nWR A\nLDR_LIC FeaturePlc8\nWR B\nMODULE_MAIN_END");
     rig.plc.no_license = 1u << 10;

@@ -30,6 +30,7 @@ START_TEST(the_bad_programs_of_the_specification)
     check_line(" STO DWRD.B_POL", "6: this cell may only be read `DWRD.B_POL'");
     check_line(" WR BLK[0].M3", "5: this bit may only be read `BLK[0].M3'");
     check_line(" LOD DWRD.(DIFCIT_X+64)", "12: this lies outside of the cell `DIFCIT_X+64'");
+    check_line(" T\xC3M 3", "2: unknown instruction `T?M'");
     check_line(" TIM 3", "2: unknown instruction `TIM'");
     check_line(" LDR NIC", "6: there is no cell `NIC'");
     check_line(" JUM X", "6: this section or mechanism has no label `X'");
@@ -131,6 +132,9 @@ START_TEST(sections_are_closed_in_order)
     check_errors("MODULE_INIT 1\nMODULE_INIT_END", "1:1: expected nothing behind `MODULE_INIT'\n");
     check_errors("DATA\nA BIT 0\nMODULE_INIT\nMODULE_INIT_END", "3:1: expected DATA_END before `MODULE_INIT'\n");
     check_errors("DATA\nA BIT 0\n", "1:1: expected DATA_END to close DATA\n");
+    check_errors("DATA\nA DB", "2:5: expected one number that fits\n1:1: expected DATA_END to close DATA\n");
+    check_errors("DATA\nA", "2:1: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `A'\n"
+                            "1:1: expected DATA_END to close DATA\n");
     check_errors("DATA\nDATA\nSTOP\nDATA_END", "2:1: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `DATA'\n"
                                                   "3:1: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `STOP'\n");
     check_errors("DATA\nDATA_END\nDATA_END", "3:1: unknown instruction `DATA_END'\n");
