@@ -9,12 +9,15 @@ random times. Everything has to be equal at the end of each T. Nothing here is t
 import random
 import subprocess
 import sys
+from fractions import Fraction
 
 from cnc872_machine import Block, Machine
 
 MM = 65536000
-SHOWN = "PO_F PO_POL PO_STOP SF_STOP G23ACT BLOCK_RESTART CAPI INPOS STATUS_RESTART TIME_DIST".split()
-NAMES = dict(feed_rapid=["FeedRT"], feed_slow=["FeedSlow"], lag=["Lag"],
+SHOWN = ("PO_F PO_POL PO_STOP SF_STOP G23ACT BLOCK_RESTART CAPI INPOS PO_OSXPI PO_OSYPI PO_OSZPI SM_POXPI SM_POYPI SM_POZPI "
+         "MPX MPY ACK_AUTMAN SF_STOPPOSCHANGED INPOS_STOP SF_LS PRODLEVA SF_RUN SF_BLOCKFINISHED STATUS_RESTART TIME_DIST HOMING "
+         "HOMING_REQ ACT_SPEED_PM").split()
+NAMES = dict(feed=["Feed"], feed_rapid=["FeedRT"], feed_slow=["FeedSlow"], lag=["Lag"],
              acceleration=["Acceleration", "AccelerationRT", "AccelerationEmergency"],
              linear=["LinearAccel", "LinearAccelRT", "LinearAccelEmergency"],
              parabolic=["ParabAccel", "ParabAccelRT", "ParabAccelEmergency"])
@@ -22,7 +25,8 @@ NAMES = dict(feed_rapid=["FeedRT"], feed_slow=["FeedSlow"], lag=["Lag"],
 
 def random_axis(rng):
     few = lambda low, high: [rng.randint(low, high) for _ in range(3)]
-    return dict(feed_rapid=rng.randint(500, 20000), feed_slow=rng.randint(50, 2000), lag=rng.choice((1, 1, 1, 7, 20)),
+    return dict(feed=rng.randint(100, 9000), feed_rapid=rng.randint(500, 20000),
+                feed_slow=rng.randint(50, 2000), lag=rng.choice((1, 1, 1, 7, 20)),
                 acceleration=few(100, 9000), linear=few(100, 9000), parabolic=few(5, 300))
 
 
@@ -38,23 +42,32 @@ def random_program(rng, axes):
     """Blocks, and their text."""
     blocks, text, feed = [], [], rng.randint(100, 9000)
     place = dict.fromkeys(axes, 0)
-    continuous = rng.random() < 0.5
+    continuous, spins = rng.random() < 0.5, rng.random() < 0.3
     for index in range(rng.randint(1, 6)):
         kind = rng.random()
-        g = 0 if kind < 0.15 else 1
+        turns = spins and rng.random() < 0.6
+        g = 0 if kind < 0.15 else 33 if spins and kind < 0.4 else 1
         delay = rng.randint(0, 60) if rng.random() < 0.15 else None
         m = rng.choice((0, 1, 2, 30)) if rng.random() < 0.1 else None
         moved = list(axes)[:1] if kind < 0.7 else rng.sample(list(axes), rng.randint(0, len(axes)))
         step = rng.choice((1, 20, 300, 3000))
         for axis in moved:
             place[axis] += rng.randint(0, step) if continuous and axis == "X" else rng.randint(-step, step)
-        if rng.random() < 0.5:
+        if spins:
+            feed = Fraction(rng.randint(1, 9000), 1000) if turns or g == 33 else rng.randint(100, 9000)
+        elif rng.random() < 0.5:
             feed = rng.randint(100, 9000)
+        spindle = rng.choice((3, 3, 5)) if spins and (index == 0 or rng.random() < 0.2) else None
+        override = rng.choice((48, 49)) if rng.random() < 0.15 else None
         words = [f"G{23 if continuous else 24}"] if index == 0 else []
         words += [f"G{g}"] + [f"{axis}{place[axis] / 1000:.3f}" for axis in moved] if moved else []
-        words += [f"F{feed}", f"M{m}" if m is not None else "", f"G4 P{delay / 1000:.3f}" if delay is not None else ""]
+        words += [f"G{95 if turns else 94}", f"F{float(feed):.3f}", f"M{spindle}" if spindle else "",
+                  f"M{m}" if m is not None else "",
+                  f"G4 P{delay / 1000:.3f}" if delay is not None else ""]
+        words += [f"M{override}"] if override else []
         text.append(" ".join(word for word in words if word))
-        blocks.append(Block(g, {axis: place[axis] * MM // 1000 for axis in moved}, feed, delay, m, continuous))
+        blocks.append(Block(g, {axis: place[axis] * MM // 1000 for axis in moved}, feed, delay, m, continuous,
+                            override, turns, spindle))
     return blocks, text
 
 
@@ -69,22 +82,59 @@ def random_action(rng, axes):
         ("cell", "LIMIT_FEED", rng.randint(-9, 3000000)), ("bit", "LIMIT_FEED_REQ", rng.randint(0, 1)),
         ("cell", "LIMIT_FEED_G00", rng.randint(0, 9000000)), ("bit", "LIMIT_FEED_G00_REQ", rng.randint(0, 1)),
         ("rtm", rng.choice((0, 0, 7))), ("m01", rng.randint(0, 1)), ("single", rng.randint(0, 1)),
-        ("bit", "EXT_PLC", rng.randint(0, 1)), ("bit", "PLC_PASS_DONE", 1)))
+        ("bit", "EXT_PLC", rng.randint(0, 1)), ("bit", "PLC_PASS_DONE", 1), ("cell", "WORD.BZH09", rng.randint(0, 2000)),
+        ("cell", "SIM_SPEED_PT", rng.randint(0, 20000)),
+        ("bit", "REQ_LINEARACCEL", rng.randint(0, 1)), ("cell", "dwAxGLinearAccel", rng.randint(-9, 500000)),
+        *random_manual(rng, axis)))
+
+
+def random_manual(rng, axis):
+    """What moves an axis beside its program."""
+    flag = rng.randint(0, 1)
+    yield from (("bit", name, flag) for name in ("AUTMAN_REQ", "AUTMAN_REQ", "EN_AUTMAN", "REQ_EXT_FEED_AUTMAN",
+                                                 "REQ_EXT_G00_AUTMAN", f"EXM_{axis}0", f"EXM_{axis}0", f"EXM_{axis}1"))
+    yield from (("bit", "REQ_EXT_CONT_AUTMAN", int(rng.random() < 0.8)),
+                ("bit", "REQ_EXT_SELECT_AUTMAN", int(rng.random() < 0.2)),
+                ("cell", "EXT_FEED_AUTMAN", rng.randint(0, 9000)), ("cell", "EXT_FEED_G00_AUTMAN", rng.randint(0, 9000)),
+                ("cell", f"REFPOINT_DIST[{'XYZ'.index(axis)}]", rng.randint(-MM, MM)), ("cell", "HOMING_REQ", rng.randint(0, 7)))
+
+
+def random_excursion(rng, axes):
+    """A stop, the axes are moved or get another position, and the program goes on: how many T's later, and what."""
+    axis, rest, sign = rng.choice(list(axes)), rng.randint(1, 90), rng.randint(0, 1)
+    yield 0, rng.choice((("stop",), ("bit", "STOP_EMERGENCY_REQ", 1)))
+    if rng.random() < 0.3:
+        yield rest, ("cell", f"REFPOINT_DIST[{'XYZ'.index(axis)}]", rng.randint(-MM, MM))
+        yield rest, ("cell", "HOMING_REQ", 1 << "XYZ".index(axis))
+    else:
+        yield from ((rest, ("bit", name, 1)) for name in ("EN_AUTMAN", "AUTMAN_REQ", "REQ_EXT_CONT_AUTMAN", f"EXM_{axis}{sign}"))
+        yield rest, ("bit", "REQ_EXT_SELECT_AUTMAN", 0)
+        if rng.random() < 0.5:
+            names = f"KH{axis}{sign}", f"MP{axis}PI", f"ZP{axis}1", "REQ_EXT_FEED_AUTMAN"
+            yield rest + 5, ("bit", rng.choice(names), rng.randint(0, 1))
+        if rng.random() < 0.3:
+            yield rest + 10, rng.choice((("stop",), ("bit", "STOP_EMERGENCY_REQ", 1), ("bit", f"EXM_{axis}{1 - sign}", 1)))
+        rest += rng.randint(1, 60)
+        yield from ((rest, ("bit", f"EXM_{axis}{one}", 0)) for one in (0, 1))
+        yield rest, ("bit", f"KH{axis}{sign}", 0)
+        rest += rng.randint(20, 100)
+        yield rest, ("bit", "AUTMAN_REQ", 0)
+    yield rest + 2, ("start",)
 
 
 def calm(axes):
     """All back to what lets motions go on."""
     yield from (("bit", name, 0) for name in ("STOPPI", "START_DISABLE", "FEED_OVR", "LIMIT_FEED_REQ", "LIMIT_FEED_G00_REQ",
-                                              "EXT_PLC"))
+                                              "EXT_PLC", "AUTMAN_REQ"))
     yield from (("bit", f"{name[0]}{axis}{name[1]}", value) for axis in axes
                 for name, value in ((("MP", "PI"), 1), (("KH", "0"), 0), (("VAZBA_", ""), 1), (("ZP", "1"), 0)))
-    yield from (("pot", 100), ("cell", "FEED_OVR_MULTIPLIER", 1000), ("rtm", 0))
+    yield from (("pot", 100), ("cell", "FEED_OVR_MULTIPLIER", 1000), ("cell", "SIM_SPEED_PT", 6000), ("rtm", 0))
 
 
 def apply(machine, action):
     kind, *rest = action
     if kind in ("bit", "cell"):
-        machine.cells[rest[0]] = rest[1]
+        machine.cells[rest[0].removeprefix("WORD.")] = rest[1]
     elif kind == "pot":
         machine.pot = rest[0]
     elif kind == "rtm":
@@ -103,11 +153,18 @@ def run_story(rng):
     program, text = random_program(rng, axes)
     machine = Machine(parabolic, axes, program)
     lines = [f"config {write_config(parabolic, axes)}"] + [f"nc {line}" for line in text] + ["power"]
-    wanted, busy, turns = [], rng.choice((20, 60, 200)), rng.randint(100, 1500)
+    wanted, busy, turns, planned = [], rng.choice((20, 60, 200)), rng.randint(100, 1500), {}
+    wanders = rng.choice((0, 0.003, 0.01))
     for turn in range(turns):
         actions = [("start",)] if turn % 97 == 0 or rng.random() < 0.02 else []
+        if turn == 0:
+            actions.append(("cell", "SIM_SPEED_PT", rng.choice((0, 6000, 20000))))
         if turn < turns * 2 // 3 and rng.random() < 1 / busy:
             actions.append(random_action(rng, axes))
+        if rng.random() < wanders:
+            for later, action in random_excursion(rng, axes):
+                planned.setdefault(turn + later, []).append(action)
+        actions += planned.get(turn, [])
         if turn == turns * 2 // 3:
             actions += calm(axes)
         for action in actions:

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: MIT
 """The block machine of the CNC872, without PLC program, from the text of its specification alone (NT2, NB1 to NB8)."""
+from cnc872_manual import Manual
 from cnc872_section import Section
 
 U = 65536
 IDLE, INIT, MOVE, DELAY, DONE = range(5)
 BITS = ("STOPPI STOP_REQ STOP_EMERGENCY_REQ START_DISABLE PO_F PO_POL PO_STOP SF_STOP G23ACT BLOCK_RESTART CAPI FEED_OVR "
-        "LIMIT_FEED_REQ LIMIT_FEED_G00_REQ INPOS EXT_PLC PLC_PASS_DONE").split()
+        "LIMIT_FEED_REQ LIMIT_FEED_G00_REQ INPOS EXT_PLC PLC_PASS_DONE AUTMAN_REQ REQ_EXT_CONT_AUTMAN REQ_EXT_FEED_AUTMAN "
+        "REQ_EXT_G00_AUTMAN ACK_AUTMAN SF_STOPPOSCHANGED SF_LS PRODLEVA SF_RUN SF_BLOCKFINISHED REQ_LINEARACCEL "
+        "REQ_EXT_SELECT_AUTMAN").split()
 
 
 class Block:
-    """g: 0, 1 or None; targets in u by axis; feed in mm/min; delay in ms or None; m: function of group 1 or None."""
+    """g: 0, 1, 33 or None; targets in u by axis; feed in mm/min, or mm/rev if `turns`; delay in ms or None; m: function of
+    group 1 or None; override: 48, 49 or None; spindle: 3, 5 or None."""
 
-    def __init__(self, g, targets, feed, delay=None, m=None, continuous=False):
+    def __init__(self, g, targets, feed, delay=None, m=None, continuous=False, override=None, turns=False, spindle=None):
+        self.override, self.turns, self.spindle = override, turns or g == 33, spindle
         self.g, self.targets, self.feed, self.m, self.continuous = g if targets else None, targets, feed, m, continuous
         self.has_delay, self.delay = delay is not None, delay or 0
 
@@ -21,10 +26,16 @@ class Machine:
         self.parabolic, self.axes, self.program, self.turn = parabolic, axes, program, 0
         self.cells = dict.fromkeys(BITS, 0)
         self.cells.update(FEED_OVR_MULTIPLIER=1000, BZH09=0, LIMIT_FEED=0, LIMIT_FEED_G00=0, TIME_DIST=0, STATUS_RESTART=0,
-                          BZH13=0, SF_STOP=1)
+                          BZH13=0, SF_STOP=1, EN_AUTMAN=1, INPOS_STOP=1, EXT_FEED_AUTMAN=0, EXT_FEED_G00_AUTMAN=0, HOMING=0,
+                          HOMING_REQ=0, dwAxGLinearAccel=0)
         for axis in axes:
             self.cells.update({f"MP{axis}PI": 1, f"VAZBA_{axis}": 1, f"KH{axis}0": 0, f"KH{axis}1": 0, f"ZP{axis}0": 0,
-                               f"ZP{axis}1": 0})
+                               f"ZP{axis}1": 0, f"PO_OS{axis}PI": 0, f"SM_PO{axis}PI": 0, f"EXM_{axis}0": 0, f"EXM_{axis}1": 0,
+                               f"MP{axis}": 1})
+        self.cells.update({f"REFPOINT_DIST[{i}]": 0 for i in range(len(axes))})
+        self.requested, self.block_start, self.stop_place = set(), dict.fromkeys(axes, 0), None
+        self.spins, self.cells["SIM_SPEED_PT"], self.cells["ACT_SPEED_PM"] = False, 0, 0
+        self.override_cancelled, self.manual = False, Manual(self)
         self.position, self.actual = dict.fromkeys(axes, 0), dict.fromkeys(axes, 0)
         self.pot, self.block_by_block, self.m01 = 100, False, False
         self.phase, self.block, self.next, self.section, self.delay = IDLE, None, 0, None, 0
@@ -37,7 +48,7 @@ class Machine:
     def refuses(self):
         cells = self.cells
         return (cells["START_DISABLE"] or not self.program or self.annulment or cells["STOPPI"] or cells["BZH13"] or
-                (self.phase != IDLE and not cells["PO_STOP"]))
+                cells["ACK_AUTMAN"] or (self.phase != IDLE and not cells["PO_STOP"]))
 
     def start(self):
         self.starts = self.starts or not self.refuses()
@@ -58,7 +69,11 @@ class Machine:
         cells, block = self.cells, self.program[self.next]
         self.block, self.next = self.next, self.next + 1
         self.begin_phase(INIT)
-        cells.update(PO_F=1, CAPI=0)
+        cells.update(PO_F=1, CAPI=0, SF_BLOCKFINISHED=0)
+        if block.override:
+            self.override_cancelled = block.override == 48
+        if block.spindle:
+            self.spins = block.spindle == 3
         self.delay = block.delay
         if self.section and self.block > self.section.segments[0].index:
             self.section.now += 1
@@ -66,19 +81,22 @@ class Machine:
             self.section = Section(self, self.block, self.position)
             if not self.section.segments:
                 self.section = None
-        self.reached = self.section is None
+        self.reached, self.block_start = self.section is None, dict(self.position)
         if self.section:
-            cells["PO_POL"] = 0
+            cells["PO_POL"], segment = 0, self.section.segments[self.section.now]
+            self.requested |= set(segment.way)
+            if not cells["REQ_LINEARACCEL"]:
+                cells["dwAxGLinearAccel"] = self.section.linear(segment)
 
     def begin_delay(self):
         if self.delay:
-            self.phase = DELAY
+            self.phase, self.cells["PRODLEVA"] = DELAY, 1
         else:
             self.begin_phase(DONE)
 
     def end_block(self):
         cells, index, section = self.cells, self.block, self.section
-        cells.update(PO_F=0, STATUS_RESTART=0, BLOCK_RESTART=0)
+        cells.update(PO_F=0, STATUS_RESTART=0, BLOCK_RESTART=0, SF_BLOCKFINISHED=1)
         self.phase, self.block = IDLE, None
         if index is None:
             return
@@ -97,6 +115,7 @@ class Machine:
     def confirm_stop(self):
         if not self.cells["PO_STOP"]:
             self.cells.update(PO_STOP=1, SF_STOP=1)
+            self.stop_place = dict(self.position)
             if self.section:
                 self.section.goes = False
 
@@ -118,6 +137,8 @@ class Machine:
         emergency = cells["STOP_EMERGENCY_REQ"]
         self.was_stoppi, self.stop_asked = cells["STOPPI"], False
         cells.update(STOP_REQ=0, STOP_EMERGENCY_REQ=0)
+        if stop or emergency:
+            self.manual.stop(emergency)
         if self.block is None or not (stop or emergency):
             return
         if emergency:
@@ -146,22 +167,32 @@ class Machine:
 
     def advance_block(self):
         if self.phase == INIT and self.passed:
-            if self.reached:
-                self.begin_delay()
-            else:
-                self.section.begin()
-                self.phase = MOVE
+            if not self.reached:
+                self.requested -= set(self.section.segments[self.section.now].way)
+                if not self.section.goes and self.section.is_left():
+                    self.section = Section(self, self.block, self.position)
+                    self.cells["G23ACT"] = self.cells["TIME_DIST"] = 0
+                if self.section.segments:
+                    self.section.begin()
+                    self.phase = MOVE
+                    self.requested |= set(self.section.segments[self.section.now].way)
+                    return
+                self.section, self.reached, self.cells["PO_POL"] = None, True, 1
+            self.begin_delay()
         elif self.phase == DELAY:
             self.delay -= 1
             if self.delay <= 0:
                 self.begin_phase(DONE)
+                self.cells["PRODLEVA"] = 0
         elif self.phase == DONE and self.passed:
             self.end_block()
 
     def run_annulment(self):
-        if self.annulment == 1 and not self.path_moves():
+        if self.annulment == 1 and not self.path_moves() and not self.manual.moving:
             self.annulment = 2
-            self.cells.update(CAPI=1, PO_F=1, PO_STOP=0, BLOCK_RESTART=0, STATUS_RESTART=0, BZH13=0, G23ACT=0, TIME_DIST=0)
+            self.cells.update(CAPI=1, PO_F=1, PO_STOP=0, BLOCK_RESTART=0, STATUS_RESTART=0, BZH13=0, G23ACT=0, TIME_DIST=0,
+                              PRODLEVA=0, SF_BLOCKFINISHED=0)
+            self.requested = set()
             if self.phase not in (INIT, DONE) or self.passed:
                 self.begin_phase(INIT)
             self.block, self.next, self.section, self.stopped, self.was_stop = None, 0, None, False, False
@@ -186,11 +217,23 @@ class Machine:
         if section and section.goes and section.path.rest() > 0:
             section.step(self.find_hold())
             self.v = section.path.v
-            self.position.update(section.place()[0])
+            place, segment = section.place()
+            self.position.update(place)
+            for axis, way in segment.way.items():
+                if self.v > 0:
+                    self.cells[f"SM_PO{axis}PI"] = int(way < 0)
+        if not (section and section.goes):
+            self.manual.move()
         for axis, values in self.axes.items():
             error = self.position[axis] - self.actual[axis]
             if self.cells[f"VAZBA_{axis}"]:
                 self.actual[axis] += error // values["lag"] if error >= 0 else -(-error // values["lag"])
+
+    def override(self):
+        """The two factors of the feed in per mille (NF1)."""
+        if self.override_cancelled:
+            return 1000, 1000
+        return self.cells["BZH09"] if self.cells["FEED_OVR"] else self.pot * 10, self.cells["FEED_OVR_MULTIPLIER"]
 
     def is_near(self, axes):
         return all(abs(self.position[axis] - self.actual[axis]) <= 5 * U for axis in axes)
@@ -204,6 +247,7 @@ class Machine:
                 self.confirm_stop()
             return
         last = section.now + 1 == len(section.segments)
+        self.requested -= set(section.segments[section.now].way)
         if last and not self.is_near(section.axes):
             return
         self.cells["PO_POL"], self.reached = 1, True
@@ -216,6 +260,7 @@ class Machine:
         self.turn += 1
         self.run_pass()
         self.take_stop()
+        self.take_positions()
         if not self.finish_start():
             if not self.stopped:
                 self.advance_block()
@@ -227,4 +272,31 @@ class Machine:
         if self.cells["PO_STOP"] and not self.was_stop:
             self.cells["STATUS_RESTART"] = self.phase
         self.was_stop = self.cells["PO_STOP"]
-        self.cells["INPOS"] = int(self.v == 0 and not self.path_moves() and self.is_near(self.axes))
+        self.show()
+
+    def take_positions(self):
+        """HOMING_REQ (NH1)."""
+        cells = self.cells
+        for i, axis in enumerate(self.axes):
+            moves = (self.phase == MOVE and not cells["PO_STOP"]) or axis in self.manual.moving
+            moves = moves or (self.section and self.section.goes)
+            if cells["HOMING_REQ"] >> i & 1 and not moves:
+                place = cells[f"REFPOINT_DIST[{i}]"]
+                self.actual[axis] += place - self.position[axis]
+                self.position[axis] = self.block_start[axis] = place
+                cells["HOMING_REQ"] &= ~(1 << i)
+                cells["HOMING"] |= 1 << i
+
+    def show(self):
+        """Step 5: status cells (NE2, NE3, NB5, NB6, NA5)."""
+        cells, moves = self.cells, self.v > 0 or self.path_moves() or bool(self.manual.moving)
+        changed = self.stop_place is not None and self.stop_place != self.position
+        cells.update(INPOS=int(not moves and self.is_near(self.axes)), INPOS_STOP=int(not changed),
+                     SF_STOPPOSCHANGED=int(changed and cells["PO_STOP"]),
+                     SF_RUN=int(moves or (self.phase != IDLE and not cells["PO_STOP"])),
+                     SF_LS=int(any(cells[f"KH{axis}{sign}"] for axis in self.axes for sign in "01")))
+        cells["ACT_SPEED_PM"] = cells["SIM_SPEED_PT"] * 1000 // 6 if self.spins else 0
+        for axis in self.axes:
+            cells[f"PO_OS{axis}PI"] = int(axis in self.requested or self.manual.moves(axis))
+            cells[f"MP{axis}"] = int(cells[f"MP{axis}PI"] and not cells[f"KH{axis}0"] and not cells[f"KH{axis}1"] and
+                                     not cells["BZH13"])

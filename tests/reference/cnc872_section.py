@@ -34,6 +34,20 @@ class Section:
             if len(self.segments) == 15 or machine.block_by_block:
                 break
         self.axes = {axis for segment in self.segments for axis in segment.way}
+        self.asked = None
+
+    def is_left(self):
+        """Do axes stand elsewhere than the path has left them, or than it begins?"""
+        place = self.place()[0] if self.path else self.segments[0].start
+        return any(self.machine.position[axis] != place[axis] for axis in self.axes)
+
+    def linear(self, segment):
+        return segment.project(lambda axis: to_acceleration(self.machine.axes[axis]["linear"][NORMAL]))
+
+    def change(self, segment):
+        """ParabAccel along the path, u/T^3."""
+        return min(self.machine.axes[axis]["parabolic"][NORMAL] * 1000 * 65536 / 1e6 * segment.length / abs(way)
+                   for axis, way in segment.way.items())
 
     def goes_on(self, one, two):
         a, b = self.machine.program[one.index], self.machine.program[two.index]
@@ -46,6 +60,8 @@ class Section:
     def set_of(self, which):
         """Acceleration and n of the whole."""
         machine = self.machine
+        if which == NORMAL and self.asked:
+            return self.asked
         key = "linear" if machine.parabolic else "acceleration"
         a = min(segment.project(lambda axis: to_acceleration(machine.axes[axis][key][which])) for segment in self.segments)
         n = 1
@@ -60,13 +76,13 @@ class Section:
     def target(self, segment):
         machine, block = self.machine, self.machine.program[segment.index]
         rapid = segment.project(lambda axis: to_speed(machine.axes[axis]["feed_rapid"]))
-        percent, multiplier = machine.pot * 10, machine.cells["FEED_OVR_MULTIPLIER"]
-        if machine.cells["FEED_OVR"]:
-            percent = machine.cells["BZH09"]
+        percent, multiplier = machine.override()
         if block.g == 0:
             speed, limit = rapid * percent * multiplier // 10**6, "LIMIT_FEED_G00"
         else:
-            speed, limit = block.feed * percent * multiplier * 16384 // (15 * 10**6), "LIMIT_FEED"
+            percent, multiplier = (1000, 1000) if block.g == 33 else (percent, multiplier)
+            turns = machine.cells["ACT_SPEED_PM"] if block.turns else 1000
+            speed, limit = block.feed * percent * multiplier * turns * 16384 // (15 * 10**9), "LIMIT_FEED"
         speed = min(speed, rapid)
         if machine.cells[limit + "_REQ"]:
             speed = min(speed, max(0, machine.cells[limit]))
@@ -88,6 +104,9 @@ class Section:
 
     def begin(self):
         if self.path is None:
+            asked = self.machine.cells["dwAxGLinearAccel"]
+            if self.machine.parabolic and not self.rapid and self.machine.cells["REQ_LINEARACCEL"] and asked > 0:
+                self.asked = asked, max(int(min(1000, max(1, asked / self.change(segment) + 0.5))) for segment in self.segments)
             self.path = Path(self.length, *self.set_of(RAPID if self.rapid else NORMAL))
         self.goes = True
 

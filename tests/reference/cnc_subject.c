@@ -6,8 +6,7 @@
  *     tick                                            one T
  *     end
  *
- * Output of a T: X Y Z, speed, phase, block (-1: none), PO_F PO_POL PO_STOP SF_STOP G23ACT BLOCK_RESTART CAPI INPOS
- * STATUS_RESTART TIME_DIST. */
+ * Output of a T: X Y Z, speed, phase, block (-1: none), the cells of `names` and `numbers` below. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,14 +19,20 @@ static char xml[4000], nc[4000];
 
 static void print_turn(void)
 {
-    static const char *const names[] = {"PO_F", "PO_POL", "PO_STOP", "SF_STOP", "G23ACT", "BLOCK_RESTART", "CAPI", "INPOS"};
+    static const char *const names[] = {"PO_F", "PO_POL", "PO_STOP", "SF_STOP", "G23ACT", "BLOCK_RESTART", "CAPI", "INPOS",
+                                        "PO_OSXPI", "PO_OSYPI", "PO_OSZPI", "SM_POXPI", "SM_POYPI", "SM_POZPI", "MPX", "MPY",
+                                        "ACK_AUTMAN", "SF_STOPPOSCHANGED", "INPOS_STOP", "SF_LS", "PRODLEVA", "SF_RUN",
+                                        "SF_BLOCKFINISHED"};
     for (unsigned i = 0; i < 3; i++)
         printf("%" PRId64 " ", cnc.axis[i].position);
     printf("%" PRId64 " %u %" PRId64, cnc.move.v, cnc.machine.phase,
            cnc.machine.block == CNC_NO_BLOCK ? -1 : (int64_t)cnc.machine.block);
     for (unsigned i = 0; i < sizeof names / sizeof *names; i++)
         printf(" %d", bit(names[i]));
-    printf(" %" PRId64 " %" PRId64 "\n", cell("STATUS_RESTART", 0), cell("TIME_DIST", 0));
+    static const char *const numbers[] = {"STATUS_RESTART", "TIME_DIST", "HOMING", "HOMING_REQ", "ACT_SPEED_PM"};
+    for (unsigned i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        printf(" %" PRId64, cell(numbers[i], 0));
+    putchar('\n');
 }
 
 static void obey(const char *what, const char *name, long long value)
