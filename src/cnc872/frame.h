@@ -32,8 +32,8 @@ static inline void cnc_report_event(struct cnc *cnc, enum cnc_event event, int64
 /* Step 2: a start that has been asked for, with its event (NE4). */
 void cnc_begin_start(struct cnc *cnc);
 
-/* Step 3: STOPPI, STOP_REQ, STOP_EMERGENCY_REQ and the panel's STOP. Returns whether there was one. */
-bool cnc_take_stop(struct cnc *cnc);
+/* Step 3: STOPPI, STOP_REQ, STOP_EMERGENCY_REQ and the panel's STOP. */
+void cnc_take_stop(struct cnc *cnc);
 
 /* Step 3: start, phases, central annulment. */
 void cnc_run_machine(struct cnc *cnc);

@@ -108,7 +108,7 @@ static bool watch_stoppi(struct cnc *cnc)
     return rises;
 }
 
-bool cnc_take_stop(struct cnc *cnc)
+void cnc_take_stop(struct cnc *cnc)
 {
     struct cnc_machine *machine = &cnc->machine;
     const bool emergency = cnc_is_set(cnc, CNC_BIT_STOP_EMERGENCY_REQ);
@@ -117,19 +117,18 @@ bool cnc_take_stop(struct cnc *cnc)
     cnc_set(cnc, CNC_BIT_STOP_REQ, false);
     cnc_set(cnc, CNC_BIT_STOP_EMERGENCY_REQ, false);
     if (!stop && !emergency)
-        return false;
+        return;
     if (machine->start == CNC_START_WAITS && cnc_is_set(cnc, CNC_BIT_START_SUSPEND))
         refuse(cnc, CNC_STOPPED);
     cnc_stop_manual(cnc, emergency);
     cnc_stop_references(cnc, emergency);
     if (machine->block == CNC_NO_BLOCK)
-        return true;
+        return;
     if (emergency)
         machine->stop = CNC_HOLD_EMERGENCY;
     else if (!machine->is_stopped)
         machine->stop = CNC_HOLD_STOP;
     machine->is_stopped = true;
-    return true;
 }
 
 void cnc_stop(struct cnc *cnc)

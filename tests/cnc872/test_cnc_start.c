@@ -258,6 +258,8 @@ START_TEST(a_restart_from_elsewhere_after_a_stop_in_the_first_pass)
     run_to(11);
     ck_assert_int_eq(cnc.axis[0].position, 4 * MM);
     start_in(12);
+    run_to(14);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_Cont, 0), 1);
     run_to(1000);
     ck_assert(bit("SF_STOP"));
     ck_assert_int_eq(at(1000).x, 10 * MM);

@@ -1,0 +1,392 @@
+/* SPDX-License-Identifier: MIT */
+/* What single clauses of docs/CNC872.md demand beside the worked examples: borders of ranges, other axes than X, second times. */
+#include <string.h>
+
+#include "cnc_rig.h"
+
+static void start_in(uint64_t turn)
+{
+    run_to(turn - 1);
+    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
+}
+
+static void stand_at(unsigned axis, int64_t position)
+{
+    cnc.axis[axis].position = cnc.axis[axis].actual = position;
+}
+
+/* ---- Enabling, limits, positions ---------------------------------------------------------------------------------------- */
+
+START_TEST(NE1_axes_not_in_the_block_do_not_matter)
+{
+    rig_begin("G1 X1 F1000");
+    set_bit("MPYPI", false);
+    set_bit("KHZ1", true);
+    run_to(200);
+    ck_assert_uint_eq(first_end(1), 95);
+    rig_begin("G1 Y1 F1000");
+    set_bit("KHX0", true);
+    run_to(200);
+    ck_assert_uint_eq(first_end(1), 95);
+}
+END_TEST
+
+START_TEST(NM9_limit_switches_of_every_axis)
+{
+    static const char *const names[] = {"KHX0", "KHX1", "KHY0", "KHY1", "KHZ0", "KHZ1"};
+    for (unsigned i = 0; i < 6; i++) {
+        rig_begin(i < 2 ? "G1 X1 F1000" : i < 4 ? "G1 Y1 F1000" : "G1 Z1 F1000");
+        set_bit(names[i], true);
+        run_to(100);
+        ck_assert_int_eq(at(100).x + at(100).y + at(100).z, 0);
+        ck_assert(bit("SF_LS") && bit("PO_F"));
+        set_bit(names[i], false);
+        run_to(300);
+        ck_assert_int_eq(at(300).x + at(300).y + at(300).z, MM);
+    }
+}
+END_TEST
+
+START_TEST(NH4_software_limits_of_another_axis)
+{
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"Y\" SlsMinus=\"0\" SlsPlus=\"5\"/></ChannelConfig>",
+                   "G1 Y10 F1000");
+    set_cell("HOMING", 0, 2);
+    set_cell("SLS_REFER", 0, 2);
+    run_to(600);
+    ck_assert(bit("SF_SLS") && !bit("MPY") && bit("MPX"));
+    ck_assert_int_ge(at(600).y, 5 * MM);
+    ck_assert_int_lt(at(600).y, 5 * MM + MM / 10);
+    cnc_reset(&cnc);
+    run_to(610);
+    stand_at(1, 0); /* at the limit: - is forbidden, + is not */
+    set_bit("AUTMAN_REQ", true);
+    cnc.panel.jog_minus = 2;
+    run_to(700);
+    ck_assert_int_eq(at(700).y, 0);
+    cnc.panel.jog_minus = 0;
+    cnc.panel.jog_plus = 2;
+    run_to(710);
+    ck_assert_int_gt(at(710).y, 0);
+}
+END_TEST
+
+/* NS2: rounded down, also below 0; seven axes: only the first six have these cells. */
+START_TEST(NS2_eighths_of_a_micrometre_below_0)
+{
+    rig_power("<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"7\"/></ChannelConfig>", NULL);
+    stand_at(0, -1);
+    stand_at(6, 100 * MM);
+    run_to(1);
+    ck_assert_int_eq(cell("B_POL", 0) + cell("B_INK", 0), -1);
+    ck_assert_int_eq(cell("B_POL_EX", 6) + cell("B_INK_EX", 6), 100 * MM);
+    stand_at(0, -8192);
+    run_to(2);
+    ck_assert_int_eq(cell("B_POL", 0) + cell("B_INK", 0), -1);
+    stand_at(0, 0);
+    run_to(3);
+    ck_assert_int_eq(cell("B_POL", 0) + cell("B_INK", 0), 0);
+}
+END_TEST
+
+START_TEST(NM6_a_way_of_one_unit)
+{
+    rig_begin("G1 X1 Y1 Z-1 F1000");
+    stand_at(1, MM - 1);
+    stand_at(2, -MM + 1);
+    run_to(300);
+    ck_assert_int_eq(at(300).y, MM);
+    ck_assert_int_eq(at(300).z, -MM);
+    ck_assert_int_eq(at(300).x, MM);
+}
+END_TEST
+
+START_TEST(NJ4_switches_go_by_the_actual_position)
+{
+    static const struct cnc_switch switches[] = {{.place = CNC_BIT_KRx, .axis = 0, .has_at_least = true, .at_least = MM / 2}};
+    rig_power("<ChannelConfig><Axis Name=\"X\" Lag=\"50\" MaxDifference=\"1000\"/></ChannelConfig>", "G1 X1 F1000");
+    cnc.switches = switches;
+    cnc.switch_count = 1;
+    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
+    for (bool was_there = false; cnc.turn < 400; was_there = cnc.axis[0].actual >= MM / 2) {
+        run_to(cnc.turn + 1);
+        ck_assert_int_eq(bit("KRX"), was_there);
+    }
+    ck_assert(bit("KRX"));
+}
+END_TEST
+
+START_TEST(NB6_switches_of_the_panel_are_shown_one_by_one)
+{
+    static const char *const names[] = {"SF_CONDSTOPMODE", "SF_BLOCKBYBLOCK", "SF_INDICATIONMODE", "SF_SIMULATIONMODE",
+                                        "SF_HIGHSPEEDMODE"};
+    rig_power(NULL, NULL);
+    bool *const switches[] = {&cnc.panel.m01, &cnc.panel.block_by_block, &cnc.panel.indication, &cnc.panel.simulation,
+                              &cnc.panel.high_speed};
+    for (unsigned i = 0; i < 5; i++) {
+        *switches[i] = true;
+        run_to(cnc.turn + 1);
+        for (unsigned k = 0; k < 5; k++)
+            ck_assert_int_eq(bit(names[k]), k == i);
+        *switches[i] = false;
+    }
+    ck_assert(!bit("SF_RUN") && !bit("SF_STOP") && !bit("SF_BACKWARD"));
+}
+END_TEST
+
+/* NS5: a critical error is reported once. */
+START_TEST(NS5_the_event_of_a_critical_error)
+{
+    rig_power(NULL, NULL);
+    set_cell("WORD.BZH09", 0, 0x0707);
+    cnc_set_critical(&cnc, 7);
+    cnc_set_critical(&cnc, 7);
+    ck_assert_uint_eq(count_events(CNC_EVENT_CRITICAL), 1);
+    cnc_set_critical(&cnc, 8);
+    ck_assert_uint_eq(count_events(CNC_EVENT_CRITICAL), 2);
+    ck_assert_int_eq(last_event(CNC_EVENT_CRITICAL), 8);
+    cnc_set_critical(&cnc, 0);
+    ck_assert_uint_eq(count_events(CNC_EVENT_CRITICAL), 2);
+}
+END_TEST
+
+/* ---- Restarts ----------------------------------------------------------------------------------------------------------- */
+
+/* NM6, NH1: an axis gets its position while INIT has not been passed. */
+START_TEST(NM6_an_axis_that_stands_at_its_target_meanwhile)
+{
+    for (unsigned both = 0; both < 2; both++) {
+        rig_begin(both ? "G1 X10 Y1 F1000" : "G1 X10 F1000");
+        run_to(1);
+        ck_assert(bit("PO_OSXPI") && !bit("PO_POL"));
+        cnc_stop(&cnc);
+        run_to(5);
+        set_cell("REFPOINT_DIST", 0, 10 * MM);
+        set_cell("HOMING_REQ", 0, 1);
+        start_in(7);
+        run_to(8);
+        ck_assert(!bit("PO_OSXPI") && !bit("PO_OSX"));
+        ck_assert_int_eq(bit("PO_POL"), !both);
+        ck_assert_int_eq(bit("PO_OSYPI"), both);
+        run_to(300);
+        ck_assert(bit("SF_STOP") && !bit("PO_F") && bit("PO_POL"));
+        ck_assert_int_eq(at(300).x, 10 * MM);
+        ck_assert_int_eq(at(300).y, both ? MM : 0);
+    }
+}
+END_TEST
+
+/* NB7: what of the closing pass is left has to be passed. */
+START_TEST(NB7_a_restart_in_a_closing_pass_that_waits)
+{
+    rig_begin_plc(NULL, "M8\nM9", "DATA\nOUT BIT 0\nDATA_END\nMODULE_BLOCK_DONE\n LDR OUT\n EX0\nMODULE_BLOCK_DONE_END\n");
+    run_to(10);
+    cnc_stop(&cnc);
+    run_to(20);
+    ck_assert(bit("PO_STOP"));
+    ck_assert_int_eq(cell("STATUS_RESTART", 0), CNC_DONE);
+    start_in(21);
+    run_to(30);
+    ck_assert(bit("PO_F") && bit("M08PI") && !bit("PO_STOP"));
+    set_bit("OUT", true);
+    run_to(31);
+    ck_assert_uint_eq(cnc.machine.block, 1);
+}
+END_TEST
+
+START_TEST(NQ2_a_choice_counts_once)
+{
+    rig_power(NULL, "M3\nM8\nM5");
+    ck_assert_int_eq(cnc_select(&cnc, 1, false), CNC_OK);
+    start_in(1);
+    run_to(20);
+    ck_assert(bit("SF_STOP") && !bit("M08PI"));
+    start_in(21);
+    run_to(23);
+    ck_assert_uint_eq(cnc.machine.block, 1);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_SelBlock, 0), 0);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_TchlOff, 0), 0);
+    ck_assert(bit("M08PI"));
+}
+END_TEST
+
+START_TEST(NQ2_Cont_by_where_the_chosen_block_begins)
+{
+    rig_power(NULL, "G1 X1 F1000\nG1 X2 Y1\nG1 X3");
+    ck_assert_int_eq(cnc_select(&cnc, 2, true), CNC_OK);
+    stand_at(0, 2 * MM);
+    stand_at(1, 1 * MM);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_Cont, 0), 0);
+    stand_at(1, 0);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_Cont, 0), 1);
+    stand_at(1, 1 * MM);
+    stand_at(0, 1 * MM); /* where the block before it begins */
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_Cont, 0), 1);
+}
+END_TEST
+
+/* ---- Sections ----------------------------------------------------------------------------------------------------------- */
+
+START_TEST(NM8_a_section_of_fifteen_blocks)
+{
+    rig_begin("G23 G1 X1 F1000\nX2\nX3\nX4\nX5\nX6\nX7\nX8\nX9\nX10\nX11\nX12\nX13\nX14\nX15\nX16\nX17");
+    run_to(20);
+    ck_assert_double_gt(cnc_queue_real(&cnc, 14, CNC_QUEUE_FeedCriterial, 0), 999);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 15, CNC_QUEUE_FeedCriterial, 0), 0);
+    const uint64_t end = 20 + (uint64_t)cell("TIME_DIST", 0);
+    run_to(end);
+    ck_assert_int_eq(at(end).x, 15 * MM);
+    ck_assert_int_lt(at(end - 1).x, 15 * MM);
+    run_to(2000);
+    ck_assert_int_eq(at(2000).x, 17 * MM);
+    ck_assert(bit("SF_STOP"));
+}
+END_TEST
+
+START_TEST(NM8_TIME_DIST_stands_in_a_hold)
+{
+    rig_begin("G23 G1 X10 F1000\nX20");
+    run_to(100);
+    set_bit("MPXPI", false);
+    run_to(101);
+    const int64_t time = cell("TIME_DIST", 0);
+    ck_assert_int_gt(time, 1000);
+    run_to(200);
+    ck_assert_int_eq(cell("TIME_DIST", 0), time);
+    ck_assert(bit("G23ACT"));
+    set_bit("MPXPI", true);
+    run_to(201);
+    const uint64_t end = 201 + (uint64_t)cell("TIME_DIST", 0);
+    run_to(end);
+    ck_assert_int_eq(at(end).x, 20 * MM);
+}
+END_TEST
+
+/* The same angle as in cnc_block, exactly 984 807 / 1 000 000, between ways whose products have all their digits. */
+START_TEST(NM8_the_angle_in_all_its_digits)
+{
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"Y\"/><Axis Name=\"Z\"/><Axis Name=\"4\"/><Axis Name=\"5\"/>"
+                   "</ChannelConfig>", "G23 G1 X1 F100\nX2");
+    static const int64_t b[] = {984807, 173651, 709, 13, 10};
+    for (int64_t more = -1; more <= 1; more++) {
+        int64_t values[16] = {16777213}; /* of X in the first block, then of the second one */
+        for (unsigned i = 0; i < 5; i++)
+            values[1 + i] = b[i] * 16777259 + (i == 0 ? 16777213 + more : 0);
+        struct cnc_nc_block blocks[] = {program.blocks[0], program.blocks[1]};
+        blocks[0].values = 0;
+        blocks[1].values = 1;
+        blocks[1].axes = 0x1F;
+        const struct cnc_nc_program own = {.blocks = blocks, .values = values, .block_count = 2, .value_count = 6};
+        const int64_t place[CNC_AXES] = {0};
+        struct cnc_section section;
+        cnc_section_build(&section, &config, &own, 0, place, false);
+        ck_assert_uint_eq(section.count, more >= 0 ? 2 : 1);
+    }
+}
+END_TEST
+
+/* ---- Feed, gears, functions, manual moves ------------------------------------------------------------------------------- */
+
+START_TEST(NF4_the_slowest_spindle_there_is)
+{
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\"/><Gear No=\"1\" MaxSpeed=\"0.001\"/></ChannelConfig>",
+                   "M3 S0.001\nG95 G1 X10 F1000000");
+    run_to(100);
+    ck_assert_int_eq(cell("ACT_SPEED_PM", 0), 1);
+    ck_assert_int_eq(top_speed(), 1092266);
+}
+END_TEST
+
+START_TEST(NF5_a_gear_leaves_the_functions_of_other_groups)
+{
+    rig_begin("M7\nM41\nM44");
+    run_to(4);
+    ck_assert(bit("M07PI") && bit("M41PI"));
+    run_to(20);
+    ck_assert(bit("M07PI") && bit("M44PI") && !bit("M41PI"));
+}
+END_TEST
+
+START_TEST(NQ1_fields_of_other_values)
+{
+    rig_begin("G23 G1 X3 F1000\nG24 X4 M100\nX5");
+    run_to(1);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 0, CNC_QUEUE_ContinuousMode, 0), 1);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_ContinuousMode, 0), 0);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_RevFeed, 0), 0);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_ConstCutSpeed, 0), 0);
+    ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_M, 14), 0x100);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 0, CNC_QUEUE_AxNC, 0), 3);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 1, CNC_QUEUE_AxNC, 0), 4);
+    ck_assert_double_eq(cnc_queue_real(&cnc, 2, CNC_QUEUE_AxNC, 0), 5);
+}
+END_TEST
+
+START_TEST(NA4_after_an_emergency_stop_an_axis_moves_again)
+{
+    rig_power(NULL, NULL);
+    set_bit("AUTMAN_REQ", true);
+    cnc.panel.jog_plus = 1;
+    run_to(50);
+    set_bit("STOP_EMERGENCY_REQ", true);
+    run_to(200);
+    const int64_t x = at(200).x;
+    ck_assert_int_eq(at(199).x, x);
+    cnc.panel.jog_plus = 0;
+    run_to(201);
+    cnc.panel.jog_plus = 1;
+    run_to(203);
+    ck_assert_int_eq(at(203).x - x, 32768 + 65536);
+}
+END_TEST
+
+START_TEST(NE3_the_slowest_manual_move_is_a_motion)
+{
+    rig_power(NULL, NULL);
+    set_bit("AUTMAN_REQ", true);
+    set_bit("REQ_EXT_FEED_AUTMAN", true);
+    set_cell("EXT_FEED_AUTMAN", 0, 1);
+    set_cell("FEED_OVR_MULTIPLIER", 0, 1);
+    cnc.panel.jog_minus = 2;
+    run_to(10);
+    ck_assert_int_eq(at(10).y, -10); /* 1.09 u/T, rounded down */
+    ck_assert(bit("PO_OSYPI") && bit("SM_POYPI") && !bit("INPOS"));
+}
+END_TEST
+
+static Suite *clauses_suite(void)
+{
+    Suite *suite = suite_create("cnc_clauses");
+    TCase *clauses = tcase_create("clauses");
+    tcase_add_test(clauses, NE1_axes_not_in_the_block_do_not_matter);
+    tcase_add_test(clauses, NM9_limit_switches_of_every_axis);
+    tcase_add_test(clauses, NH4_software_limits_of_another_axis);
+    tcase_add_test(clauses, NS2_eighths_of_a_micrometre_below_0);
+    tcase_add_test(clauses, NM6_a_way_of_one_unit);
+    tcase_add_test(clauses, NJ4_switches_go_by_the_actual_position);
+    tcase_add_test(clauses, NB6_switches_of_the_panel_are_shown_one_by_one);
+    tcase_add_test(clauses, NS5_the_event_of_a_critical_error);
+    tcase_add_test(clauses, NM6_an_axis_that_stands_at_its_target_meanwhile);
+    tcase_add_test(clauses, NB7_a_restart_in_a_closing_pass_that_waits);
+    tcase_add_test(clauses, NQ2_a_choice_counts_once);
+    tcase_add_test(clauses, NQ2_Cont_by_where_the_chosen_block_begins);
+    tcase_add_test(clauses, NM8_a_section_of_fifteen_blocks);
+    tcase_add_test(clauses, NM8_TIME_DIST_stands_in_a_hold);
+    tcase_add_test(clauses, NM8_the_angle_in_all_its_digits);
+    tcase_add_test(clauses, NF4_the_slowest_spindle_there_is);
+    tcase_add_test(clauses, NF5_a_gear_leaves_the_functions_of_other_groups);
+    tcase_add_test(clauses, NQ1_fields_of_other_values);
+    tcase_add_test(clauses, NA4_after_an_emergency_stop_an_axis_moves_again);
+    tcase_add_test(clauses, NE3_the_slowest_manual_move_is_a_motion);
+    suite_add_tcase(suite, clauses);
+    return suite;
+}
+
+int main(void)
+{
+    SRunner *runner = srunner_create(clauses_suite());
+    srunner_run_all(runner, CK_NORMAL);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed == 0 ? 0 : 1;
+}
