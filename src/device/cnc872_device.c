@@ -319,6 +319,10 @@ static int set_text(struct device_unit *unit, unsigned number, const char *text,
         snprintf(error, DEVICE_ERROR_SIZE, "the NC program is wrong");
         return 1;
     }
+    if (text && device->cnc.machine.start != 0) {
+        snprintf(error, DEVICE_ERROR_SIZE, "another NC program has just been started: expected one");
+        return 2;
+    }
     if (text && !cnc_load_program(device, program, &refusal)) {
         snprintf(error, DEVICE_ERROR_SIZE, "%s", refusal.text);
         return 2;

@@ -111,6 +111,14 @@ test_NU1_exec_reports_a_stop_once() {
     same "rkm04 exec: motor 1: the program is stopped: START makes it go on" "$complained" "a stop that the PLC program makes"
 }
 
+test_NU1_exec_runs_one_nc_program() {
+    printf 'G1 X1 F1000\n' >"$folder/a.nc"
+    printf 'G1 Y1 F1000\n' >"$folder/b.nc"
+    exits 1 "$RKM04" exec --device cnc872 "$folder/a.nc" "$folder/b.nc"
+    holds "$complained" "b.nc: error: another NC program has just been started" "the second one"
+    holds "$said" "1000  idle" "the first one"
+}
+
 test_NU1_what_is_about_a_bus_is_refused() {
     local option
     for option in "--link $folder/l" "--tcp 127.0.0.1:0" "--rfc2217 127.0.0.1:0" "--port /dev/null" "--wire $folder/w.log" \
