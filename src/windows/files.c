@@ -25,9 +25,12 @@ static int fail(void)
         errno = ENOENT;
         break;
     case ERROR_ACCESS_DENIED:
-    case ERROR_SHARING_VIOLATION:
     case ERROR_WRITE_PROTECT:
         errno = EACCES;
+        break;
+    case ERROR_SHARING_VIOLATION:
+    case ERROR_LOCK_VIOLATION:
+        errno = EBUSY;
         break;
     case ERROR_FILE_EXISTS:
     case ERROR_ALREADY_EXISTS:

@@ -18,13 +18,12 @@ static bool leads_somewhere(char *path)
     char *last = strrchr(path, '\\');
     if (!last || last == path || (last == path + 1 && path[0] == '\\')) /* `\' and `\\' are program texts, too */
         return false;
-    DWORD there = GetFileAttributesA(path);
-    if (there == INVALID_FILE_ATTRIBUTES) {
-        *last = '\0';
-        there = GetFileAttributesA(path);
-        *last = '\\';
-    }
-    return there != INVALID_FILE_ATTRIBUTES;
+    struct stat found;
+    bool there = stat(path, &found) == 0;
+    *last = '\0';
+    there = there || stat(path, &found) == 0;
+    *last = '\\';
+    return there;
 }
 
 /* The path in an argument: FILE, --option=FILE, M=FILE, NAME=FILE, --option=NAME=FILE. NULL: there is none with a \ in it. */

@@ -14,7 +14,8 @@ char *windows_strerror(int error)
         const char *text;
     } texts[] = {{ECONNREFUSED, "Connection refused"}, {ECONNRESET, "Connection reset by peer"}, {EWOULDBLOCK, "Try again"},
                  {EAFNOSUPPORT, "Not in Windows"},     {ETIMEDOUT, "Connection timed out"},
-                 {ENODEV, "Windows has a device of this name"}};
+                 {ENODEV, "Windows has a device of this name"},
+                 {EBUSY, "another program has it open"}};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
         if (texts[i].error == error)
             return (char *)(uintptr_t)texts[i].text;

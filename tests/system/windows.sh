@@ -119,6 +119,11 @@ test_files_beside_a_scenario_are_found_by_backslashes_and_may_have_CRLF() {
             holds "$said" "pass " "the result of $file"
         done
     done
+    local long
+    long=$(printf 'x%.0s' {1..90})
+    mkdir -p "$long/$long/$long"
+    cp "kůň 1"/linear-axis* "$long/$long/$long"
+    exits 0 exe test "$long\\$long\\$long\\linear-axis.yaml"
     exits 0 exe check --config="kůň 2\\mill.xml" "kůň 2\\mill.plc" "kůň 2\\part.nc"
     exits 1 exe exec --device pmc-1hs --device-option "program=kůň 1\\none.pmc" -
     holds "$complained" "kůň 1/none.pmc" "the message"

@@ -100,6 +100,27 @@ test_fmt_diff_runs_diff_with_names_and_texts() {
     same "$(<before)" "$(grep -v '^after$' after)" "the folder, in which nothing is left"
 }
 
+test_a_file_that_another_program_has_open_is_reported() {
+    local arguments
+    stand_in holder 'for (int i = 1; i < argc; i++)
+            if (_sopen(argv[i], _O_RDWR | _O_CREAT, 0x10 /* _SH_DENYRW */, 0600) < 0) return 1;
+        puts("open"); fflush(stdout);
+        return getchar();'
+    cd "$folder" || fail "cd"
+    mkfifo until
+    wine_in "$prefix" bin/holder.exe held.rks held.csv held.flash <until >holder.out 2>holder.err &
+    processes+=($!)
+    exec 3>until
+    soon "the files are open" grep -qs open holder.out
+    printf 'F5 R' >p.rks
+    for arguments in "exec held.rks" "check held.rks" "exec --trace held.csv p.rks" "serve --tcp 0 --flash held.flash"; do
+        # shellcheck disable=SC2086
+        exits 1 exe $arguments
+        holds "$complained" ": another program has it open" "the message of $arguments"
+    done
+    exec 3>&-
+}
+
 test_without_diff_and_rsvg_convert_the_message_says_so() {
     cd "$folder" || fail "cd"
     printf 'F5 R' >p.rks
