@@ -79,6 +79,7 @@ test_cells_that_change_without_motion_are_seen_soon() {
     export RKMCTL
     show_cnc cncnews
 }
+test_a_curve_is_level_while_nothing_changes() { show_cnc cnclevel; }
 test_an_emulator_of_a_CNC872_that_comes_again_shows_what_it_has() {
     export RKM04 RKMCTL
     printf 'MODULE_MAIN\nMECH_BEGIN WAIT\n EX\nMECH_END WAIT\nMODULE_MAIN_END\n' >"$folder/wait.plc"

@@ -7,6 +7,16 @@ const PART_MS = 150; // what comes within one part is drawn as its first, lowest
 const COLOURS = 4;
 const DASHES = [[], [6, 3], [2, 2], [8, 3, 2, 3]];
 
+const QUIET_MS = 300; // of real time: a value that has not come for so long has not changed
+const ROUND_MS = 50; // about so long before a new value the old one has been read
+
+// Those there are: they are drawn in the colours of the page.
+const graphs = new Set();
+addEventListener("theme", () => {
+  for (const graph of graphs)
+    graph.canvas.isConnected ? graph.draw() : graphs.delete(graph);
+});
+
 const round = (value) => Math.round(value * 1000) / 1000;
 
 export class Graph {
@@ -18,6 +28,7 @@ export class Graph {
     this.titles = []; // of the bands
     this.wanted = false;
     this.inSight = false;
+    graphs.add(this);
     new ResizeObserver(() => this.draw()).observe(canvas);
     new IntersectionObserver((entries) => {
       this.inSight = entries.at(-1).isIntersecting;
@@ -41,14 +52,19 @@ export class Graph {
     const list = this.parts[band][motor];
     if (list.length > 0 && time < list.at(-1).time)
       list.length = 0; // a restored snapshot: another past
-    const last = list.at(-1);
+    const before = list.at(-1), now = performance.now(), quiet = before ? now - before.real : 0;
+    if (quiet > QUIET_MS && time > before.time) // a part of its own: the old value up to shortly before the new one
+      list.push({ begin: before.time, time: time - (time - before.time) * ROUND_MS / quiet, real: now, first: before.last,
+        low: before.last, high: before.last, last: before.last });
+    const last = quiet > QUIET_MS ? null : before;
     if (last && time < last.begin + PART_MS) {
       last.low = Math.min(last.low, value);
       last.high = Math.max(last.high, value);
       last.last = value;
       last.time = time;
+      last.real = now;
     } else {
-      list.push({ begin: time, time, first: value, low: value, high: value, last: value });
+      list.push({ begin: time, time, real: now, first: value, low: value, high: value, last: value });
     }
     while (list.length > 2 && list[1].time < time - SPAN_MS)
       list.shift();

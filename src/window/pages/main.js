@@ -41,6 +41,7 @@ const system = matchMedia("(prefers-color-scheme: dark)");
 function showTheme() {
   const dark = $("theme").value === "dark" || ($("theme").value === "auto" && system.matches);
   document.documentElement.dataset.theme = dark ? "dark" : "light";
+  dispatchEvent(new Event("theme"));
 }
 system.onchange = showTheme;
 $("theme").value = remembered("theme") ?? "auto";

@@ -169,6 +169,9 @@ export const cases = {
     await page.fill(".program textarea", "G1 X1 F1000\n(č) Q7\n");
     await button(page, "Load").click();
     await result("program.nc:2:6: error: ");
+    const colour = (selector) => page.locator(selector).evaluate((element) => getComputedStyle(element).color);
+    await page.selectOption("#theme", "light");
+    assert.equal(await colour(".program p[role=status]"), "rgb(163, 18, 15)", "what is wrong is red");
     await button(page, "Show the place").click();
     assert.equal(await page.evaluate(() => getSelection().toString() || document.activeElement.value.slice(
       document.activeElement.selectionStart, document.activeElement.selectionEnd)), "Q");
@@ -302,6 +305,25 @@ export const cases = {
     assert.ok(times.sort((a, b) => a - b)[7] <= 300 || loadavg()[0] > cpus().length, "seen late");
   },
 
+  // A value that does not change for a while is drawn level, up to its change.
+  async cnclevel(page) {
+    await shows(page, ".axes td", "element.textContent === 'X'");
+    const values = await page.evaluate(async () => {
+      const { Graph } = await import("./graph.js");
+      const graph = new Graph(document.createElement("canvas"), 1, 1), clock = performance.now;
+      const add = (real, time, value) => {
+        performance.now = () => real;
+        graph.add(0, 0, time, value);
+      };
+      add(0, 1000, 5);
+      add(400, 9000, 7);
+      add(450, 9050, 8);
+      performance.now = clock;
+      return graph.parts[0][0].map(({ begin, time, first, last }) => [begin, time, first, last]);
+    });
+    assert.deepEqual(values, [[1000, 1000, 5, 5], [1000, 8000, 5, 5], [9000, 9050, 7, 8]]);
+  },
+
   // The emulator ends, and comes again with a PLC program: what was typed stays, what it has is shown. A stop that nobody
   // answers is no stop.
   async cncloss(page) {
@@ -354,6 +376,11 @@ export const cases = {
       again = await picture();
     } while (again !== all);
     assert.notEqual(without, all);
+    // Another theme: the curves have its colours at once.
+    const light = await picture();
+    await page.selectOption("#theme", "dark");
+    assert.notEqual(await picture(), light);
+    await page.selectOption("#theme", "auto");
     for (const [width, height] of [[390, 844], [1280, 800], [1920, 1080]]) {
       await page.setViewportSize({ width, height });
       const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
