@@ -70,3 +70,17 @@ def test_there_is_no_host():
             bus.host.write(b"\x04")
         with pytest.raises(ValueError, match="the device cnc872 has no bus"):
             bus.exchange(1, b"\x04")
+
+
+def test_a_long_program_is_in_a_snapshot(tmp_path):
+    with rkm04.Bus(device="cnc872") as bus:
+        bus.call("cnc.load", text="G1 X1 F1000\nG1 X0 F1000\n" * 100_000)  # 2.4 MB
+        bus.call("cnc.panel", start=True)
+        bus.snapshot(file=str(tmp_path / "long"))
+        bus.advance("100ms")
+        position = bus.unit(1).motor(1).position
+        assert position > 0
+        bus.restore(file=str(tmp_path / "long"))
+        assert bus.unit(1).motor(1).position == 0
+        bus.advance("100ms")
+        assert bus.unit(1).motor(1).position == position

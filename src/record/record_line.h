@@ -9,8 +9,7 @@
 
 #define RECORD_VERSION 1
 #define RECORD_SPAN UINT64_C(100000)       /* ticks from digest to digest */
-#define RECORD_HEAD_MAX (128u << 20)       /* bytes of the first line, which has the texts of the device's files */
-#define RECORD_LINE_MAX (2u << 20)         /* bytes of any other */
+#define RECORD_LINE_MAX (128u << 20)       /* bytes: the head has whole files, of 50 MiB together, perhaps as hexadecimal */
 #define RECORD_EMBEDDED_MAX (16u << 20)    /* bytes of a file within a recording, and of the journal */
 
 /* The configuration, flash and plant: `outputs` says whether what goes out will be recorded, too. Returns false if memory is

@@ -108,7 +108,7 @@ static bool read_own(struct replay *replay, struct device_config *config)
         char *text;
         snprintf(hex_name, sizeof hex_name, "%s_hex", *name);
         if (json_object_get(replay->lines.json, hex_name)) {
-            if (!replay_text_of(replay, *name, RECORD_HEAD_MAX, &text))
+            if (!replay_text_of(replay, *name, RECORD_LINE_MAX, &text))
                 return false;
             json_object_set_new_nocheck(replay->head.settings, *name, json_string_nocheck(text));
             free(text);

@@ -93,10 +93,9 @@ static bool read_line(struct replay *replay)
     int c;
     replay->lines.length = 0;
     replay->lines.count++;
-    const size_t most = replay->lines.count == 1 ? RECORD_HEAD_MAX : RECORD_LINE_MAX;
     while ((c = getc_unlocked(replay->lines.in)) != EOF && c != '\n') {
-        if (replay->lines.length == most)
-            return wrong_at(replay, most, "expected a line of at most %zu bytes", most);
+        if (replay->lines.length == RECORD_LINE_MAX)
+            return wrong_at(replay, RECORD_LINE_MAX, "expected a line of at most %u bytes", RECORD_LINE_MAX);
         if (!make_room(replay))
             return false;
         replay->lines.line[replay->lines.length++] = (char)c;

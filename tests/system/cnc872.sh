@@ -198,7 +198,7 @@ test_options_may_come_in_any_order() {
     holds "$said" '"PO_STOP":1' "the switch stops the axis"
 }
 
-# Texts that are not UTF-8, and together longer than a line of a recording may be otherwise.
+# Texts that are not UTF-8, of some MiB together.
 test_a_recording_has_the_files_of_its_machine() {
     local name
     { printf '<?xml version="1.0"?>\n<!-- h\341lka %0900000d -->\n' 0; sed 1d "$example/mill.xml"; } >"$folder/a.xml"
