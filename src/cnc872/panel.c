@@ -77,11 +77,12 @@ void cnc_take_displays(struct cnc *cnc)
 
 void cnc_take_backup(struct cnc *cnc)
 {
-    const bool is_asked = cnc_is_set(cnc, CNC_BIT_REQ_BACKUP_MEM);
-    if (!is_asked || cnc->backup_pause > 0) {
-        cnc->backup_pause = (uint16_t)(is_asked ? cnc->backup_pause - 1u : 0u);
+    if (!cnc_is_set(cnc, CNC_BIT_REQ_BACKUP_MEM)) {
+        cnc->backup_pause = 0;
         return;
     }
+    if (cnc->backup_pause > 0 && --cnc->backup_pause > 0)
+        return;
     const bool has_place = cnc->port != NULL && cnc->port->save_backup != NULL;
     const bool is_saved = !has_place || cnc->port->save_backup(cnc->context, cnc_backup(cnc), CNC_BACKUP_SIZE);
     if (is_saved)

@@ -35,9 +35,12 @@ START_TEST(NM9_limit_switches_of_every_axis)
 {
     static const char *const names[] = {"KHX0", "KHX1", "KHY0", "KHY1", "KHZ0", "KHZ1"};
     for (unsigned i = 0; i < 6; i++) {
+        static const char *const permissions[] = {"MPX", "MPY", "MPZ"};
         rig_begin(i < 2 ? "G1 X1 F1000" : i < 4 ? "G1 Y1 F1000" : "G1 Z1 F1000");
         set_bit(names[i], true);
         run_to(100);
+        for (unsigned axis = 0; axis < 3; axis++)
+            ck_assert_int_eq(bit(permissions[axis]), axis != i / 2);
         ck_assert_int_eq(at(100).x + at(100).y + at(100).z, 0);
         ck_assert(bit("SF_LS") && bit("PO_F"));
         set_bit(names[i], false);
@@ -68,6 +71,20 @@ START_TEST(NH4_software_limits_of_another_axis)
     cnc.panel.jog_plus = 2;
     run_to(710);
     ck_assert_int_gt(at(710).y, 0);
+}
+END_TEST
+
+/* NH4: in POS5; and only while the block moves the axis towards the limit. */
+START_TEST(NH4_software_limits_count_in_POS5)
+{
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\" Offset2=\"1\" SlsPlus=\"5\"/><Axis Name=\"Y\" SlsMinus=\"0\"/>"
+                   "</ChannelConfig>",
+                   "G23 G1 X3 F1000\nX6 Y0.1");
+    set_cell("HOMING", 0, 3);
+    set_cell("SLS_REFER", 0, 3);
+    run_to(600);
+    ck_assert_int_ge(at(600).x, 4 * MM);
+    ck_assert_int_lt(at(600).x, 4 * MM + MM / 10);
 }
 END_TEST
 
@@ -297,6 +314,41 @@ START_TEST(NF4_the_slowest_spindle_there_is)
 }
 END_TEST
 
+START_TEST(NF1_the_smallest_feed_with_the_greatest_overrides)
+{
+    rig_begin("G1 X1 F0.000001");
+    set_cell("WORD.BZH09", 0, 65535);
+    set_cell("FEED_OVR_MULTIPLIER", 0, 65535);
+    set_bit("FEED_OVR", true);
+    run_to(10);
+    ck_assert_int_eq(at(10).v, 4); /* 0.0043 mm/min */
+}
+END_TEST
+
+START_TEST(NG2_H_is_cut)
+{
+    rig_begin("H9.999999\nH100");
+    run_to(1);
+    ck_assert_int_eq(cell("PB05", 0), 0x09);
+    run_to(3);
+    ck_assert_int_eq(cell("PB05", 0), 0x00);
+}
+END_TEST
+
+/* NE4: a stop drops a start only if one waits. */
+START_TEST(NE4_a_stop_without_a_start)
+{
+    rig_power(NULL, "M3");
+    set_bit("START_SUSPEND", true);
+    cnc_stop(&cnc);
+    run_to(5);
+    ck_assert_uint_eq(rig_events, 0);
+    start_in(6);
+    run_to(7);
+    ck_assert(bit("PO_F"));
+}
+END_TEST
+
 START_TEST(NF5_a_gear_leaves_the_functions_of_other_groups)
 {
     rig_begin("M7\nM41\nM44");
@@ -374,6 +426,10 @@ static Suite *clauses_suite(void)
     tcase_add_test(clauses, NM8_TIME_DIST_stands_in_a_hold);
     tcase_add_test(clauses, NM8_the_angle_in_all_its_digits);
     tcase_add_test(clauses, NF4_the_slowest_spindle_there_is);
+    tcase_add_test(clauses, NH4_software_limits_count_in_POS5);
+    tcase_add_test(clauses, NF1_the_smallest_feed_with_the_greatest_overrides);
+    tcase_add_test(clauses, NG2_H_is_cut);
+    tcase_add_test(clauses, NE4_a_stop_without_a_start);
     tcase_add_test(clauses, NF5_a_gear_leaves_the_functions_of_other_groups);
     tcase_add_test(clauses, NQ1_fields_of_other_values);
     tcase_add_test(clauses, NA4_after_an_emergency_stop_an_axis_moves_again);

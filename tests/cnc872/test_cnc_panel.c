@@ -182,7 +182,9 @@ START_TEST(no3_saving_fails)
     ck_assert(bit("REQ_BACKUP_MEM"));
     ck_assert_uint_eq(saves, 1); /* not in every T */
     ck_assert_uint_eq(failed_events, 1);
-    run_to(1002);
+    run_to(1001); /* a second after it, again */
+    ck_assert_uint_eq(saves, 2);
+    run_to(2000);
     ck_assert_uint_eq(saves, 2);
     can_save = true;
     run_to(2100);

@@ -30,6 +30,8 @@ START_TEST(the_bad_programs_of_the_specification)
     check_line(" STO DWRD.B_POL", "6: this cell may only be read `DWRD.B_POL'");
     check_line(" WR BLK[0].M3", "5: this bit may only be read `BLK[0].M3'");
     check_line(" LOD DWRD.(DIFCIT_X+64)", "12: this lies outside of the cell `DIFCIT_X+64'");
+    check_line(" T~M 3", "2: unknown instruction `T~M'");
+    check_errors("DATA\n5 DB 0\nDATA_END", "2:1: expected a name of at most 31 letters, digits and _ ? @ `5'\n");
     check_line(" T\xC3M 3", "2: unknown instruction `T?M'");
     check_line(" TIM 3", "2: unknown instruction `TIM'");
     check_line(" LDR NIC", "6: there is no cell `NIC'");

@@ -167,6 +167,13 @@ START_TEST(text_and_program_outside)
     run_to(21);
     ck_assert(!bit("PO_F"));
     ck_assert_int_eq(cell("PASSES", 0), 1);
+    rig_power_plc(NULL, "M3", waits); /* the text is through first: it is not passed again */
+    set_bit("EXT_PLC", true);
+    set_bit("IN", true);
+    ck_assert_int_eq(cnc_start(&cnc), CNC_OK);
+    run_to(50);
+    ck_assert_int_eq(cell("PLC_PASS", 0), CNC_INIT);
+    ck_assert_int_eq(cell("PASSES", 0), 1);
 }
 END_TEST
 
@@ -194,6 +201,11 @@ START_TEST(reading_beyond_the_queue)
     ck_assert_int_eq(cell("V", 0), 0);
     ck_assert_uint_eq(count_events(CNC_EVENT_BEYOND_QUEUE), 3); /* one a T */
     ck_assert_uint_eq(cnc.beyond_queue, 6);
+    rig_power_plc(NULL, "M3", "DATA\nV DD 7\nDATA_END\nMODULE_MAIN\n LOD BLK[1].T\n STO V\nMODULE_MAIN_END\n");
+    run_to(3);
+    ck_assert_int_eq(cell("V", 0), 0);
+    ck_assert_uint_eq(cnc.beyond_queue, 0);
+    ck_assert_uint_eq(rig_events, 0);
 }
 END_TEST
 
