@@ -210,6 +210,34 @@ static const int row_goes[ROWS] = {
 
 #define ROW_GOES_FIRST 12
 
+/* Has the unit nothing to show in this row? */
+static bool is_missing(const struct panel_view *view, int row)
+{
+    const unsigned inputs = lamps_of(view, "inputs", 8), outputs = lamps_of(view, "outputs", 8);
+    switch (row) {
+    case ROW_GAP_3:
+    case ROW_VAR_NUMBERS:
+    case ROW_VAR:
+        return lamps_of(view, "variables", 16) == 0;
+    case ROW_DI:
+        return inputs == 0;
+    case ROW_DO:
+        return outputs == 0;
+    case ROW_GAP_2:
+    case ROW_NUMBERS:
+        return inputs + outputs == 0;
+    case ROW_GAP_4:
+    case ROW_COUNTERS:
+    case ROW_WIRES:
+        return json_is_false(json_object_get(json_object_get(view->state, "device"), "bus"));
+    case ROW_KEYS:
+    case ROW_GAP_5:
+        return view->keys == NULL;
+    default:
+        return row >= ROW_MOTOR_1 + (int)motors_of(view) && row <= ROW_MOTOR_4;
+    }
+}
+
 /* Choose the rows that there is room for: at[] is -1 for the others. Returns how many there are. */
 static int choose_rows(const struct panel_view *view, int rows, int lamps, int at[ROWS])
 {
@@ -217,10 +245,8 @@ static int choose_rows(const struct panel_view *view, int rows, int lamps, int a
     for (int most = ROW_GOES_FIRST; most >= 0; most--) {
         count = 0;
         for (int i = 0; i < ROWS; i++) {
-            bool keys = i == ROW_KEYS || i == ROW_GAP_5, numbers = i == ROW_NUMBERS || i == ROW_VAR_NUMBERS;
-            bool missing = (i >= ROW_MOTOR_1 + (int)motors_of(view) && i <= ROW_MOTOR_4) ||
-                           ((i == ROW_GAP_3 || i == ROW_VAR_NUMBERS || i == ROW_VAR) && lamps_of(view, "variables", 16) == 0);
-            bool shown = row_goes[i] <= most && (!keys || view->keys != NULL) && (!numbers || lamps == 3) && !missing;
+            bool numbers = i == ROW_NUMBERS || i == ROW_VAR_NUMBERS;
+            bool shown = row_goes[i] <= most && (!numbers || lamps == 3) && !is_missing(view, i);
             at[i] = shown ? count++ : -1;
         }
         if (count <= rows)

@@ -41,9 +41,9 @@ static json_t *line_json(const struct segment *segment)
 /* What a panel has to know of another kind than the usual one. */
 static json_t *device_json(const struct device_kind *kind)
 {
-    return json_pack("{s:s, s:i, s:i, s:i, s:i, s:i}", "name", kind->name, "axes", (int)kind->axes, "inputs", (int)kind->inputs,
-                     "outputs", (int)kind->outputs, "variables", (int)kind->variables, "first_variable",
-                     (int)kind->first_variable);
+    return json_pack("{s:s, s:i, s:i, s:i, s:i, s:i, s:b}", "name", kind->name, "axes", (int)kind->axes, "inputs",
+                     (int)kind->inputs, "outputs", (int)kind->outputs, "variables", (int)kind->variables, "first_variable",
+                     (int)kind->first_variable, "bus", kind->receive != NULL);
 }
 
 json_t *unit_state(struct sim *sim, unsigned number)

@@ -157,6 +157,17 @@ START_TEST(progress_is_short_where_there_is_little_room)
 }
 END_TEST
 
+START_TEST(a_device_without_a_bus_has_no_row_for_it)
+{
+    json_t *shown = state(NULL, NULL);
+    json_object_set_new(shown, "device", json_pack("{s:s, s:i, s:i, s:i, s:i, s:b}", "name", "alone", "axes", 1, "inputs", 3,
+                                                   "outputs", 0, "variables", 0, "bus", 0));
+    draw(shown, 24, 80);
+    assert_shown("\n\n      01 02 03\n DI    ");
+    ck_assert(strstr(text, "requests") == NULL && strstr(text, "on the line") == NULL && strstr(text, " DO") == NULL);
+}
+END_TEST
+
 /* A CNC872 with so many axes, as `state` shows it; `more` replaces members of `cnc`. Takes the reference to `more`. */
 static json_t *cnc_state(int count, json_t *more)
 {
@@ -331,6 +342,7 @@ static Suite *client_panel_suite(void)
     tcase_add_test(values, a_fault_is_named_and_a_unit_without_power_is_called_so);
     tcase_add_test(values, what_the_state_lacks_is_a_dash);
     tcase_add_test(values, control_characters_and_others_do_not_reach_the_terminal);
+    tcase_add_test(values, a_device_without_a_bus_has_no_row_for_it);
     tcase_add_test(values, a_cnc_has_its_axes_and_what_its_block_and_its_program_do);
     tcase_add_test(values, a_cnc_with_a_rotary_axis_shows_degrees);
     tcase_add_test(values, stops_and_errors_of_a_cnc_are_named);
