@@ -66,6 +66,9 @@ class Transport:
         """Let time pass until a whole message has come to the host, at most `limit` us. Returns it; None: none came."""
         raise NotImplementedError
 
+    def rest(self) -> None:
+        """An exchange is over."""
+
     def close(self) -> None:
         raise NotImplementedError
 
@@ -443,6 +446,7 @@ class Bus:
         self.host.reset_input_buffer()
         self.send(node, message)
         heard = self._transport.hear_message(to_us(limit))
+        self._transport.rest()
         if heard is None:
             words = Message(bytes(message), False, str(self._kind["name"])).words
             raise NoAnswerError(f"expected an answer of node {node} to {words} within "

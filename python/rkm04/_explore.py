@@ -14,6 +14,7 @@ import sys
 from dataclasses import dataclass, field
 from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, TypeVar, Union
 
+from . import _system
 from ._errors import RefusedError
 from ._message import Message
 from ._ports import clock_of
@@ -276,7 +277,7 @@ class Exploration:
         lines = [head + f"{len(self.failures)} failed", f"smallest set of faults under which the test fails: {len(first.faults)}"]
         lines += [f"  - {each.place or each}" for each in first.faults]
         lines += [f"fails with: {first.failure}", "repeat exactly this run:"]
-        lines += [f"  {REPLAY}='{format_faults(first.faults)}' {command}"]
+        lines += ["  " + _system.command_with(REPLAY, format_faults(first.faults), command)]
         others = self.failures[1:]
         if others:
             lines.append("it also fails with:")

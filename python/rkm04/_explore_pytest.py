@@ -10,7 +10,7 @@ from typing import Any, List, Optional, Tuple
 import pytest
 from _pytest.runner import runtestprotocol
 
-from . import _explore
+from . import _explore, _system
 from ._explore import Fault, Options, Run
 
 
@@ -61,7 +61,7 @@ def explore_item(item: Any, nextitem: Optional[pytest.Item], options: Options, p
     if first.failure is None and replay is None and not skipped:
         progress = _explore.Progress(item.name, sys.__stderr__)
         result = _explore.explore_runs(lambda faults: _run(item, neighbour, options, faults), first, options, progress, part)
-        text = result.report(f"pytest {_whole(item.nodeid)!r}")
+        text = result.report(f"pytest {_system.quote(_whole(item.nodeid))}")
         if not result:
             reports = _run(item, neighbour, options, result.failures[0].faults, True).details
         for report in reports:

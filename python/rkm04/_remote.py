@@ -5,42 +5,21 @@ from __future__ import annotations
 
 import json
 import os
-import select
 import shutil
 import socket
 import stat
 import subprocess
 import tempfile
 import threading
-import time as real_time
 from types import TracebackType
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Union
 
-from . import _sim
-from ._bus import BREAK_SHORTEST, Bus, Host, Transport
+from . import _sim, _system
+from ._bus import Bus, Transport
 from ._errors import Error, RefusedError
 from ._programs import find_program
+from ._remote_host import PATIENCE, TCP, RemoteHost, TcpHost
 from ._time import Time, to_us
-
-PATIENCE = 30.0
-"""s of real time for what rkm04 does at once."""
-
-
-def _connect(path: str) -> socket.socket:
-    """A Unix socket. A path of one has at most 107 bytes: a longer one is reached through its folder."""
-    made, folder = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM), -1
-    try:
-        if len(os.fsencode(path)) > 107:
-            folder = os.open(os.path.dirname(path), os.O_PATH)
-        made.connect(path if folder < 0 else f"/proc/self/fd/{folder}/{os.path.basename(path)}")
-    except OSError:
-        made.close()
-        raise
-    finally:
-        if folder >= 0:
-            os.close(folder)
-    return made
-
 
 class ControlSocket(Transport):
     """JSON-RPC, one object a line. path: of the socket, or of the control file of a TCP port."""
@@ -52,9 +31,9 @@ class ControlSocket(Transport):
         self._rest = b""
         self._events: Dict[int, List[Dict[str, Any]]] = {}
         self._lost = 0
-        self._host: Optional[PtyHost] = None
+        self._host: Optional[RemoteHost] = None
         try:
-            self._socket = self._enter(path) if stat.S_ISREG(os.stat(path).st_mode) else _connect(path)
+            self._socket = self._enter(path) if stat.S_ISREG(os.stat(path).st_mode) else _system.connect_socket(path)
         except OSError as error:
             raise Error(f"expected the control socket of a running rkm04 serve at {path}, found: {error.strerror or error}") \
                 from None
@@ -113,7 +92,8 @@ class ControlSocket(Transport):
             self._lost += answer["params"]["events"]
 
     @property
-    def _stepped(self) -> bool:
+    def is_stepped(self) -> bool:
+        """Does its time pass in advance() alone?"""
         return bool(self.call("clock", {})["clock"] == "stepped")
 
     def now(self) -> int:
@@ -130,7 +110,7 @@ class ControlSocket(Transport):
             self.call("wait", {"until": {"t": clock["t_us"] + ticks}})
 
     def wait(self, until: Dict[str, Any], limit: int) -> Dict[str, Any]:
-        return self.call("advance" if self._stepped else "wait", {"until": until, "limit": limit})
+        return self.call("advance" if self.is_stepped else "wait", {"until": until, "limit": limit})
 
     def events(self, subscription: int) -> Tuple[List[Dict[str, Any]], int]:
         # Events that have happened come before the answer.
@@ -138,12 +118,20 @@ class ControlSocket(Transport):
         lost, self._lost = self._lost, 0
         return self._events.pop(subscription, []), lost
 
-    def host(self) -> "PtyHost":
+    def host(self) -> RemoteHost:
         if self._host is None:
             if self._link is None:
-                raise Error("to send and hear bytes: expected the link of the bus, as in connect(path, link=\"/tmp/rkm04\")")
-            self._host = PtyHost(self, self._link)
+                raise Error("to send and hear bytes: expected the link of the bus, as in connect(path, link=\"/tmp/rkm04\") or "
+                            "link=\"socket://127.0.0.1:4001\"")
+            if self._link.startswith(TCP):
+                self._host = TcpHost(self, self._link[len(TCP):])
+            else:
+                self._host = _system.open_link(self, self._link)
         return self._host
+
+    def rest(self) -> None:
+        if self._host is not None:
+            self._host.rest()
 
     def frame(self, node: int, message: bytes) -> bytes:
         return _sim.frame(self.framing, node, message)
@@ -163,137 +151,22 @@ class ControlSocket(Transport):
         self._socket.close()
 
 
-class PtyHost(Host):
-    """A host that has opened the pty of a running emulator."""
-
-    def __init__(self, control: ControlSocket, link: str) -> None:
-        self._control = control
-        self._fd = os.open(link, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
-        self._heard = b""
-        self._until = 0
-        self._settings: Tuple[int, int, str, float] = (19200, 8, "N", 1)
-        self.configure()
-
-    def configure(self, baudrate: int = 19200, bytesize: int = 8, parity: str = "N", stopbits: float = 1) -> None:
-        import termios
-
-        speed = getattr(termios, f"B{baudrate}", None)
-        sizes = {5: termios.CS5, 6: termios.CS6, 7: termios.CS7, 8: termios.CS8}
-        if speed is None or bytesize not in sizes or parity not in ("N", "E", "O") or stopbits not in (1, 2):
-            raise ValueError("expected a speed that terminals have, 5 to 8 data bits, parity N, E or O, and 1 or 2 stop bits")
-        flags = termios.CREAD | termios.CLOCAL | sizes[bytesize] | (termios.CSTOPB if stopbits == 2 else 0)
-        if parity != "N":
-            flags |= termios.PARENB | (termios.PARODD if parity == "O" else 0)
-        attributes = termios.tcgetattr(self._fd)
-        attributes[:6] = [0, 0, flags, 0, speed, speed]
-        termios.tcsetattr(self._fd, termios.TCSANOW, attributes)
-        self._settings = (baudrate, bytesize, parity, stopbits)
-
-    def write(self, data: bytes, baudrate: Optional[int] = None, bytesize: Optional[int] = None, parity: Optional[str] = None,
-              stopbits: Optional[float] = None, wait: bool = True) -> int:
-        given = (baudrate, bytesize, parity, stopbits)
-        if any(value is not None for value in given):
-            new = [old if value is None else value for value, old in zip(given, self._settings)]
-            self.configure(*new)  # type: ignore[arg-type]
-        unit = self._control.call("units", {})["units"][0]
-        before = self._bytes(unit)
-        at = 0
-        while at < len(data):
-            select.select([], [self._fd], [], PATIENCE)
-            at += os.write(self._fd, data[at:])
-        if wait and self._settings == (19200, 8, "N", 1):
-            self._wait_passed(unit, before + len(data))
-        self._until = self._control.now()
-        return len(data)
-
-    def _bytes(self, unit: str) -> int:
-        return int(self._control.call("state", {"unit": unit})["line"]["bytes"])
-
-    def _wait_passed(self, unit: str, wanted: int) -> None:
-        """Bytes and requests take different ways: wait until the bus has carried them."""
-        end = real_time.monotonic() + PATIENCE
-        while self._bytes(unit) < wanted:
-            if real_time.monotonic() > end:
-                raise Error(f"expected the bus to carry what was written within {PATIENCE:.0f} s of real time; it did not")
-            real_time.sleep(0.0005)
-
-    def _fetch(self, seconds: float) -> None:
-        if select.select([self._fd], [], [], seconds)[0]:
-            try:
-                self._heard += os.read(self._fd, 65536)
-            except BlockingIOError:
-                pass
-
-    def read(self, size: int = -1) -> bytes:
-        self._fetch(0)
-        end = len(self._heard) if size < 0 else size
-        data, self._heard = self._heard[:end], self._heard[end:]
-        return data
-
-    def read_ticks(self, size: int = -1) -> List[Tuple[int, int]]:
-        raise Error("a pty does not say when bytes have come: use bus.events(\"byte\")")
-
-    @property
-    def in_waiting(self) -> int:
-        self._fetch(0)
-        return len(self._heard)
-
-    @property
-    def out_until(self) -> int:
-        return self._until
-
-    @property
-    def lost(self) -> int:
-        return 0
-
-    @property
-    def idle(self) -> bool:
-        raise Error("the control socket does not say whether the bus is at rest: use a bus in this process")
-
-    def wait_byte(self, limit: Time) -> bool:
-        end = self._control.now() + to_us(limit)
-        self._fetch(0.001)
-        while not self._heard:
-            now = self._control.now()
-            if now >= end:
-                self._fetch(0.02)  # what had passed by then may still be on its way through the pty
-                break
-            if self._control._stepped:
-                self._control.advance(min(1000, end - now))
-                self._fetch(0.001)
-            else:
-                self._fetch(0.005)
-        return bool(self._heard)
-
-    def set_break(self, on: bool) -> None:
-        raise Error("a pty cannot hold the wires at 0: use bus.faults.inject(\"break\")")
-
-    def send_break(self, time: Time = BREAK_SHORTEST) -> None:
-        raise Error("a pty cannot hold the wires at 0: use bus.faults.inject(\"break\", for_=time)")
-
-    def reset_output_buffer(self) -> int:
-        import termios
-
-        termios.tcflush(self._fd, termios.TCOFLUSH)
-        return 0
-
-    def close(self) -> None:
-        os.close(self._fd)
-
-
 class RemoteBus(Bus):
     """A bus of a running `rkm04 serve`; made by connect() and serve(). What a Bus can do, it can, in the time of that clock.
 
-    link: the pty that host software opens; None if it is not known. rfc2217_url: what pyserial opens instead, of a bus that
-    serve() has started; otherwise None.
+    link: the pty that host software opens; None if it is not known, and on Windows. port: what pyserial opens: the link, or a URL
+    socket://HOST:PORT where there is none. tcp_url, rfc2217_url: socket:// and rfc2217:// of a bus that serve() has started;
+    otherwise None.
     """
 
     def __init__(self, transport: ControlSocket, link: Optional[str], process: "Optional[Process]" = None) -> None:
         super().__init__(transport=transport)
-        self.link = link
         self._process = process
-        address = process.ready.get("rfc2217") if process is not None else None
-        self.rfc2217_url: Optional[str] = None if address is None else f"rfc2217://{address}"
+        ready = process.ready if process is not None else {}
+        self.tcp_url: Optional[str] = f"{TCP}{ready['tcp']}" if ready.get("tcp") else None
+        self.rfc2217_url: Optional[str] = f"rfc2217://{ready['rfc2217']}" if ready.get("rfc2217") else None
+        self.port: Optional[str] = link
+        self.link: Optional[str] = None if link is None or link.startswith(TCP) else link
 
     @property
     def bus(self) -> "RemoteBus":
@@ -316,7 +189,8 @@ class RemoteBus(Bus):
 def connect(path: "Union[str, os.PathLike[str]]", link: "Union[None, str, os.PathLike[str]]" = None) -> RemoteBus:
     """The bus of a running `rkm04 serve`, by the path of its control socket or control file.
 
-    link: the link to its pty, for send(), exchange() and host; if left out, the path without ".control" if that is there.
+    link: the link to its pty, for send(), exchange() and host, or "socket://HOST:PORT", its TCP port; if left out, the path
+    without ".control" if that is there.
     """
     path = os.fspath(path)
     if link is None and path.endswith(".control") and os.path.exists(path[:-len(".control")]):
@@ -330,9 +204,10 @@ class Process:
 
     def __init__(self, arguments: Sequence[str]) -> None:
         self.folder = tempfile.mkdtemp(prefix="rkm04-")
-        self.link = os.path.join(self.folder, "bus")
+        self.link = _system.link_in(self.folder)
         self.log = os.path.join(self.folder, "log")
-        command = [find_program("rkm04"), "serve", "--link", self.link, *arguments]
+        self.ready: Dict[str, Any] = {}
+        command = [find_program("rkm04"), "serve", *_system.serve_arguments(self.folder, arguments)]
         with open(self.log, "wb") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=log)
         try:
@@ -358,8 +233,16 @@ class Process:
         with open(self.log, encoding="utf-8", errors="replace") as log:
             return log.read()[-2000:].strip()
 
+    def _shut_down(self) -> None:
+        control = ControlSocket(self.ready["control"], None)
+        try:
+            control.call("shutdown", {})
+        finally:
+            control.close()
+
     def end(self) -> None:
-        self.process.terminate()
+        """Let it end, and remove its folder."""
+        _system.end_process(self.process, self._shut_down)
         try:
             self.process.wait(PATIENCE)
         except subprocess.TimeoutExpired:
@@ -374,16 +257,17 @@ def serve(units: Union[int, str] = 1, *, clock: str = "real", device: str = "rkm
           plant: "Union[None, str, os.PathLike[str]]" = None, seed: Optional[int] = None,
           readings: Optional[Mapping[str, Any]] = None, version_text: Optional[str] = None, turnaround: Optional[Time] = None,
           record: "Union[None, str, os.PathLike[str]]" = None, arguments: Sequence[str] = ()) -> RemoteBus:
-    """Start `rkm04 serve` on a free link and wait until it is ready. It ends with the `with` block, or with close().
+    """Start `rkm04 serve` on a free link, on Windows at a free TCP port, and wait until it is ready. It ends with the `with`
+    block, or with close().
 
         with rkm04.serve(units="1,2", clock="x10") as bus:
-            subprocess.run(["my-program", bus.link], check=True)
+            subprocess.run(["my-program", bus.port], check=True)
             assert bus.unit(2).motor(1).position == 500
 
     clock: "real", "xN" (N times as fast), "max", "stepped". plant, record: paths of files. arguments: more options of
     `rkm04 serve`. The rest: as for Bus. Raises Error with what rkm04 has said if it does not start.
     """
-    options = ["--rfc2217", "127.0.0.1:0", "--node", str(units), "--clock", clock, "--device", device]
+    options = ["--tcp", "127.0.0.1:0", "--rfc2217", "127.0.0.1:0", "--node", str(units), "--clock", clock, "--device", device]
     given = {"--framing": framing, "--plant": plant, "--seed": seed, "--version-text": version_text, "--record": record,
              "--turnaround": None if turnaround is None else to_us(turnaround)}
     for name, value in given.items():
@@ -393,7 +277,8 @@ def serve(units: Union[int, str] = 1, *, clock: str = "real", device: str = "rkm
         options += ["--readings", ",".join(f"{name}={value}" for name, value in readings.items())]
     process = Process([*options, *arguments])
     try:
-        return RemoteBus(ControlSocket(process.ready["control"], process.link), process.link, process)
+        link = process.link or f"{TCP}{process.ready['tcp']}"
+        return RemoteBus(ControlSocket(process.ready["control"], link), link, process)
     except BaseException:
         process.end()
         raise

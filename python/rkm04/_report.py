@@ -5,10 +5,10 @@ from __future__ import annotations
 import difflib
 import os
 import re
-import shlex
 from pathlib import Path
 from typing import Any, Iterator, List, Optional, Tuple
 
+from . import _system
 from ._dialogue import Count, Dialogue
 from ._errors import Error
 from ._message import Message
@@ -98,9 +98,12 @@ def _keep_recording(bus: Any, path: Path) -> str:
         bus.snapshot(file=str(path), force=True)
     except (Error, OSError) as error:
         return f"not kept: {error}"
-    near = os.path.relpath(path)
+    try:
+        near = os.path.relpath(path)
+    except ValueError:  # on another drive of Windows
+        near = ".."
     shown = str(path) if near.startswith("..") else near
-    return f"{shown}\nrepeat it: rkm04 replay --wire bus.log --trace run.vcd {shlex.quote(shown)}"
+    return f"{shown}\nrepeat it: rkm04 replay --wire bus.log --trace run.vcd {_system.quote(shown)}"
 
 
 # ---- Assertions --------------------------------------------------------------------------------------------------------------

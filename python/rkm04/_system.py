@@ -4,8 +4,11 @@
 import sys
 
 if sys.platform == "win32":
-    from ._windows import PROGRAM_SUFFIX as PROGRAM_SUFFIX
-    from ._windows import run_in_place as run_in_place
+    from ._windows import HAS_PTYS, PROGRAM_SUFFIX, SELECTORS, command_with, connect_socket, end_process, link_in, open_link, \
+        quote, run_in_place, serve_arguments
 else:
-    from ._posix import PROGRAM_SUFFIX as PROGRAM_SUFFIX
-    from ._posix import run_in_place as run_in_place
+    from ._posix import HAS_PTYS, PROGRAM_SUFFIX, SELECTORS, command_with, connect_socket, end_process, link_in, open_link, \
+        quote, run_in_place, serve_arguments
+
+__all__ = ["HAS_PTYS", "PROGRAM_SUFFIX", "SELECTORS", "command_with", "connect_socket", "end_process", "link_in", "open_link",
+           "quote", "run_in_place", "serve_arguments"]

@@ -18,6 +18,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 
 from serial.serialutil import Timeout
 
+from . import _system
 from ._clock import Clock
 from ._time import Time, to_us
 
@@ -28,7 +29,8 @@ _REAL: Dict[str, Callable[..., Any]] = {name: getattr(time, name) for name in _N
 _REAL_CONDITION_WAIT = threading.Condition.wait
 _SELECTORS: List[Any] = list({
     next(base for base in getattr(selectors, name).__mro__ if "select" in vars(base)): None
-    for name in ("SelectSelector", "PollSelector", "EpollSelector", "KqueueSelector") if hasattr(selectors, name)})
+    for name in ("SelectSelector", "PollSelector", "EpollSelector", "KqueueSelector") if hasattr(selectors, name)}) + \
+    _system.SELECTORS
 _REAL_SELECT = {kind: kind.__dict__["select"] for kind in _SELECTORS}
 
 _active: Optional["VirtualTime"] = None

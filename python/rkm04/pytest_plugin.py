@@ -9,7 +9,7 @@ from typing import Any, Dict, Generator, Iterator, List, Optional, Tuple
 
 import pytest
 
-from . import _explore, _ports, _report
+from . import _explore, _ports, _report, _system
 from ._virtual_time import virtual_time
 
 MARK = "rkm04"
@@ -21,9 +21,9 @@ _BUSES = pytest.StashKey[List[Any]]()
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The options of the plugin."""
     group = parser.getgroup("rkm04", "virtual RKM04")
-    group.addoption("--rkm04-transport", choices=("inprocess", "pty", "rfc2217"), default="inprocess",
+    group.addoption("--rkm04-transport", choices=("inprocess", "pty", "rfc2217", "tcp"), default="inprocess",
                     help="what rkm04_port is: a URL rkm04:// in this process (default), the pty of an `rkm04 serve', or its "
-                         "rfc2217:// URL")
+                         "URL rfc2217:// or socket://")
     group.addoption("--rkm04-trace", metavar="DIR", help="keep a trace (VCD) of each test that uses rkm04_bus in DIR")
     group.addoption("--rkm04-shard", metavar="I/N", help="of each exploration, do part I of N (1/N to N/N)")
 
@@ -34,6 +34,8 @@ def pytest_configure(config: pytest.Config) -> None:
                                        "@pytest.mark.rkm04(units='1,2', plant='axis.yaml')")
     config.addinivalue_line("markers", f"{EXPLORED}: the tests that @rkm04.explore runs again and again; set by itself")
     _shard(config)
+    if _transport_of(config) == "pty" and not _system.HAS_PTYS:
+        raise pytest.UsageError("--rkm04-transport=pty: there are no ptys on Windows: expected inprocess, rfc2217 or tcp")
     try:
         _explore.parse_faults(os.environ.get(_explore.REPLAY, ""))
     except ValueError as error:
@@ -85,7 +87,7 @@ def _trace(request: pytest.FixtureRequest, bus: Any) -> None:
 
 @pytest.fixture
 def rkm04_serve(request: pytest.FixtureRequest) -> Iterator[Any]:
-    """A running `rkm04 serve` with a pty, for software that is not Python. Settings: marker rkm04."""
+    """A running `rkm04 serve`, for software that is not Python. Settings: marker rkm04."""
     from . import serve
 
     directory = _record_directory(request.config)
@@ -98,7 +100,7 @@ def rkm04_serve(request: pytest.FixtureRequest) -> Iterator[Any]:
 
 @pytest.fixture
 def rkm04_bus(request: pytest.FixtureRequest) -> Iterator[Any]:
-    """A fresh bus, in this process; with --rkm04-transport=pty or rfc2217 that of `rkm04_serve`. Settings: marker rkm04."""
+    """A fresh bus, in this process; with another --rkm04-transport that of `rkm04_serve`. Settings: marker rkm04."""
     node = request.node
     if _transport(request) != "inprocess":
         yield request.getfixturevalue("rkm04_serve")
@@ -119,12 +121,12 @@ def rkm04_bus(request: pytest.FixtureRequest) -> Iterator[Any]:
 
 @pytest.fixture
 def rkm04_port(request: pytest.FixtureRequest, rkm04_bus: Any) -> Iterator[str]:
-    """What the program under test opens: a URL `rkm04://...`, the path of a pty, or a URL `rfc2217://...`, by
+    """What the program under test opens: a URL `rkm04://...`, the path of a pty, or a URL `rfc2217://...` or `socket://...`, by
     --rkm04-transport."""
     transport = _transport(request)
     if transport != "inprocess":
         server = request.getfixturevalue("rkm04_serve")
-        yield server.link if transport == "pty" else server.rfc2217_url
+        yield {"pty": server.link, "rfc2217": server.rfc2217_url, "tcp": server.tcp_url}[transport]
         return
     url = _ports.publish(rkm04_bus)
     try:
@@ -135,8 +137,8 @@ def rkm04_port(request: pytest.FixtureRequest, rkm04_bus: Any) -> Iterator[str]:
 
 @pytest.fixture
 def rkm04_time(request: pytest.FixtureRequest, rkm04_bus: Any) -> Iterator[Any]:
-    """Virtual time for the program under test, as by `rkm04.virtual_time()`. With --rkm04-transport=pty or rfc2217 time is real,
-    and the value is None."""
+    """Virtual time for the program under test, as by `rkm04.virtual_time()`. With another --rkm04-transport time is real, and
+    the value is None."""
     if _transport(request) != "inprocess":
         yield None
         return

@@ -193,9 +193,9 @@ def test_traces_and_recordings(bus, tmp_path):
     with bus.record(tmp_path / "x.record"), bus.trace(tmp_path / "x.vcd"), bus.trace(tmp_path / "x.log"):
         bus.unit(1).motor(1).set("F3 R")
         bus.advance("1s")
-    assert "$timescale 1 us" in (tmp_path / "x.vcd").read_text()
-    assert "Set Command" in (tmp_path / "x.log").read_text()
-    assert (tmp_path / "x.record").read_text().startswith('{"rkm04_record":1')
+    assert "$timescale 1 us" in (tmp_path / "x.vcd").read_text(encoding="utf-8")
+    assert "Set Command" in (tmp_path / "x.log").read_text(encoding="utf-8")
+    assert (tmp_path / "x.record").read_text(encoding="utf-8").startswith('{"rkm04_record":1')
     with pytest.raises(rkm04.RefusedError, match="begins at tick 0"):
         bus.record(tmp_path / "y.record")
 
@@ -235,18 +235,13 @@ def test_a_bus_of_two_threads_is_an_error_and_no_crash(bus):
     lambda bus: bus.host.wait_byte(10**14),
 ])
 def test_a_signal_ends_a_call_that_lasts(bus, call):
-    def stop(number, frame):
-        raise KeyboardInterrupt
-
     bus.unit(1).motor(1).set("S100 V16000 A20000 G+")
-    before, handler = bus.now, signal.signal(signal.SIGALRM, stop)
-    try:
-        with bus.events("step"), pytest.raises(KeyboardInterrupt):
-            signal.setitimer(signal.ITIMER_REAL, 0.2)
-            call(bus)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, handler)
+    before = bus.now
+    timer = threading.Timer(0.2, signal.raise_signal, [signal.SIGINT])
+    with bus.events("step"), pytest.raises(KeyboardInterrupt):
+        timer.start()
+        call(bus)
+    timer.join()
     assert before < bus.now < 10**14  # and the bus goes on
     assert bus.advance("1ms") > before
 

@@ -10,6 +10,7 @@ import serial
 
 import rkm04
 from helpers import VERSION, VERSION_ANSWER
+from rkm04 import _system
 from rkm04._explore import KINDS, Facts, Fault, Options, Passed, Progress, format_faults, parse_faults, places, plan
 
 MOVE_TWICE = '''
@@ -46,7 +47,7 @@ def test_a_retry_after_a_lost_answer_executes_a_program_twice(twice):
         r"smallest set of faults under which the test fails: 1",
         r"  - answer 1 \(2 Set Command m1 -> flag 0\) is not sent",
         r"fails with: .*20.*",
-        r"  RKM04_REPLAY='no_answer skip=0 count=1' pytest 'test_it.py::test_it'",
+        "  " + re.escape(_system.command_with("RKM04_REPLAY", "no_answer skip=0 count=1", "pytest test_it.py::test_it")),
         r"it also fails with:",
         r"  - byte 6 of 10 of answer 1 .* is lost",
     ])
@@ -99,7 +100,7 @@ def test_workers_of_xdist_share_the_runs(twice):
     result = twice.runpytest_subprocess("-n", "2", "-p", "no:cacheprovider")
     outcomes = result.parseoutcomes()
     assert outcomes.get("failed") == 2 and outcomes.get("passed") == 6
-    result.stdout.fnmatch_lines("*RKM04_REPLAY='*' pytest 'test_it.py::test_it'")
+    result.stdout.fnmatch_lines("*RKM04_REPLAY='*' pytest test_it.py::test_it")
 
 
 def test_a_test_that_fails_without_faults_is_not_explored(pytester):

@@ -2,11 +2,11 @@
 """Programs that know nothing of the emulator, over `rkm04://`: pyserial's miniterm, pymodbus."""
 
 import os
-import pty
 import select
 import subprocess
 import sys
 
+import pytest
 from pymodbus.client import ModbusSerialClient
 from pymodbus.exceptions import ModbusIOException
 
@@ -31,7 +31,10 @@ def read_until(terminal, text):
     return heard
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a terminal that a program can open: a pty")
 def test_miniterm_talks_to_a_unit():
+    import pty
+
     terminal, child = pty.openpty()
     program = subprocess.Popen([sys.executable, "-c", MINITERM, "--raw", "rkm04://?node=1&framing=plain", "19200"], stdin=child,
                                stdout=child, stderr=child, start_new_session=True)

@@ -5,13 +5,17 @@ import importlib.util
 import os
 import re
 import subprocess
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import rkm04
+from rkm04 import _system
 
 REQUEST = 'port.write(bytes.fromhex("7E010001998D7E")); assert len(port.read(24)) == 24'
+PTY = pytest.param("pty", marks=pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows"))
 HEAD = "import pytest, rkm04, serial, time\n"
 
 
@@ -51,7 +55,7 @@ def test_it(rkm04_bus, n):
 
 
 def test_marker_sets_up_the_bus(run, pytester):
-    pytester.path.joinpath("axis.yaml").write_text("motors:\n  1:\n    stops: {low: -50, high: 800}\n")
+    pytester.path.joinpath("axis.yaml").write_text("motors:\n  1:\n    stops: {low: -50, high: 800}\n", encoding="utf-8")
     result = run("""
 pytestmark = pytest.mark.rkm04(framing="plain", units=9)
 
@@ -94,15 +98,29 @@ def test_it(rkm04_bus):
         r"-+ rkm04: injected faults -+",
         r"fault 1: no_answer: armed, has acted 0 times",
         r"-+ rkm04: recording -+",
-        r"traces/test_it.py-test_it.record",
-        r"repeat it: rkm04 replay --wire bus.log --trace run.vcd traces/test_it.py-test_it.record",
+        r"traces[/\\]test_it.py-test_it.record",
+        r"repeat it: rkm04 replay --wire bus.log --trace run.vcd traces[/\\]test_it.py-test_it.record",
     ])
-    assert pytester.path.joinpath("traces/test_it.py-test_it.record").read_text().startswith('{"rkm04_record":1')
+    assert pytester.path.joinpath("traces/test_it.py-test_it.record").read_text(encoding="utf-8").startswith('{"rkm04_record":1')
     program = Path(rkm04.__file__).parent / "bin" / "rkm04"
-    command = [program, "replay", "--wire", "bus.log", "traces/test_it.py-test_it.record"]
+    command = [f"{program}{_system.PROGRAM_SUFFIX}", "replay", "--wire", "bus.log", "traces/test_it.py-test_it.record"]
     subprocess.run(command, cwd=pytester.path, check=True, timeout=60, env={**os.environ, "LD_PRELOAD": ""})
-    assert '2 Set Command m1 "V1000 F100 R W5000"' in pytester.path.joinpath("bus.log").read_text()
-    assert "$timescale" in pytester.path.joinpath("traces/test_it.py-test_it.vcd").read_text()
+    assert '2 Set Command m1 "V1000 F100 R W5000"' in pytester.path.joinpath("bus.log").read_text(encoding="utf-8")
+    assert "$timescale" in pytester.path.joinpath("traces/test_it.py-test_it.vcd").read_text(encoding="utf-8")
+
+
+def test_a_recording_on_another_drive_is_shown_with_its_whole_path(run, monkeypatch, pytester):
+    """As on Windows, where there is no way from drive to drive."""
+    def relpath(path, start=None):
+        raise ValueError("path is on mount 'C:', start on mount 'Z:'")
+
+    monkeypatch.setattr("rkm04._report.os", SimpleNamespace(path=SimpleNamespace(relpath=relpath)))
+    result = run("""
+def test_it(rkm04_bus):
+    assert False
+""", "--rkm04-trace", "traces")
+    result.assert_outcomes(failed=1)
+    assert str(pytester.path.joinpath("traces", "test_it.py-test_it.record")) in result.stdout.str()
 
 
 def test_a_fault_that_has_never_acted_fails_the_test(run):
@@ -183,7 +201,8 @@ def test_it(rkm04_bus):
 
 @pytest.mark.skipif(not importlib.util.find_spec("pytest_asyncio"), reason="needs pytest-asyncio")
 def test_with_pytest_asyncio(run):
-    result = run("""
+    seconds = 5 if sys.platform == "win32" else 600  # there pyserial-asyncio asks the port each 0.5 ms
+    result = run(f"""
 import asyncio, serial_asyncio
 
 @pytest.mark.asyncio
@@ -191,8 +210,8 @@ async def test_it(rkm04_bus, rkm04_port, rkm04_time):
     reader, writer = await serial_asyncio.open_serial_connection(url=rkm04_port, baudrate=19200)
     writer.write(bytes.fromhex("7E010001998D7E"))
     assert len(await asyncio.wait_for(reader.readexactly(24), 1)) == 24
-    await asyncio.sleep(600)
-    assert rkm04_bus.now > 600_000_000
+    await asyncio.sleep({seconds})
+    assert rkm04_bus.now > {seconds} * 1_000_000
     writer.close()
 """)
     result.assert_outcomes(passed=1)
@@ -211,7 +230,7 @@ def test_it(rkm04_bus, rkm04_port, rkm04_time, n):
     result.assert_outcomes(passed=8)
 
 
-@pytest.mark.parametrize("transport", ["pty", "rfc2217"])
+@pytest.mark.parametrize("transport", [PTY, "rfc2217", "tcp"])
 def test_the_same_test_runs_over_a_running_emulator(run, pytester, transport):
     result = run("""
 @pytest.mark.rkm04(units="2", clock="max")
@@ -227,9 +246,16 @@ def test_it(rkm04_bus, rkm04_port, rkm04_time):
     result.stdout.re_match_lines([
         r" +\d+ +\d+  host > 2 +1 Version \| 7E 02 00 01 .. .. 7E",
         r"unit 2 at \d+ us: on; .*",
-        r"traces/test_it.py-test_it.record",
+        r"traces[/\\]test_it.py-test_it.record",
     ])
-    assert "$timescale" in pytester.path.joinpath("traces/test_it.py-test_it.vcd").read_text()
+    assert "$timescale" in pytester.path.joinpath("traces/test_it.py-test_it.vcd").read_text(encoding="utf-8")
+
+
+def test_a_pty_is_refused_where_there_are_none(run, monkeypatch):
+    monkeypatch.setattr(_system, "HAS_PTYS", False)
+    result = run("def test_it(rkm04_port): pass", "--rkm04-transport=pty")
+    assert result.ret != 0
+    result.stderr.fnmatch_lines("*no ptys on Windows: expected inprocess, rfc2217 or tcp")
 
 
 def test_a_failure_in_a_fixture_shows_the_dialogue_too(run):
@@ -249,11 +275,11 @@ def test_it(position):
 def test_a_program_that_is_not_python(run):
     result = run("""
 import subprocess
-from pathlib import Path
+from rkm04._programs import find_program
 
 def test_it(rkm04_serve):
-    rkmctl = Path(rkm04.__file__).parent / "bin" / "rkmctl"
-    subprocess.run([rkmctl, "-p", rkm04_serve.link, "-m", "3", "set", "=42"], check=True, timeout=60)
+    port = rkm04_serve.link or "tcp:" + rkm04_serve.ready["tcp"]
+    subprocess.run([find_program("rkmctl"), "-p", port, "-m", "3", "set", "=42"], check=True, timeout=60)
     assert rkm04_serve.unit(1).motor(3).wait(position=42, limit="5s")
     rkm04_serve.faults.inject("no_answer", count=1)
 """)
@@ -264,6 +290,6 @@ def test_it(rkm04_serve):
 def test_help_names_the_options(pytester):
     result = pytester.runpytest_inprocess("--help")
     text = " ".join(result.stdout.str().split())
-    assert "--rkm04-transport={inprocess,pty,rfc2217}" in text
+    assert "--rkm04-transport={inprocess,pty,rfc2217,tcp}" in text
     assert "--rkm04-trace=DIR" in text and "--rkm04-shard=I/N" in text
     assert re.search(r"@pytest.mark.rkm04\(units, plant", pytester.runpytest_inprocess("--markers").stdout.str())

@@ -241,7 +241,7 @@ def test_not_opened_at_once(url):
 
 def test_a_url_with_parameters_makes_a_bus_and_finds_it_again(tmp_path):
     plant = tmp_path / "axis.yaml"
-    plant.write_text("motors:\n  1:\n    stops: {low: -50, high: 800}\n")
+    plant.write_text("motors:\n  1:\n    stops: {low: -50, high: 800}\n", encoding="utf-8")
     url = f"rkm04://?node=5&plant={plant}&framing=plain&seed=3"
     port = serial.serial_for_url(url, baudrate=19200, timeout=0.1)
     bus = port.bus

@@ -5,12 +5,16 @@ import importlib.util
 import os
 import pathlib
 import shutil
+import socket
 import subprocess
 import sys
 
 import pytest
+import serial
 
 import rkm04
+from helpers import VERSION, VERSION_ANSWER
+from rkm04 import _windows
 
 
 @pytest.fixture(scope="module")
@@ -82,8 +86,8 @@ def test_snapshot_of_either(either):
 
 
 def test_connect(bus):
-    with rkm04.connect(bus.ready["control"]) as other:
-        assert other.link == bus.link
+    with rkm04.connect(bus.ready["control"], link=None if bus.link else bus.port) as other:
+        assert (other.link, other.port) == (bus.link, bus.port)
         assert [unit.name for unit in other.units] == ["1", "2"]
         assert other.clock == "stepped"
     assert bus.unit(1).power  # who leaves does not end it
@@ -112,7 +116,8 @@ WITHOUT_EXTENSION = """
 import socket, sys
 import serial  # which takes what the system has
 sys.modules["termios"] = None
-del socket.AF_UNIX
+if hasattr(socket, "AF_UNIX"):
+    del socket.AF_UNIX
 import rkm04
 with rkm04.connect(sys.argv[1]) as bus:
     bus.unit(1).di[4] = 1
@@ -138,8 +143,9 @@ def test_without_the_extension_an_emulator_is_reached(tcp_bus, tmp_path):
         shutil.copy(file, package)
     shutil.copy(tcp_bus.ready["control"], tmp_path / "there.control")  # no link beside it
     (tmp_path / "run.py").write_text(WITHOUT_EXTENSION, encoding="utf-8")
+    path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
     done = subprocess.run([sys.executable, tmp_path / "run.py", tmp_path / "there.control"], capture_output=True, text=True,
-                          env={**os.environ, "PYTHONPATH": str(tmp_path)}, timeout=60, check=False)
+                          env={**os.environ, "PYTHONPATH": path}, timeout=60, check=False)
     said = done.stdout.splitlines()
     assert done.returncode == 0 and said[0] == f"1500 1 {tcp_bus.unit(2).motor(1).position}", done
     assert said[1].startswith("frames need the extension") or said[1].startswith("to send and hear bytes"), said
@@ -164,6 +170,7 @@ def test_times_are_read_alike_without_the_extension(text, us):
             assert module.time(text) == us
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows' Python has no Unix sockets")
 def test_a_long_path(tmp_path):
     folder = tmp_path / ("x" * 120)
     folder.mkdir()
@@ -188,9 +195,18 @@ def test_an_emulator_that_has_ended_says_so():
 
 def test_it_ends_with_the_block():
     with rkm04.serve() as bus:
-        process, link = bus._process.process, bus.link
-        assert os.path.exists(link) and process.poll() is None
-    assert process.poll() is not None and not os.path.exists(os.path.dirname(link))
+        process, folder = bus._process.process, bus._process.folder
+        assert os.path.exists(folder) and process.poll() is None
+    assert process.poll() is not None and not os.path.exists(folder)
+
+
+def test_its_files_are_whole_at_the_end(tmp_path):
+    with rkm04.serve(record=tmp_path / "x.record", arguments=["--allow-folder", str(tmp_path), "--clock", "stepped"]) as bus:
+        bus.trace(str(tmp_path / "x.csv"))
+        bus.exchange(1, rkm04.request("Set Command", 1, "F10 R"))
+        bus.wait(motor=1, state="idle")
+    assert (tmp_path / "x.csv").read_text(encoding="utf-8").count("step,") >= 10
+    assert '"end"' in (tmp_path / "x.record").read_text(encoding="utf-8").splitlines()[-1]
 
 
 def test_a_clock_that_runs_by_itself():
@@ -200,3 +216,84 @@ def test_a_clock_that_runs_by_itself():
         assert bus.unit(1).motor(1).position == 1000
         before = bus.now
         assert bus.advance("1s") >= before + 1_000_000
+
+
+# ---- Over TCP, as on Windows -------------------------------------------------------------------------------------------------
+
+
+def test_pyserial_opens_what_serve_names():
+    with rkm04.serve(clock="max") as bus:
+        assert bus.tcp_url.startswith("socket://127.0.0.1:") and bus.port in (bus.link, bus.tcp_url)
+        for url in (bus.port, bus.tcp_url, bus.rfc2217_url):
+            with serial.serial_for_url(url, baudrate=19200, timeout=30) as port:
+                port.write(VERSION)
+                assert port.read(24) == VERSION_ANSWER
+
+
+@pytest.fixture
+def over_tcp():
+    with rkm04.serve(clock="stepped") as bus, rkm04.connect(bus.ready["control"], link=bus.tcp_url) as other:
+        yield other
+
+
+def test_exchanges_over_tcp_leave_the_port_to_the_program(over_tcp):
+    version = rkm04.request("Version")
+    for _ in range(3):
+        assert over_tcp.exchange(1, version).text.startswith("01.02")
+        host, _, port = over_tcp.port[len("socket://"):].rpartition(":")
+        with socket.create_connection((host, int(port))) as program:
+            program.sendall(VERSION)
+            while not over_tcp.dialogue.count("Version") % 2 == 0:
+                over_tcp.advance("10ms")
+            with pytest.raises(rkm04.Error, match="another client has it"):
+                over_tcp.exchange(1, version)
+
+
+def test_what_tcp_does_not_carry_is_refused(over_tcp):
+    for call in (lambda: over_tcp.host.configure(baudrate=9600), lambda: over_tcp.host.write(b"x", parity="E"),
+                 lambda: over_tcp.host.send_break(), lambda: over_tcp.host.read_ticks()):
+        with pytest.raises(rkm04.Error, match="a TCP connection"):
+            call()
+    with pytest.raises(rkm04.Error, match="expected a link socket://HOST:PORT"):
+        rkm04.connect(over_tcp._transport._path, link="socket://here").host
+    with pytest.raises(rkm04.Error, match="expected the TCP port of the bus at 127.0.0.1:1, found"):
+        rkm04.connect(over_tcp._transport._path, link="socket://127.0.0.1:1").send(1, b"\1")
+
+
+# ---- The half for Windows, wherever this runs --------------------------------------------------------------------------------
+
+
+def test_arguments_for_windows():
+    own = ["--control", "tcp:0", "--control-file", os.path.join("folder", "control")]
+    assert _windows.serve_arguments("folder", ["--late", "skip"]) == own + ["--late", "skip"]
+    assert _windows.serve_arguments("folder", ["--control=tcp:4", "-v"]) == ["--control=tcp:4", "-v"]
+    assert _windows.serve_arguments("folder", ["--allow-folder", "a", "-v", "--allow-folder=b"]) == own + ["-v"]
+    assert _windows.link_in("folder") is None
+    with pytest.raises(rkm04.Error, match="no ptys on Windows, found COM5"):
+        _windows.open_link(None, "COM5")
+
+
+def test_a_program_in_place_of_this_one_on_windows():
+    with pytest.raises(SystemExit) as end:
+        _windows.run_in_place(sys.executable, ["python", "-c", "import sys; sys.exit(7)"])
+    assert end.value.code == 7
+
+
+def test_an_emulator_on_windows_is_asked_to_end_and_terminated_if_it_cannot_be_asked():
+    def cannot():
+        raise rkm04.Error("no answer")
+
+    asked = []
+    sleeper = [sys.executable, "-c", "import time; time.sleep(60)"]
+    with subprocess.Popen(sleeper) as process:
+        _windows.end_process(process, lambda: asked.append(1))
+        assert asked and process.poll() is None
+        _windows.end_process(process, cannot)
+        assert process.wait(30) != 0
+        _windows.end_process(process, lambda: pytest.fail("it has ended"))
+
+
+def test_commands_are_quoted_as_a_prompt_takes_them():
+    assert _windows.quote("traces\\it.record") == "traces\\it.record" and _windows.quote("a b") == '"a b"'
+    assert _windows.command_with("RKM04_REPLAY", "drop skip=1", "pytest it.py::it") == \
+        'cmd /c "set RKM04_REPLAY=drop skip=1&& pytest it.py::it"'

@@ -25,15 +25,18 @@ trap 'end_wine "$prefix"; rm -rf "$prefix"' EXIT
 make_wine "$prefix" || skip_all "Wine makes no prefix"
 chmod 755 "$prefix"
 
-# python_exe ARGUMENTS...: it wants pipes.
-python_exe() { wine_in "$prefix" "$windows_python/python.exe" "$@" </dev/null 2>&1 | tr -d '\r'; return "${PIPESTATUS[0]}"; }
+# python_exe ARGUMENTS...: it wants pipes, and takes the programs of the package.
+python_exe() {
+    { unset RKM04 RKMCTL; wine_in "$prefix" "$windows_python/python.exe" "$@" </dev/null 2>&1; } | tr -d '\r'
+    return "${PIPESTATUS[0]}"
+}
 
 export PYTHONDONTWRITEBYTECODE=1
 packages=$prefix/packages
 said=$(python_exe -m pip install -q --no-index --no-compile --find-links "$windows_python/wheels" --target "$packages" "$wheel" \
-    pytest pytest-asyncio pyserial-asyncio)
+    pytest pytest-asyncio pyserial-asyncio pymodbus)
 [[ -z $said && -f $packages/rkm04/_sim.pyd ]] || { echo "pip cannot install $wheel: $said"; exit 1; }
-export PYTHONPATH=$packages
+export PYTHONPATH=Z:$packages # from any drive
 
 test_the_wheel_is_for_every_Python_of_64_bits_and_needs_libraries_of_Windows_alone() {
     same "rkm04-${version#* }-cp39-abi3-win_amd64.whl" "${wheel##*/}" "its name"
@@ -73,6 +76,20 @@ with rkm04.Bus() as bus:
     bus.unit(1).motor(1).set("F10 R")
     bus.wait(motor=1, state="idle")' >paths.err || fail "a trace"
     grep -q step "žluťoučký kůň.csv" || fail "the trace is elsewhere: $(ls)"
+}
+
+# package_tests ARGUMENTS...: of the tests of the package. Each starts and ends within the limit of wine_in.
+package_tests() {
+    cd "$root/python/tests" && python_exe -m pytest -q -p no:cacheprovider "$@" >"$folder/pytest.err" ||
+        fail "$* fails: $(grep -E '^(FAILED|ERROR)' "$folder/pytest.err")"
+}
+
+test_a_bus_in_the_process() { package_tests test_{bus,cib,cnc872,libraries,memory,methods,pmc,port,pyserial_suite}.py; }
+
+test_virtual_time_and_the_plugin_of_pytest() { package_tests test_{explore,plugin,virtual_time}.py; }
+
+test_an_emulator_that_serve_starts_and_the_example() {
+    package_tests test_remote.py test_examples.py -k 'test_remote or tcp or test_served'
 }
 
 run_cases "$@"
