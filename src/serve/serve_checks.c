@@ -58,8 +58,8 @@ void serve_check_bus(const struct bus_options *options, const struct argp_state 
         {"turnaround", options->turnaround != SERVE_NO_TURNAROUND},
         {"strict-line", options->strict_line},
         {"lines", options->lines_text != NULL},
-        {"exit-when-idle", options->exit_when_idle},
-        {"verbose", options->verbose},
+        {"exit-when-idle", options->exit_when_idle && !device->services}, /* servers have clients, too */
+        {"verbose", options->verbose && !device->services},
         {"coverage", options->coverage != NULL},
         {"min-coverage", options->min_coverage >= 0},
     };
