@@ -9,6 +9,11 @@
 
 int windows_exit_status;
 
+/* The start-up code of mingw-w64: arguments such as *.rks, not in quotes, become the files that there are, as shells elsewhere do
+ * it. */
+extern int _dowildcard;
+int _dowildcard = -1;
+
 static void (*at_end)(int status, void *context);
 static void *at_end_context;
 

@@ -129,6 +129,18 @@ test_files_beside_a_scenario_are_found_by_backslashes_and_may_have_CRLF() {
     holds "$complained" "kůň 1/none.pmc" "the message"
 }
 
+test_wildcards_are_the_files_that_there_are() {
+    begin
+    mkdir kůň
+    cp program.rks "kůň/1.rks"
+    echo 'Q5' >"kůň/2.rks"
+    exits 1 exe check 'kůň\*.rks'
+    holds "$said" "kůň/2.rks:1:1: error" "the message"
+    exits 0 exe check '?ro*.rks'
+    exits 1 exe check '*.pmc'
+    holds "$complained" "cannot read *.pmc" "the message"
+}
+
 test_names_of_devices_are_no_files() {
     local name
     begin
