@@ -4,19 +4,22 @@
  * leave in the middle, hang up; each checks what it gets (loop_client.c). When nothing is left to do, nothing is due, none waits
  * for what has come true; at the end nothing is open.
  *
- * First byte: units, how long bytes take, a pty or none, the clock. Then lines:
+ * First byte: units, how long bytes take, a pty or none, the clock. Next an @ or none: the control socket is a TCP port, whose
+ * token all clients show first that are not strangers. Then lines:
  *     A… B… C…   a client sends … and a newline; then everything is done that can be done
  *     a… b… c…   a client sends … alone, its `~` being newlines; not looked at yet
  *     -A /A      it hangs up; it ends its sending (the next thing it says makes it come again)
  *     !A ?A      it reads no more; it reads again
  *     *AN        it sends N thousand blanks and x
  *     #N         N more connections that say nothing
+ *     @…         a stranger sends … and a newline to the TCP port, and is not let in
  *     +N         N ms pass; .  the loop takes a turn
  *     <HEX       bytes of the host on line 0, >HEX on the last one */
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include "control/control_inside.h"
@@ -46,6 +49,7 @@ static int crowd[CROWD];
 static unsigned crowd_count, passed, shutdowns_gone;
 static size_t filled;
 static char socket_path[PATH_MAX], link_pattern[PATH_MAX];
+static bool by_tcp;
 static bool ended;     /* a client has asked for it */
 static unsigned deaf;  /* who asked then, and could not know of it */
 
@@ -120,8 +124,9 @@ static void start(void)
     }
     for (unsigned i = 0; i < options.lines; i++)
         FUZZ_CHECK(bus_start(bus[i]), "no start");
-    control = control_open(&loop, socket_path, NULL, bus, options.lines, &control_calls);
+    control = control_open(&loop, socket_path, by_tcp ? "127.0.0.1:0" : NULL, bus, options.lines, &control_calls);
     FUZZ_CHECK(control, "no control socket");
+    client_find(socket_path, by_tcp ? control->address : NULL, options.lines);
 }
 
 static void close_handle(uv_handle_t *handle, void *unused)
@@ -219,14 +224,30 @@ static void hang_up(struct client *one)
     client_close(one);
 }
 
+/* Before anything else, and before others come, who might take its place. */
+static void show_token(struct client *one)
+{
+    unsigned before = control_clients(control);
+    char line[200];
+    int length = snprintf(line, sizeof line, "{\"jsonrpc\":\"2.0\",\"id\":0,\"method\":\"authenticate\",\"params\":"
+                          "{\"token\":\"%s\"}}\n", control->token);
+    FUZZ_CHECK(client_send(one, line, (size_t)length) == (size_t)length, "the token is not sent");
+    for (unsigned tries = 0; tries < TURNS && !ended && control_clients(control) == before; tries++)
+        turn();
+    FUZZ_CHECK(ended || control_clients(control) > before || is_worn_out(), "the token does not let in");
+}
+
 /* One who is there, or comes. */
 static struct client *speaker(uint8_t letter)
 {
     struct client *one = client_named(letter);
     if (one->fd >= 0 && (one->left || one->hung_up))
         hang_up(one);
-    if (one->fd < 0 && client_connect(one, socket_path, options.lines))
-        one->crowded = crowd_count + CLIENTS > CONTROL_CLIENTS;
+    if (one->fd < 0 && client_connect(one)) {
+        one->crowded = !by_tcp && crowd_count + CLIENTS > CONTROL_CLIENTS;
+        if (by_tcp)
+            show_token(one);
+    }
     return one;
 }
 
@@ -271,10 +292,25 @@ static void fill(struct client *one, unsigned thousands)
 static void gather_crowd(unsigned number)
 {
     struct client one;
-    while (number-- > 0 && crowd_count < CROWD && client_connect(&one, socket_path, options.lines)) {
+    while (number-- > 0 && crowd_count < CROWD && client_connect(&one)) {
         crowd[crowd_count++] = one.fd;
         turn();
     }
+}
+
+/* Whatever it sends: it does not know the token. */
+static void send_as_stranger(const uint8_t *text, size_t length)
+{
+    struct client one;
+    unsigned before = control_clients(control);
+    if (!by_tcp || crowd_count == CROWD || !client_connect(&one))
+        return;
+    crowd[crowd_count++] = one.fd;
+    (void)!send(one.fd, text, length, MSG_NOSIGNAL | MSG_DONTWAIT);
+    (void)!send(one.fd, "\n", 1, MSG_NOSIGNAL | MSG_DONTWAIT);
+    turn();
+    turn();
+    FUZZ_CHECK(control_clients(control) <= before, "a stranger is let in");
 }
 
 static unsigned digit_of(uint8_t character)
@@ -320,6 +356,8 @@ static void act(uint8_t what, const uint8_t *text, size_t length)
         fill(speaker(text[0]), number_of(text + 1, length - 1));
     else if (what == '#')
         gather_crowd(number_of(text, length));
+    else if (what == '@')
+        send_as_stranger(text, length);
     else if (what >= 'A' && what <= 'z')
         say(speaker(what), text, length, what <= 'Z');
     if (what == '.')
@@ -359,7 +397,7 @@ static void say_goodbye(bool leave)
     while (crowd_count > 0)
         close(crowd[--crowd_count]);
     machine_pass(UINT64_C(1000000000)); /* one that had ended its sending is not read: it is checked now and then */
-    if (settle(TURNS_AT_END))
+    if (settle(TURNS_AT_END) && !by_tcp) /* TCP does not report who goes after its sending has ended */
         FUZZ_CHECK(control_clients(control) == 0, "%u clients are still there", control_clients(control));
 }
 
@@ -403,6 +441,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct fuzz fuzz = {data, size};
     uint8_t mode = fuzz_byte(&fuzz);
     bool open_before[DESCRIPTORS], open_after[DESCRIPTORS];
+    by_tcp = fuzz.left > 0 && *fuzz.at == '@';
+    if (by_tcp)
+        fuzz_byte(&fuzz);
     warm_up();
     look_at_descriptors(open_before);
     machine_begin(look[mode >> 4 & 3]);

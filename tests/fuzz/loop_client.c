@@ -3,6 +3,8 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -14,6 +16,8 @@
 #include "sim/watch.h"
 
 static unsigned lines_there;
+static struct sockaddr_un here;
+static struct sockaddr_in by_port; /* port 0: `here' is used */
 
 /* ---- What is due ---------------------------------------------------------------------------------------------------- */
 
@@ -44,7 +48,7 @@ static enum due_kind kind_of(const char *method)
 {
     static const char *const names[] = {
         [DUE_WAIT] = "wait", [DUE_ADVANCE] = "advance", [DUE_SUBSCRIBE] = "subscribe", [DUE_UNSUBSCRIBE] = "unsubscribe",
-        [DUE_TRACE_STOP] = "trace.stop", [DUE_SHUTDOWN] = "shutdown",
+        [DUE_TRACE_STOP] = "trace.stop", [DUE_SHUTDOWN] = "shutdown", [DUE_AUTHENTICATE] = "authenticate",
     };
     for (unsigned i = 1; i < sizeof names / sizeof names[0]; i++)
         if (strcmp(names[i], method) == 0)
@@ -167,7 +171,8 @@ static void take_result(struct client *client, const struct due *due, const json
     FUZZ_CHECK(due->params && json_is_object(result), "no request, and obeyed: %s", text);
     if (due->kind == DUE_UNSUBSCRIBE)
         unsubscribe(client, due, text);
-    if (due->kind != DUE_UNSUBSCRIBE && due->kind != DUE_TRACE_STOP) /* whose line may be another */
+    if (due->kind != DUE_UNSUBSCRIBE && due->kind != DUE_AUTHENTICATE &&
+        due->kind != DUE_TRACE_STOP) /* whose line may be another */
         answered(client, due, tick_of(result, "t_us", text), text);
     if (due->kind == DUE_SUBSCRIBE)
         subscribe(client, due, result, text);
@@ -336,16 +341,28 @@ void client_none(struct client *client)
     client->fd = -1;
 }
 
-bool client_connect(struct client *client, const char *path, unsigned lines)
+void client_find(const char *path, const char *tcp, unsigned lines)
 {
-    struct sockaddr_un address = {.sun_family = AF_UNIX};
     lines_there = lines;
-    FUZZ_CHECK(strlen(path) < sizeof address.sun_path, "TMPDIR is too long");
-    strcpy(address.sun_path, path);
+    here = (struct sockaddr_un){.sun_family = AF_UNIX};
+    by_port = (struct sockaddr_in){.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    FUZZ_CHECK(strlen(path) < sizeof here.sun_path, "TMPDIR is too long");
+    strcpy(here.sun_path, path);
+    if (tcp)
+        by_port.sin_port = htons((uint16_t)strtoul(strrchr(tcp, ':') + 1, NULL, 10));
+}
+
+bool client_connect(struct client *client)
+{
+    bool tcp = by_port.sin_port != 0;
+    int on = 1;
     client_none(client);
     client->reading = true;
-    client->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    return client->fd >= 0 && connect(client->fd, (const struct sockaddr *)&address, sizeof address) == 0;
+    client->fd = socket(tcp ? AF_INET : AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | (tcp ? 0 : SOCK_NONBLOCK), 0);
+    if (client->fd >= 0 && tcp) /* what is sent is there at once */
+        setsockopt(client->fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    return client->fd >= 0 && (tcp ? connect(client->fd, (const struct sockaddr *)&by_port, sizeof by_port)
+                                   : connect(client->fd, (const struct sockaddr *)&here, sizeof here)) == 0;
 }
 
 size_t client_send(struct client *client, const char *text, size_t length)

@@ -14,7 +14,9 @@
 #define CLIENT_LINES 2u          /* of the emulator */
 #define CLIENT_SUBSCRIPTIONS 256u /* more than one client can ask for */
 
-enum due_kind { DUE_OTHER, DUE_WAIT, DUE_ADVANCE, DUE_SUBSCRIBE, DUE_UNSUBSCRIBE, DUE_TRACE_STOP, DUE_SHUTDOWN };
+enum due_kind {
+    DUE_OTHER, DUE_WAIT, DUE_ADVANCE, DUE_SUBSCRIBE, DUE_UNSUBSCRIBE, DUE_TRACE_STOP, DUE_SHUTDOWN, DUE_AUTHENTICATE
+};
 
 /* An answer that is to come. */
 struct due {
@@ -56,8 +58,11 @@ struct client {
 
 void client_none(struct client *client);
 
-/* Connect to the socket `path` of an emulator with so many lines. Returns false if none listens any more. */
-bool client_connect(struct client *client, const char *path, unsigned lines);
+/* The emulator for all clients from now on: its socket `path`, or `tcp`, 127.0.0.1:PORT, if that is not NULL; its lines. */
+void client_find(const char *path, const char *tcp, unsigned lines);
+
+/* Connect to it. Returns false if none listens any more. */
+bool client_connect(struct client *client);
 
 /* Send; what the other end does not take is lost, and not expected to be answered. Returns the bytes that it took. */
 size_t client_send(struct client *client, const char *text, size_t length);

@@ -19,7 +19,7 @@
 
 #define NS_PER_SECOND UINT64_C(1000000000)
 #define NS_PER_MS UINT64_C(1000000)
-#define TIMERS 8u
+#define TIMERS 12u
 #define AN_HOUR UINT64_C(3600000) /* ms */
 
 static uint64_t now, a_look;
