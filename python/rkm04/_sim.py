@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""In place of the extension, where that was not built (Windows): a running emulator is reached, nothing is simulated here."""
+"""In place of the extension, where that was not built: a running emulator is reached, nothing is simulated here."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import time
 
 import pytest
 import serial
@@ -247,6 +248,13 @@ def test_exchanges_over_tcp_leave_the_port_to_the_program(over_tcp):
                 over_tcp.advance("10ms")
             with pytest.raises(rkm04.Error, match="another client has it"):
                 over_tcp.exchange(1, version)
+
+
+def test_exchanges_over_tcp_follow_each_other_at_once(over_tcp):
+    begin = time.monotonic()
+    for _ in range(20):
+        over_tcp.exchange(1, rkm04.request("Version"))
+    assert time.monotonic() - begin < 15  # not the second for which the emulator keeps a client that has closed its side
 
 
 def test_what_tcp_does_not_carry_is_refused(over_tcp):

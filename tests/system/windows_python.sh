@@ -51,6 +51,12 @@ test_the_wheel_runs_what_the_README_shows() {
     cd "$folder" && python_exe -W error example.py >"$folder/example.err" || fail "the example has failed"
 }
 
+test_the_first_test_of_the_document_passes() {
+    sed -n '/^Write it into `test_axis.py`/,/^The wheel has/{/^    /s/^    //p}' "$root/docs/WINDOWS.md" >"$folder/test_axis.py"
+    cd "$folder" && python_exe -m pytest -p no:cacheprovider >pytest.err || fail "it fails"
+    holds "$(<pytest.err)" "2 passed" "the result"
+}
+
 test_the_wheel_has_the_programs() {
     for program in rkm04 rkmctl; do
         same "$program ${version#* }" "$(wine_in "$prefix" "$packages/bin/$program.exe" --version 2>/dev/null </dev/null | cat)" \
