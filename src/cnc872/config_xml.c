@@ -170,18 +170,13 @@ static bool read_number(const struct cnc_piece *piece, unsigned decimals, int64_
     return *value >= low && *value <= high;
 }
 
-static bool is_space(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
-}
-
 static bool read_licenses(const struct cnc_piece *piece, uint16_t *licenses)
 {
     const char *at = piece->text, *end = at + piece->length;
     *licenses = 0;
     while (at < end) {
         const char *begin = at;
-        while (at < end && !is_space(*at))
+        while (at < end && !cnc_xml_is_space(*at))
             at++;
         int license = at > begin ? cnc_find_license(begin, (size_t)(at - begin)) : 0;
         if (license < 0)

@@ -21,6 +21,12 @@ static inline void cnc_set(struct cnc *cnc, unsigned place, bool value)
     cnc_put_bit(&cnc->cells, place, value);
 }
 
+/* The lowest three digits, BCD; a byte has the lowest two of them. */
+static inline int64_t cnc_bcd(int64_t number)
+{
+    return number / 100 % 10 << 8 | number / 10 % 10 << 4 | number % 10;
+}
+
 static inline void cnc_report_event(struct cnc *cnc, enum cnc_event event, int64_t value)
 {
     if (cnc->port != NULL && cnc->port->event != NULL)

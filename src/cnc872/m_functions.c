@@ -24,12 +24,6 @@ static const struct {
 } bytes[] = {{2, CNC_CELL_PB06}, {10, CNC_CELL_PB03}, {11, CNC_CELL_PB13}, {12, CNC_CELL_PB14}, {13, CNC_CELL_PB15},
              {14, CNC_CELL_PB16}};
 
-/* The lowest two digits, BCD. */
-static int64_t bcd(int64_t number)
-{
-    return number / 10 % 10 << 4 | number % 10;
-}
-
 void cnc_end_functions(struct cnc *cnc)
 {
     for (size_t i = 0; i < COUNT(for_the_block); i++)
@@ -71,7 +65,7 @@ static void publish_m(struct cnc *cnc, const struct cnc_nc_block *block)
             cnc_set(cnc, from_now_on[i].bit, is_programmed(&from_now_on[i], block));
     for (size_t i = 0; i < COUNT(bytes); i++)
         if (has_group(block, bytes[i].group))
-            cnc_put_number(&cnc->cells, bytes[i].cell, 0, bcd(block->m[bytes[i].group]));
+            cnc_put_number(&cnc->cells, bytes[i].cell, 0, cnc_bcd(block->m[bytes[i].group]));
     if (is_fixed(block, 3))
         cnc_publish_gear(cnc, block->m[3], block);
     if (is_fixed(block, 8))
@@ -86,10 +80,10 @@ void cnc_publish_functions(struct cnc *cnc, const struct cnc_nc_block *block)
         int64_t t = cnc_nc_word(cnc->program, block, CNC_NC_T);
         cnc_set(cnc, CNC_BIT_ZMSTPI, true);
         for (unsigned i = 0; i < 4; i++, t /= 100)
-            cnc_put_number(&cnc->cells, CNC_CELL_PB07, i, bcd(t));
+            cnc_put_number(&cnc->cells, CNC_CELL_PB07, i, cnc_bcd(t));
     }
     if ((block->words & 1u << CNC_NC_H) != 0) {
         cnc_set(cnc, CNC_BIT_ZMSHPI, true);
-        cnc_put_number(&cnc->cells, CNC_CELL_PB05, 0, bcd(cnc_nc_word(cnc->program, block, CNC_NC_H) / 1000000));
+        cnc_put_number(&cnc->cells, CNC_CELL_PB05, 0, cnc_bcd(cnc_nc_word(cnc->program, block, CNC_NC_H) / 1000000));
     }
 }

@@ -42,7 +42,7 @@ int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_
 bool cnc_has_single(const struct cnc *cnc, uint16_t axes)
 {
     for (unsigned i = 0; i < CNC_AXES; i++)
-        if (((unsigned)axes >> i & 1u) != 0 && cnc->axis[i].kind != CNC_SINGLE_NONE)
+        if (cnc_has_axis(axes, i) && cnc->axis[i].kind != CNC_SINGLE_NONE)
             return true;
     return false;
 }
@@ -89,8 +89,8 @@ static int64_t find_speed(const struct cnc *cnc, unsigned axis, bool rapid)
 static int find_request(const struct cnc *cnc, unsigned axis)
 {
     const bool outside = cnc_is_set(cnc, CNC_BIT_REQ_EXT_CONT_AUTMAN);
-    const bool plus = outside ? cnc_is_set(cnc, CNC_BIT_EXM_x0 + axis) : (cnc->panel.jog_plus >> axis & 1) != 0;
-    const bool minus = outside ? cnc_is_set(cnc, CNC_BIT_EXM_x1 + axis) : (cnc->panel.jog_minus >> axis & 1) != 0;
+    const bool plus = outside ? cnc_is_set(cnc, CNC_BIT_EXM_x0 + axis) : cnc_has_axis(cnc->panel.jog_plus, axis);
+    const bool minus = outside ? cnc_is_set(cnc, CNC_BIT_EXM_x1 + axis) : cnc_has_axis(cnc->panel.jog_minus, axis);
     return (int)plus - (int)minus;
 }
 

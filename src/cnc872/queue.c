@@ -92,11 +92,6 @@ static double criterial_feed(const struct cnc *cnc, uint32_t index)
 
 /* ---- Fields ------------------------------------------------------------------------------------------------------------- */
 
-static int64_t bcd(unsigned number)
-{
-    return (int64_t)(number / 100 << 8 | number / 10 % 10 << 4 | number % 10);
-}
-
 /* The function of a group in force in BLK[n], BCD. */
 static int64_t function_in_force(const struct cnc *cnc, unsigned n, unsigned group)
 {
@@ -106,7 +101,7 @@ static int64_t function_in_force(const struct cnc *cnc, unsigned n, unsigned gro
         if (index != CNC_NO_BLOCK && cnc->program->blocks[index].m[group] != CNC_NC_NO_M)
             m = cnc->program->blocks[index].m[group];
     }
-    return m == CNC_NC_NO_M ? 0 : bcd(m);
+    return m == CNC_NC_NO_M ? 0 : cnc_bcd(m);
 }
 
 static bool moves_axis(const struct cnc *cnc, unsigned n, unsigned axis)

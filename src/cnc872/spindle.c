@@ -156,7 +156,7 @@ static int64_t find_way_to_turn(int64_t position)
 /* Does the path or a motion of its own move the axis? */
 static bool is_moved(const struct cnc *cnc, unsigned i)
 {
-    return cnc->axis[i].kind != CNC_SINGLE_NONE || (cnc->move.is_going && ((unsigned)cnc->move.section.axes >> i & 1u) != 0);
+    return cnc->axis[i].kind != CNC_SINGLE_NONE || (cnc->move.is_going && cnc_has_axis(cnc->move.section.axes, i));
 }
 
 static void put_asked(struct cnc *cnc, unsigned i, bool is_asked)
@@ -203,7 +203,7 @@ static void move_axis(struct cnc *cnc, unsigned i)
 void cnc_move_spindles(struct cnc *cnc)
 {
     for (unsigned i = 0; i < CNC_AXES; i++) {
-        const bool is_asked = ((unsigned)cnc->spindle_asked >> i & 1u) != 0;
+        const bool is_asked = cnc_has_axis(cnc->spindle_asked, i);
         if (is_asked && cnc->machine.annulment == CNC_ANNULMENT_ASKED)
             put_asked(cnc, i, false);
         else if (is_asked)

@@ -4,11 +4,6 @@
 
 #include <string.h>
 
-static bool is_space(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
-}
-
 static bool is_word(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -27,7 +22,7 @@ bool cnc_xml_next_is_word(const struct cnc_xml *xml)
 
 bool cnc_xml_next_is_space(const struct cnc_xml *xml)
 {
-    return xml->at < xml->length && is_space(xml->text[xml->at]);
+    return xml->at < xml->length && cnc_xml_is_space(xml->text[xml->at]);
 }
 
 void cnc_xml_move_on(struct cnc_xml *xml, size_t count)

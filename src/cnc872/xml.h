@@ -24,6 +24,11 @@ struct cnc_xml {
     struct cnc_text_errors errors;
 };
 
+static inline bool cnc_xml_is_space(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
 /* Do these bytes come next? */
 bool cnc_xml_next_is(const struct cnc_xml *xml, const char *bytes);
 
