@@ -111,7 +111,7 @@ export class Cells {
     clearTimeout(this.later); // what has been found says nothing any more
     this.wanted = null;
     const isNew = (name) => !this.rows.some((row) => row.name.toLowerCase() === name.toLowerCase());
-    const found = names.map((name) => ({ name }));
+    const found = [...new Set(names)].map((name) => ({ name }));
     await Promise.all(found.map((row) => this.learn(row)));
     this.rows.push(...found.filter((row) => !row.error && isNew(row.name)));
     const wrong = found.filter((row) => row.error); // they stay in the field, to be corrected

@@ -109,9 +109,12 @@ export class CncPanel {
     element.classList.toggle("inverse", inverse !== 0);
   }
 
-  show({ t_us, cnc }) {
+  show({ t_us, cnc, powered }) {
     if (!this.body)
       this.build();
+    if (powered && this.powered === false)
+      this.begin(); // without power it has no cells
+    this.powered = powered;
     if (this.names?.join() !== namesOf(cnc.axes).join())
       this.showAxes(cnc.axes);
     this.names.forEach((name, at) => FIELDS.forEach((field, column) =>

@@ -288,6 +288,15 @@ export const cases = {
     const rows = await page.locator("table.cells tbody th").allTextContents();
     assert.deepEqual(rows, ["PO_F", "PO_STOP", "STOP_REQ", "LIMIT_FEED", "FEED_OVR", "po_pol", "WORD.BZH09"]);
     await checkAccess(page, "cells");
+    // Without power there are no cells; they come back with it.
+    await page.getByRole("button", { name: "Power", exact: true }).click();
+    await shows(page, ".unit.off");
+    await page.reload();
+    await shows(page, "table.cells td.value", "element.textContent.includes('no power')");
+    await page.getByRole("button", { name: "Power", exact: true }).click();
+    await value(page, "PO_F", "0");
+    await add(page, "PO_POS PO_POL PO_F PO_F");
+    assert.equal(await page.locator("table.cells tbody tr").count(), 7, "a name is there once");
   },
 
   // What another client changes is seen soon, although nothing moves and no event comes: of nine times all but one count.
