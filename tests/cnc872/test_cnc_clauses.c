@@ -36,7 +36,13 @@ START_TEST(NM9_limit_switches_of_every_axis)
     static const char *const names[] = {"KHX0", "KHX1", "KHY0", "KHY1", "KHZ0", "KHZ1"};
     for (unsigned i = 0; i < 6; i++) {
         static const char *const permissions[] = {"MPX", "MPY", "MPZ"};
-        rig_begin(i < 2 ? "G1 X1 F1000" : i < 4 ? "G1 Y1 F1000" : "G1 Z1 F1000");
+        static const char *const programs[] = {"G1 X1 F1000", "G1 Y1 F1000", "G1 Z1 F1000"};
+        static const char *const back[] = {"G1 X-1 F1000", "G1 Y-1 F1000", "G1 Z-1 F1000"};
+        rig_begin(back[i / 2]); /* the switch of the other direction holds it, too */
+        set_bit(names[i], true);
+        run_to(100);
+        ck_assert_int_eq(at(100).x + at(100).y + at(100).z, 0);
+        rig_begin(programs[i / 2]);
         set_bit(names[i], true);
         run_to(100);
         for (unsigned axis = 0; axis < 3; axis++)
