@@ -49,7 +49,7 @@ static const char help[] =
     "      --version   print the program's version\n"
     "\n"
     "Examples:\n"
-    "  rkm04 serve --node 3 --flash unit3.flash\n"
+    "  rkm04 serve --node 3 --flash unit3.flash --tcp 4001\n"
     "  rkm04 serve --node 1-16 --tcp 4001\n"
     "  rkm04 exec --trace pulses.vcd program.rks\n"
     "  rkm04 check --werror program.rks\n"

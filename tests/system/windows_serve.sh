@@ -149,6 +149,8 @@ test_help_shows_what_Windows_has() {
     done
     same "" "$(grep '^  rkm04 serve' <<<"$help" | grep -v -e --tcp -e --rfc2217 -e --port)" "examples that are refused"
     holds "$help" "rkm04 serve --port COM3" "the examples"
+    exits 0 exe --help
+    same "" "$(grep '^  rkm04 serve' <<<"$said" | grep -v -e --tcp -e --rfc2217 -e --port)" "examples of rkm04.exe --help"
 }
 
 # Wine's server has a descriptor for each socket of all programs.
