@@ -5,8 +5,12 @@ execute_process(COMMAND ${SOURCE}/tools/windows-libraries ${BUILD}/libraries COM
 set(python OFF)
 find_program(maven mvn)
 if(maven)
-  set(python ON)
-  execute_process(COMMAND ${SOURCE}/tools/windows-python ${BUILD}/python-for-windows COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${SOURCE}/tools/windows-python ${BUILD}/python-for-windows RESULT_VARIABLE result)
+  if(result EQUAL 0)
+    set(python ON)
+  elseif(NOT result EQUAL 77) # 77: Maven Central is not reached
+    message(FATAL_ERROR "there is no Python for Windows")
+  endif()
 endif()
 foreach(arguments "-S;${SOURCE};-B;${BUILD};-DCMAKE_TOOLCHAIN_FILE=${SOURCE}/cmake/WindowsToolchain.cmake;\
 -DRKM04_WINDOWS_LIBRARIES=${BUILD}/libraries;-DRKM04_PYTHON=${python};-DRKM04_WINDOWS_PYTHON=${BUILD}/python-for-windows;\

@@ -7,7 +7,8 @@
 
 : "${RKM04_EXE=}"
 [[ -f $RKM04_EXE ]] || skip_all "rkm04.exe is not built; apt-get install gcc-mingw-w64-x86-64-win32"
-[[ -f ${RKM04_EXE%/*}/python/rkm04/_sim.pyd ]] || skip_all "there is no Python for Windows; apt-get install maven"
+[[ -f ${RKM04_EXE%/*}/python/rkm04/_sim.pyd ]] ||
+    skip_all "there is no Python for Windows; apt-get install maven, and reach Maven Central"
 has_wine || skip_all "there is no Wine; apt-get install wine64"
 root=$(cd "$(dirname "$0")/../.." && pwd)
 : "${BUILD:=$root/build/dev}"
@@ -55,6 +56,22 @@ test_the_first_test_of_the_document_passes() {
     sed -n '/^Write it into `test_axis.py`/,/^The wheel has/{/^    /s/^    //p}' "$root/docs/WINDOWS.md" >"$folder/test_axis.py"
     cd "$folder" && python_exe -m pytest -p no:cacheprovider >pytest.err || fail "it fails"
     holds "$(<pytest.err)" "2 passed" "the result"
+}
+
+test_what_cannot_be_fetched_is_said_and_what_is_another_one_is_refused() {
+    mkdir "$folder/bin"
+    printf '#!/bin/sh\nexit 1\n' >"$folder/bin/mvn"
+    chmod +x "$folder/bin/mvn"
+    PATH=$folder/bin:$PATH exits 77 "$root/tools/windows-python" "$folder/python"
+    holds "$said" "skipped: org.bytedeco:cpython" "the message"
+    cat >"$folder/bin/mvn" <<'END'
+#!/bin/sh
+for word; do case $word in -Dmaven.repo.local=*) m2=${word#*=} ;; esac; done
+mkdir -p "$m2/org/bytedeco" && echo another >"$m2/org/bytedeco/cpython.jar"
+END
+    PATH=$folder/bin:$PATH exits 1 "$root/tools/windows-python" "$folder/python"
+    holds "$complained" "is another one than" "the message"
+    [[ ! -e $folder/python/made.lock ]] || fail "it counts as made"
 }
 
 test_the_wheel_has_the_programs() {
