@@ -40,8 +40,7 @@ static void put_positions(struct cnc *cnc, unsigned i)
 static bool may_move(const struct cnc *cnc, unsigned i, bool manual)
 {
     const bool by_man = manual && cnc->config->manual_by_man;
-    return cnc_is_set(cnc, (by_man ? CNC_BIT_MPxMAN : CNC_BIT_MPxPI) + i) && !cnc_is_set(cnc, CNC_BIT_KHx0 + i) &&
-           !cnc_is_set(cnc, CNC_BIT_KHx1 + i) && cnc_find_limit(cnc, i, 1) == CNC_LIMIT_NONE &&
+    return cnc_is_set(cnc, (by_man ? CNC_BIT_MPxMAN : CNC_BIT_MPxPI) + i) && cnc_find_limit(cnc, i, 1) == CNC_LIMIT_NONE &&
            cnc_find_limit(cnc, i, -1) == CNC_LIMIT_NONE && cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) == 0;
 }
 
