@@ -117,11 +117,13 @@ static bool read_config(struct cnc_text *text, struct error_log *log)
     return config && cnc_config_read(text->text, text->length, config, report, log);
 }
 
-/* Give back what lies behind `count` elements, and one. */
-static void shrink(void **memory, size_t count, size_t size)
+/* Give back what lies behind `count` elements, and one. Returns where they are now. */
+static void *shrink(void *memory, size_t count, size_t size)
 {
-    void *less = realloc(*memory, (count + 1u) * size);
-    *memory = less ? less : *memory;
+    void *less = realloc(memory, (count + 1u) * size);
+    if (!less)
+        return memory;
+    return less;
 }
 
 static bool read_program(struct cnc_text *text, struct error_log *log)
@@ -137,8 +139,8 @@ static bool read_program(struct cnc_text *text, struct error_log *log)
     if (!program->blocks || !program->values || !cnc_nc_read(text->text, text->length, config, program, report, log))
         return false;
     /* The rooms were those that the text could have needed. */
-    shrink((void **)&program->blocks, program->block_count, sizeof *program->blocks);
-    shrink((void **)&program->values, program->value_count, sizeof *program->values);
+    program->blocks = shrink(program->blocks, program->block_count, sizeof *program->blocks);
+    program->values = shrink(program->values, program->value_count, sizeof *program->values);
     return true;
 }
 

@@ -59,10 +59,9 @@ def test_messages_of_a_device_without_a_bus_are_refused(alone):
     assert alone.now == 0
 
 
-def test_bytes_reach_no_device_without_a_bus(alone):
-    assert alone.host.write(b"\x81POS?\r") == 6
-    alone.advance("1s")
-    assert alone.host.read() == b""
+def test_a_device_without_a_bus_has_no_host(alone):
+    with pytest.raises(ValueError, match="has no bus"):
+        alone.host
     assert list(alone.dialogue) == []
 
 
