@@ -183,10 +183,13 @@ static bool turn(void)
     unsigned there = control_clients(control);
     bool rung = machine_ring();
     uv_run(&loop, UV_RUN_NOWAIT);
-    bool taken = clients_take(), stepped = true;
-    for (unsigned i = 0; i < options.lines; i++)
+    bool taken = clients_take(), stepped = true, advancing = false;
+    for (unsigned i = 0; i < options.lines; i++) {
         stepped = stepped && bus_is_stepped(bus[i]);
-    return taken || (rung && stepped) || control->working || control->restore.client || there != control_clients(control);
+        advancing = advancing || bus[i]->time.advancing;
+    }
+    return taken || (rung && stepped) || advancing || control->working ||
+           control->restore.client || there != control_clients(control);
 }
 
 /* No client waits for what has come true, or for a time that is over. */
