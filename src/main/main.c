@@ -15,7 +15,8 @@
 
 #define NAMES "serve, exec, check, fmt, explain, estimate, lsp, test, replay, plot, devices or signals"
 
-const char *argp_program_version = "rkm04 " RKM04_VERSION;
+/* The C library looks for it: it has to be visible whatever the build hides. */
+__attribute__((visibility("default"))) const char *argp_program_version = "rkm04 " RKM04_VERSION;
 
 static const char help[] =
     "Usage: rkm04 serve [OPTION...]\n"

@@ -7,7 +7,7 @@
 
 #include "options/options.h"
 
-const char *argp_program_version = "rkm04-window " RKM04_VERSION;
+__attribute__((visibility("default"))) const char *argp_program_version = "rkm04-window " RKM04_VERSION;
 
 enum { KEY_HTTP = 0x100, KEY_OPEN, KEY_BOUND };
 

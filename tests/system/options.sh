@@ -26,7 +26,8 @@ test_help_and_version_go_to_stdout() {
         holds "${said,,}" usage "'$command'"
         same "" "$complained" "stderr of '$command'"
     done
-    for command in "$RKM04 --version" "$RKMCTL --version"; do
+    for command in "$RKM04 --version" "$RKMCTL --version" ${RKM04_WINDOW:+"$RKMCTL window --version"} \
+        "$RKM04 "{serve,exec,test,replay,check,fmt,explain,estimate,plot,lsp,devices,signals}" --version"; do
         # shellcheck disable=SC2086
         exits 0 $command
         holds "$said" 0.1.0 "'$command'"
