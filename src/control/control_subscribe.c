@@ -24,7 +24,7 @@ struct subscription {
 static void on_event(void *context, const struct watch_event *event)
 {
     struct subscription *subscription = context;
-    if (!event_filter_passes(&subscription->filter, event))
+    if (!event_filter_passes(&subscription->filter, &subscription->bus->sim, &subscription->watcher, event))
         return;
     size_t room = subscription->head_length + event_json_room(event) + sizeof TAIL;
     char *at = connection_begin_event(&subscription->client->connection, room, event->tick);

@@ -27,7 +27,7 @@ static char *make_room(struct handle_subscription *subscription, size_t more)
 static void on_event(void *context, const struct watch_event *event)
 {
     struct handle_subscription *subscription = context;
-    if (!event_filter_passes(&subscription->filter, event))
+    if (!event_filter_passes(&subscription->filter, subscription->sim, &subscription->watcher, event))
         return;
     char *at = subscription->lost == 0 ? make_room(subscription, event_json_room(event) + 3u) : NULL;
     if (!at) {

@@ -305,10 +305,17 @@ static uint64_t plants_next(const struct sim *sim)
     return next;
 }
 
+/* Are there servers of devices, or watched cells? Most lines have none, and they are asked often. */
+static bool has_extras(const struct sim *sim)
+{
+    return sim->services || sim->watch.cell_count > 0;
+}
+
 /* When something happens around the units. */
 static uint64_t next_around(const struct sim *sim)
 {
-    return earlier(earlier(sim_services_next(sim), sim_cells_next(sim, 1)), earlier(plants_next(sim), faults_next(&sim->faults)));
+    uint64_t next = earlier(plants_next(sim), faults_next(&sim->faults));
+    return has_extras(sim) ? earlier(next, earlier(sim_services_next(sim), sim_cells_next(sim, 1))) : next;
 }
 
 uint64_t sim_next_event(const struct sim *sim)
@@ -337,7 +344,9 @@ static uint64_t leap_end(const struct sim *sim, uint64_t tick)
     uint64_t now = sim_now(sim), end = earlier(tick, faults_next(&sim->faults)), bounce = plants_next(sim), due = sim_due(sim);
     uint64_t event = earlier(segment_next_event(&sim->segment), due);
     event = event > now ? event : now;
-    end = earlier(earlier(end, sim_cells_leap(sim)), earlier(wire_monitor_due(&sim->monitor), sim_services_next(sim)));
+    end = earlier(end, wire_monitor_due(&sim->monitor));
+    if (has_extras(sim))
+        end = earlier(end, earlier(sim_services_next(sim), sim_cells_leap(sim)));
     if ((sim->faults.kinds >> FAULT_POWER & 1u) != 0)
         end = earlier(end, due > now ? due : now);
     for (unsigned number = 1; number <= sim->segment.units; number++) {

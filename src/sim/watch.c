@@ -98,12 +98,6 @@ static int compare_events(const void *left, const void *right)
     return a->order < b->order ? -1 : a->order > b->order;
 }
 
-/* A cell that changes is the concern of its watcher alone. */
-static bool is_for(const struct watch *watch, const struct watch_event *event, const struct watcher *watcher)
-{
-    return event->kind != WATCH_CELL || watch->cells[event->number].owner == watcher;
-}
-
 void watch_deliver(struct watch *watch, uint64_t tick)
 {
     size_t done = 0;
@@ -113,7 +107,7 @@ void watch_deliver(struct watch *watch, uint64_t tick)
     for (; done < watch->count && watch->events[done].tick < tick; done++) {
         const struct watch_event *event = &watch->events[done];
         for (struct watcher *watcher = watch->watchers; watcher; watcher = watcher->next)
-            if ((watcher->kinds & WATCH_BIT(event->kind)) != 0 && is_for(watch, event, watcher))
+            if (watcher->kinds & WATCH_BIT(event->kind))
                 watcher->on_event(watcher->context, event);
         free_event(event);
     }

@@ -32,7 +32,7 @@ enum watch_kind {
     WATCH_SERVICE,   /* unit 0; value: number of the client of a server; `service` says what */
     WATCH_VALUE,     /* value: what value `number` of the unit is now (device_kind.value) */
     WATCH_NOTE,      /* value 0; `text`: what the device reports in words */
-    WATCH_CELL,      /* `cell`: what cell `number` of those that are watched is now; for its watcher alone */
+    WATCH_CELL,      /* `cell`: what watched cell `number` is now; for who has named it alone: event_filter_passes() */
     WATCH_KINDS
 };
 
@@ -47,7 +47,7 @@ struct watch_service {
 };
 
 #define WATCH_BIT(kind) (UINT32_C(1) << (kind))
-#define WATCH_ALL (WATCH_BIT(WATCH_KINDS) - 1u)
+#define WATCH_ALL ((WATCH_BIT(WATCH_KINDS) - 1u) & ~WATCH_BIT(WATCH_CELL)) /* cells concern only who has named them */
 
 /* Order within a tick (K2). */
 enum watch_phase {

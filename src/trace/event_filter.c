@@ -131,7 +131,10 @@ json_t *event_watch(struct sim *sim, struct watcher *watcher, const struct event
     return json_pack("{s:I, s:i, s:o*}", "t_us", (json_int_t)sim_now(sim), "subscription", (int)number, "cells", values);
 }
 
-bool event_filter_passes(const struct event_filter *filter, const struct watch_event *event)
+bool event_filter_passes(const struct event_filter *filter, const struct sim *sim, const struct watcher *watcher,
+                         const struct watch_event *event)
 {
+    if (event->kind == WATCH_CELL && sim->watch.cells[event->number].owner != watcher)
+        return false;
     return (!event->motor || (filter->motors >> event->motor & 1u)) && (!event->unit || (filter->units >> event->unit & 1u));
 }

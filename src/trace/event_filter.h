@@ -20,7 +20,9 @@ bool event_filter_read(struct event_filter *filter, struct sim *sim, const json_
 json_t *event_watch(struct sim *sim, struct watcher *watcher, const struct event_filter *filter, unsigned number,
                     const json_t *params, struct refusal *refusal);
 
-/* Is this event, of one of `kinds`, wanted? Those of no motor or no unit always are. */
-bool event_filter_passes(const struct event_filter *filter, const struct watch_event *event);
+/* Is this event, of one of `kinds`, wanted by `watcher`? Those of no motor or no unit always are, but cells only if it has named
+ * them. */
+bool event_filter_passes(const struct event_filter *filter, const struct sim *sim, const struct watcher *watcher,
+                         const struct watch_event *event);
 
 #endif

@@ -40,6 +40,8 @@ struct listener {
 static void on_cell(void *context, const struct watch_event *event)
 {
     struct listener *listener = context;
+    if (!event_filter_passes(&listener->filter, &rig.sim, &listener->watcher, event))
+        return;
     fprintf(listener->stream, "%llu %s %s %lld\n", (unsigned long long)event->tick,
             watch_kind_name((enum watch_kind)event->kind),
             event->kind == WATCH_CELL ? rig.sim.watch.cells[event->number].name : "-",

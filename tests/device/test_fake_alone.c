@@ -43,7 +43,7 @@ START_TEST(bytes_reach_no_device_without_a_bus)
     fake_rig_ask(&rig, 1, "POS?");
     sim_advance(&rig.sim, 1000000);
     ck_assert_str_eq(fake_rig_seen(&rig), "");
-    fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"wrong_fcs\"}", "framing `none' has no check value");
+    fake_rig_expect_refusal(&rig, "fault.inject", "{\"kind\": \"wrong_fcs\"}", "the device alone has no bus");
 }
 END_TEST
 

@@ -52,7 +52,7 @@ print(all["errors"], one["file"], one["line"], one["column"], one["name"])' <<<"
 test_programs_of_the_documentation_have_no_errors() {
     python3 - "$documents" "$folder" <<'END'
 import re, sys
-blocks = re.findall(r"^```\n(.*?)^```", open(sys.argv[1], encoding="utf-8").read(), re.M | re.S)
+blocks = re.findall(r"^```\w*\n(.*?)^```", open(sys.argv[1], encoding="utf-8").read(), re.M | re.S)
 programs = [block for block in blocks if "MODULE_" in block]
 assert programs
 for number, program in enumerate(programs):

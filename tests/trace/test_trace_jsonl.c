@@ -170,6 +170,8 @@ START_TEST(no_event_needs_more_room_than_it_says)
     struct wire_message message = {
         .start = INT64_MAX, .senders = UINT32_MAX, .dnode = 255, .snode = 255, .dropped = "\x01\x01", .refused = "\x01\x01",
         .raw_length = sizeof raw, .length = sizeof bytes, .raw = raw, .message = bytes};
+    sim->watch.cells = calloc(1, sizeof *sim->watch.cells);
+    memset(sim->watch.cells->name, 1, sizeof sim->watch.cells->name - 1);
     static const struct watch_service service = {.name = "\x01\x01", .act = WATCH_SERVICE_RECEIVED};
     for (unsigned kind = 0; kind < WATCH_KINDS; kind++) {
         struct watch_event event = {.tick = INT64_MAX, .value = INT32_MIN, .kind = (uint8_t)kind, .unit = 16, .motor = 4};
@@ -179,6 +181,8 @@ START_TEST(no_event_needs_more_room_than_it_says)
             event.message = &message;
         else if (kind == WATCH_SERVICE)
             event.service = &service;
+        else if (kind == WATCH_CELL)
+            event.cell = INT64_MIN;
         else
             event.text = "\x01\x01\x01";
         size_t room = event_json_room(&event);
