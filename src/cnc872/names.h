@@ -24,6 +24,7 @@ struct cnc_symbol {
     uint16_t scope; /* of a label: its section or mechanism; else 0 */
     uint8_t kind;   /* enum cnc_symbol_kind */
     uint8_t type;   /* enum cnc_type */
+    bool is_mechanism; /* the bit is that of a mechanism */
 };
 
 struct cnc_names {

@@ -197,6 +197,8 @@ static void begin_mechanism(struct translator *translator, struct cnc_word name)
         return;
     }
     struct cnc_symbol *symbol = declare(translator, 0, name, CNC_SYMBOL_BIT, CNC_BIT);
+    if (symbol)
+        symbol->is_mechanism = true;
     struct cnc_instruction *instruction = cnc_plc_emit(translator, CODE_MECHANISM);
     instruction->operand.place = symbol ? symbol->place : 0;
     instruction->operand.value = program->mechanisms;

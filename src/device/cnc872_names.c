@@ -102,22 +102,13 @@ static void add_row(struct search *search, const struct cnc_row *row, const char
 
 /* ---- Names of the PLC program ------------------------------------------------------------------------------------------- */
 
-/* Does this line of the text, from 1, begin a mechanism? */
-static bool is_mechanism(const struct cnc_text *text, uint32_t line)
-{
-    const char *at = text->text;
-    while (--line > 0 && (at = strchr(at, '\n')) != NULL)
-        at++;
-    return at != NULL && strncasecmp(at + strspn(at, " \t"), "MECH_BEGIN", 10) == 0;
-}
-
 static void add_own(struct search *search)
 {
     const struct cnc_text *text = search->device->own.text[CNC_TEXT_PLC];
     for (unsigned at = 0; text != NULL && at < text->plc->names.count; at++) {
         const struct cnc_symbol *symbol = &text->plc->names.symbols[at];
         if (symbol->kind == CNC_SYMBOL_BIT)
-            add(search, symbol->name, CNC_BIT, true, is_mechanism(text, symbol->line) ? "mechanism" : "program");
+            add(search, symbol->name, CNC_BIT, true, symbol->is_mechanism ? "mechanism" : "program");
         else if (symbol->kind == CNC_SYMBOL_VARIABLE)
             add(search, symbol->name, symbol->type, true, "program");
     }

@@ -275,11 +275,12 @@ END_TEST
 START_TEST(NL3_mechanisms_of_a_plc_program_are_found)
 {
     static const char plc[] = "plc=DATA\nREADY BIT 0\nLIMIT EQU 5\nDATA_END\nMODULE_MAIN\n  Mech_Begin CLAMP\n EX\n"
-                              "MECH_END CLAMP\nMODULE_MAIN_END\n";
+                              "MECH_END CLAMP\nHERE: MECH_BEGIN DOOR\n EX\nMECH_END DOOR\nMODULE_MAIN_END\n";
     fake_rig_end(&rig);
     fake_rig_begin_as(&rig, &cnc872_device, plc, "1", true);
     expect_result("cnc.cells", "{\"section\": \"mechanism\"}",
-                  "{\"cells\":[{\"name\":\"CLAMP\",\"type\":\"BIT\",\"access\":\"rw\",\"section\":\"mechanism\"}],\"more\":0}");
+                  "{\"cells\":[{\"name\":\"CLAMP\",\"type\":\"BIT\",\"access\":\"rw\",\"section\":\"mechanism\"},"
+                  "{\"name\":\"DOOR\",\"type\":\"BIT\",\"access\":\"rw\",\"section\":\"mechanism\"}],\"more\":0}");
     expect_result("cnc.cells", "{\"search\": \"\", \"section\": \"program\"}",
                   "{\"cells\":[{\"name\":\"READY\",\"type\":\"BIT\",\"access\":\"rw\",\"section\":\"program\"}],\"more\":0}");
     fake_rig_expect_refusal(&rig, "cnc.cells", "{\"section\": 8}", "section: expected its name");
