@@ -169,7 +169,7 @@ run_cases() {
         if (run_case "$name"); then
             echo "ok $name"
         else
-            echo "FAILED $name; alone: RKM04=$RKM04 RKMCTL=$RKMCTL $0 $name"
+            echo "FAILED $name; alone: RKM04=$RKM04 RKMCTL=$RKMCTL${RKM04_WINDOW:+ RKM04_WINDOW=$RKM04_WINDOW} $0 $name"
             failed=1
         fi
     done

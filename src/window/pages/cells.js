@@ -5,6 +5,7 @@ import { call } from "./link.js";
 import { word } from "./words.js";
 import { lamp, light, make, makeScrolled, write } from "./make.js";
 
+const NOTHING = "–"; // where a value is not known
 const READ_MS = 100;
 const MARKED_MS = 1500;
 const FIND_MS = 150;
@@ -73,7 +74,7 @@ export class Cells {
     this.mechanisms = (answer.cells ?? []).map(({ name }) => ({ name }));
     this.showMechanisms();
     for (const row of this.rows)
-      row.type = row.error = undefined;
+      row.type = row.error = row.shown = undefined;
     await Promise.all(this.rows.map((row) => this.learn(row)));
     this.showRows();
   }
@@ -137,8 +138,10 @@ export class Cells {
 
   // ---- Values ----
 
+  // The table, made anew: what it showed is kept, so that nothing is empty or without a name until it is read again.
   showRows() {
     for (const row of this.rows) {
+      const last = row.shown;
       row.shown = undefined;
       row.value = make("td", { class: "value" });
       const remove = make("button", { "aria-label": `${word("cnc-remove")} ${row.name}`, onclick: () => this.remove(row) }, "×");
@@ -148,6 +151,9 @@ export class Cells {
         make("td", {}, remove));
       if (row.error)
         row.value.textContent = row.error;
+      else
+        this.showValue(row, last ?? null);
+      row.shown = last;
     }
     this.body.replaceChildren(...this.rows.map((row) => row.line));
   }
@@ -160,7 +166,7 @@ export class Cells {
     const field = make("input", { inputmode: "numeric", size: 12, spellcheck: "false", "aria-label": row.name });
     field.onkeydown = (event) => {
       if (event.key === "Escape") {
-        field.value = String(row.shown ?? "");
+        field.value = String(row.shown ?? NOTHING);
         field.blur();
       }
       if (event.key !== "Enter")
@@ -173,7 +179,7 @@ export class Cells {
     };
     field.onblur = () => {
       field.classList.remove("wrong");
-      field.value = String(row.shown ?? "");
+      field.value = String(row.shown ?? NOTHING);
     };
     return field;
   }
@@ -183,7 +189,7 @@ export class Cells {
       return;
     const isFirst = row.shown === undefined;
     row.shown = value;
-    const text = value === null ? "–" : String(value);
+    const text = String(value ?? NOTHING);
     if (!row.control)
       write(row.value, text);
     else if (row.type === "BIT") {

@@ -4,7 +4,7 @@ import { execFileSync, spawn } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
 import assert from "node:assert/strict";
-import { checkAccess, folder, openPage, openPanel, pictures, shows } from "./page.mjs";
+import { changeLanguage, checkAccess, folder, openPage, openPanel, pictures, shows } from "./page.mjs";
 
 const quoted = (text) => JSON.stringify(text);
 const reads = (page, row, column, text) => shows(page, `.axes tbody tr:nth-child(${row}) td:nth-child(${column})`,
@@ -95,7 +95,7 @@ export const cases = {
     await line(page, "Block", "next 0 of 2");
     for (const language of ["cs", "en"])
       for (const theme of ["dark", "light"]) {
-        await page.selectOption("#language", language);
+        await changeLanguage(page, language);
         await page.selectOption("#theme", theme);
         await page.locator(".device details").first().evaluate((element) => { element.open = true; });
         await checkAccess(page, `panel of a CNC872, ${language}, ${theme}`);
@@ -132,7 +132,7 @@ export const cases = {
     });
     await reads(page, 1, 2, "idle");
     await page.mouse.up();
-    await page.selectOption("#language", "en");
+    await changeLanguage(page, "en");
     await button(page, "Y+").click({ button: "right" }); // only the main button presses
     await pressed(page, "Y+", false);
     await hold(page, "X+", 1); // the page is loaded anew

@@ -2,7 +2,7 @@
 // devices.mjs: panels of other devices than the RKM04.
 import { readFileSync, writeFileSync } from "node:fs";
 import assert from "node:assert/strict";
-import { checkAccess, folder, openPanel, pictures, shows } from "./page.mjs";
+import { changeLanguage, checkAccess, folder, openPanel, pictures, shows } from "./page.mjs";
 
 const cell = (page, row, column) => page.locator(`.device table tbody tr:nth-child(${row}) td:nth-child(${column})`);
 const reads = (page, row, column, text) => shows(page, `.device table tbody tr:nth-child(${row}) td:nth-child(${column})`,
@@ -105,7 +105,7 @@ export const cases = {
     await page.setInputFiles("#plant-file", folder + "/near.yaml");
     await shows(page, ".axis svg text", "element.textContent === 'x.near'");
     for (const language of ["cs", "en"]) {
-      await page.selectOption("#language", language);
+      await changeLanguage(page, language);
       await checkAccess(page, `panel of a PMC, ${language}`);
     }
     assert.equal(await cell(page, 1, 1).textContent(), "X");
@@ -167,7 +167,7 @@ export const cases = {
     await page.locator(".unit").first().getByRole("button", { name: "di4", exact: true }).click();
     await shows(page, ".unit button[aria-pressed=true]", "element.textContent === 'di4'");
     for (const language of ["cs", "en"]) {
-      await page.selectOption("#language", language);
+      await changeLanguage(page, language);
       await checkAccess(page, `panel of a CIB module, ${language}`);
     }
     await page.screenshot({ path: `${pictures || folder}/window-cib.png`, fullPage: true });

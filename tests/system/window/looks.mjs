@@ -3,7 +3,8 @@
 import { readFileSync, writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
 import assert from "node:assert/strict";
-import { address, AXIS, checkAccess, connect, folder, openPanel, pictures, says, send, shows, write } from "./page.mjs";
+import { address, AXIS, changeLanguage, checkAccess, connect, folder, openPanel, pictures, says, send, shows,
+  write } from "./page.mjs";
 
 // Figures of time count only on a machine that has nothing else to do; they are always printed.
 const isBusy = () => loadavg()[0] > cpus().length;
@@ -16,7 +17,7 @@ export const cases = {
     await send(page, "6", "(5000;0)");
     await page.click("#poll");
     for (const language of ["cs", "en"]) {
-      await page.selectOption("#language", language);
+      await changeLanguage(page, language);
       await says(page, "send", language === "cs" ? "Odeslat" : "Send");
       assert.deepEqual(await page.evaluate(async () => (await import("./words.js")).missingWords), []);
       for (const theme of ["dark", "light"]) {

@@ -65,6 +65,27 @@ export async function openPanel(page) {
   await shows(page, ".unit .motors td", "element.textContent === 'idle' || element.textContent === 'moving'");
 }
 
+// Another language. At once, before anything is read again, each control has a name and each table still has its values.
+export async function changeLanguage(page, language) {
+  const [nameless, emptied] = await page.evaluate((wanted) => {
+    const seen = (selector) => [...document.querySelectorAll(selector)].filter((element) => element.offsetParent !== null);
+    const filled = () => seen("table").map((table) => [...table.tBodies].flatMap((body) => [...body.rows])
+      .map((row) => [...row.cells].map((cell) => [cell, ...cell.querySelectorAll("input, select")]
+        .some((element) => (element.value ?? element.textContent) !== "")).join()));
+    const before = filled();
+    const select = document.getElementById("language");
+    select.value = wanted;
+    select.dispatchEvent(new Event("change"));
+    const after = filled();
+    return [seen("button, input, select, textarea").filter((one) => ![one.textContent, one.getAttribute("aria-label"), one.title,
+      ...[...one.labels ?? []].map((label) => label.textContent)].some((text) => text?.trim())).map((one) => one.outerHTML),
+    before.flatMap((rows, at) => rows.filter((row, line) => row !== after[at]?.[line])
+      .map((row) => `table ${at}: ${row}, then ${after[at]}`))];
+  }, language);
+  assert.deepEqual(nameless, [], "controls without a name");
+  assert.deepEqual(emptied, [], "values that are gone");
+}
+
 // What axe-core finds.
 export async function checkAccess(page, what) {
   await page.evaluate(axe + ";0").catch(async () => page.addScriptTag({ content: axe }));

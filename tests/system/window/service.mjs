@@ -2,7 +2,7 @@
 // service.mjs: the service view.
 import { readFileSync, writeFileSync } from "node:fs";
 import assert from "node:assert/strict";
-import { AXIS, connect, folder, openPage, openPanel, port, says, send, shows, write } from "./page.mjs";
+import { AXIS, changeLanguage, connect, folder, openPage, openPanel, port, says, send, shows, write } from "./page.mjs";
 
 export const cases = {
   // Each message of the service program, open and save, errors, format, search.
@@ -165,12 +165,12 @@ export const cases = {
     await openPanel(page);
     await page.press("body", "F8");
     await shows(page, "#dialogue p", "element.textContent.includes('answers')");
-    await page.selectOption("#language", "cs");
+    await changeLanguage(page, "cs");
     await says(page, "answers", "v pořádku");
     await says(page, "dialogue", "odpovídá");
     assert.doesNotMatch(await page.textContent("#answers"), /round trip|: ok/);
     assert.doesNotMatch(await page.textContent("#dialogue"), /answers|: ok/);
-    await page.selectOption("#language", "en");
+    await changeLanguage(page, "en");
     await says(page, "answers", "round trip");
     assert.doesNotMatch(await page.textContent("#answers"), /v pořádku/);
   },
