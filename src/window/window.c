@@ -2,19 +2,15 @@
 #include "window.h"
 
 #include <err.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "window_folder.h"
 #include "window_inside.h"
 #include "window_requests.h"
 #include "window_server.h"
-
-extern char **environ;
+#include "window_system.h"
 
 /* ---- Begin, end ------------------------------------------------------------------------------------------------------- */
 
@@ -24,44 +20,12 @@ static void on_signal(uv_signal_t *handle, int number)
     uv_stop(handle->loop);
 }
 
-/* Who has started this process lets it begin, or has ended. */
-static bool is_wanted(void)
-{
-    char byte;
-    return read(STDIN_FILENO, &byte, 1) == 1;
-}
-
-static void on_input(uv_poll_t *handle, int status, int events)
-{
-    char bytes[16];
-    (void)events;
-    if (status < 0 || read(STDIN_FILENO, bytes, sizeof bytes) <= 0)
-        uv_stop(handle->loop);
-}
-
-/* The end of stdin ends the window. */
-static void watch_input(struct window *window)
-{
-    if (uv_poll_init(&window->loop, &window->input, STDIN_FILENO) == 0)
-        uv_poll_start(&window->input, UV_READABLE, on_input);
-}
-
 static void begin_signals(struct window *window)
 {
-    static const int numbers[] = {SIGTERM, SIGINT, SIGHUP};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+    for (size_t i = 0; i < WINDOW_SIGNALS; i++) {
         uv_signal_init(&window->loop, &window->signals[i]);
-        uv_signal_start(&window->signals[i], on_signal, numbers[i]);
+        uv_signal_start(&window->signals[i], on_signal, window_signals[i]);
     }
-}
-
-static void show_in_browser(const char *address)
-{
-    char *const words[] = {"xdg-open", (char *)(uintptr_t)address, NULL};
-    pid_t child;
-    signal(SIGCHLD, SIG_IGN); /* its end is not awaited */
-    if (posix_spawnp(&child, words[0], NULL, NULL, words, environ) != 0)
-        warnx("cannot start xdg-open: open the address yourself");
 }
 
 static void open_port(struct window *window, const char *port)
@@ -94,10 +58,7 @@ static void end_window(struct window *window)
     uv_walk(&window->loop, close_handle, NULL);
     uv_run(&window->loop, UV_RUN_DEFAULT);
     uv_loop_close(&window->loop);
-    if (window->port.client.fd >= 0)
-        close(window->port.client.fd);
-    if (window->port.cancel >= 0)
-        close(window->port.cancel);
+    window_port_close(&window->port);
     window_folder_remove(window->folder);
 }
 
@@ -105,10 +66,10 @@ enum exit_status window_run(const struct window_options *options)
 {
     static struct window window; /* its buffers are large */
     char address[160];
-    signal(SIGPIPE, SIG_IGN);
+    window_system_begin();
     window.pages = (struct pages){.loop = &window.loop, .request = window_request, .closed = window_page_closed,
                                   .context = &window};
-    if (options->bound && !is_wanted())
+    if (options->bound && !window_is_wanted())
         return STATUS_SUCCESS;
     if (uv_loop_init(&window.loop) != 0 || !window_port_begin(&window.port, &window.pages)) {
         warnx("cannot make an event loop");
@@ -116,7 +77,7 @@ enum exit_status window_run(const struct window_options *options)
     }
     begin_signals(&window);
     if (options->bound)
-        watch_input(&window);
+        window_watch_input(&window.loop, &window.input);
     window_watch_begin(&window.watch, &window.pages);
     bool listens = window_server_begin(&window, options->http);
     if (listens) {
@@ -130,7 +91,7 @@ enum exit_status window_run(const struct window_options *options)
         if (options->port != NULL)
             open_port(&window, options->port);
         if (options->open)
-            show_in_browser(address);
+            window_show_in_browser(address);
         uv_run(&window.loop, UV_RUN_DEFAULT);
     }
     end_window(&window);

@@ -4,15 +4,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "client/client.h"
+#include "window_system.h"
 
 #define LINE_MAX_BYTES (4u * 1024u * 1024u)
 #define ROOM_FIRST 65536u
 
 struct window_control {
-    uv_pipe_t pipe;
+    union window_stream connection;
     struct window_control_calls calls;
     char *buffer;
     size_t length, room;
@@ -36,7 +36,7 @@ void window_control_close(struct window_control *control)
     if (control == NULL || control->closed)
         return;
     control->closed = true;
-    uv_close((uv_handle_t *)&control->pipe, on_closed);
+    uv_close(&control->connection.handle, on_closed);
 }
 
 static void on_room(uv_handle_t *handle, size_t suggested, uv_buf_t *buffer)
@@ -95,9 +95,9 @@ struct window_control *window_control_open(uv_loop_t *loop, const char *path, co
     }
     free(rpc.buffer); /* nothing comes unasked */
     control->calls = *calls;
-    control->pipe.data = control;
-    uv_pipe_init(loop, &control->pipe, 0);
-    if (uv_pipe_open(&control->pipe, rpc.fd) != 0 || uv_read_start((uv_stream_t *)&control->pipe, on_room, on_read) != 0) {
+    int error = window_stream_open(loop, &control->connection, rpc.fd);
+    control->connection.handle.data = control;
+    if (error != 0 || uv_read_start(&control->connection.stream, on_room, on_read) != 0) {
         snprintf(trouble, 256, "%.200s: cannot be read", path);
         window_control_close(control);
         return NULL;
@@ -120,6 +120,6 @@ void window_control_send(struct window_control *control, const char *text, size_
     sending->text[length] = '\n';
     sending->write.data = sending;
     uv_buf_t buffer = uv_buf_init(sending->text, (unsigned)length + 1);
-    if (uv_write(&sending->write, (uv_stream_t *)&control->pipe, &buffer, 1, on_sent) != 0)
+    if (uv_write(&sending->write, &control->connection.stream, &buffer, 1, on_sent) != 0)
         free(sending);
 }

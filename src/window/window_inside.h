@@ -9,6 +9,7 @@
 
 #include "window_page.h"
 #include "window_port.h"
+#include "window_system.h"
 #include "window_watch.h"
 
 #define WINDOW_TOKEN_SIZE 33 /* 128 bits in hexadecimal digits, and a zero */
@@ -25,7 +26,7 @@ struct window {
     struct window_port port;
     struct window_watch watch;
     char folder[PATH_MAX]; /* of files for downloads; empty: not made yet */
-    uv_signal_t signals[3];
+    uv_signal_t signals[WINDOW_SIGNALS];
     uv_poll_t input;
 };
 

@@ -43,7 +43,7 @@ struct window_port {
     char name[PATH_MAX];    /* of the open port; empty: none. Of the thread, too; after a job copied to: */
     char shown[PATH_MAX];
     const struct rkm04_framing *framing;
-    int cancel;             /* eventfd: readable while the job under way is to end */
+    int cancel;             /* of window_cancel_open(): set while the job under way is to end */
     struct port_job *first, *last, *present;
     unsigned waiting;
     uv_work_t work;

@@ -4,11 +4,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include "window_page.h"
 #include "window_port_work.h"
+#include "window_system.h"
 
 struct port_job *port_job_new(enum port_kind kind, uint64_t page, json_t *request)
 {
@@ -107,7 +106,6 @@ static void on_progress(uv_async_t *handle)
 
 static void cancel_all(struct window_port *port)
 {
-    const uint64_t one = 1;
     while (port->first != NULL) {
         struct port_job *job = port->first;
         port->first = job->next;
@@ -116,8 +114,8 @@ static void cancel_all(struct window_port *port)
     }
     port->last = NULL;
     port->waiting = 0;
-    if (port->present != NULL && port->present->kind != PORT_STOP && write(port->cancel, &one, sizeof one) < 0)
-        return; /* it is readable already */
+    if (port->present != NULL && port->present->kind != PORT_STOP)
+        window_cancel_set(port->cancel);
 }
 
 bool window_port_do(struct window_port *port, struct port_job *job)
@@ -144,7 +142,7 @@ bool window_port_begin(struct window_port *port, struct pages *pages)
 {
     port->pages = pages;
     port->client = (struct client){.fd = -1, .framing = &rkm04_hdlc, .cancel = &port->cancel};
-    port->cancel = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    port->cancel = window_cancel_open();
     port->progress.data = port;
     return port->cancel >= 0 && uv_async_init(pages->loop, &port->progress, on_progress) == 0;
 }
@@ -152,4 +150,10 @@ bool window_port_begin(struct window_port *port, struct pages *pages)
 void window_port_end(struct window_port *port)
 {
     cancel_all(port);
+}
+
+void window_port_close(struct window_port *port)
+{
+    port_work_close(port);
+    window_cancel_close(port->cancel);
 }

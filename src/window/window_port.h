@@ -17,6 +17,9 @@ bool window_port_begin(struct window_port *port, struct pages *pages);
 /* Give up all jobs. The port is closed when the thread has ended. */
 void window_port_end(struct window_port *port);
 
+/* Close the port, after the last job. */
+void window_port_close(struct window_port *port);
+
 /* A job with a copy of what was asked; NULL: no memory. */
 struct port_job *port_job_new(enum port_kind kind, uint64_t page, json_t *request);
 void port_job_free(struct port_job *job);

@@ -9,6 +9,8 @@
 
 #include <rkm04/limits.h>
 
+#include "window_system.h"
+
 #define SET_COMMAND 2
 #define HEAD 2u          /* message number and motor */
 #define STOP_MS 50u      /* how long a unit may take to answer K: the bus is to be stopped, too */
@@ -42,7 +44,7 @@ static double wall_ms(void)
     return (double)now.tv_sec * 1000.0 + (double)now.tv_nsec / 1e6;
 }
 
-static void close_port(struct window_port *port)
+void port_work_close(struct window_port *port)
 {
     if (port->client.fd >= 0)
         close(port->client.fd);
@@ -62,7 +64,7 @@ static json_t *exchange(struct window_port *port, const uint8_t *message, size_t
                                *outcome == CLIENT_ANSWERED ? hex(client->answer, client->length) : json_null(), "t_ms", time,
                                "round_trip_us", (json_int_t)(client_now() - begun));
     if (*outcome == CLIENT_LOST)
-        close_port(port);
+        port_work_close(port);
     return answer;
 }
 
@@ -70,7 +72,7 @@ static json_t *exchange(struct window_port *port, const uint8_t *message, size_t
 
 static void work_open(struct window_port *port, struct port_job *job)
 {
-    close_port(port);
+    port_work_close(port);
     if (!client_port_valid(job->text)) {
         client_report("expected tcp:HOST:PORT, PORT 1 to 65535, like tcp:localhost:4001, found '%s'", job->text);
     } else {
@@ -189,13 +191,11 @@ void port_work(struct window_port *port, struct port_job *job)
     static void (*const works[])(struct window_port *, struct port_job *) = {
         [PORT_OPEN] = work_open, [PORT_REQUEST] = work_request, [PORT_SEND] = work_send, [PORT_STOP] = work_stop,
     };
-    uint64_t cancelled;
     if (job->kind == PORT_STOP)
-        while (read(port->cancel, &cancelled, sizeof cancelled) > 0)
-            ; /* what it was about has ended */
+        window_cancel_clear(port->cancel); /* what it was about has ended */
     client_report_into(job->trouble, sizeof job->trouble);
     if (job->kind == PORT_CLOSE) {
-        close_port(port);
+        port_work_close(port);
         job->result = json_pack("{s:s}", "outcome", "closed");
     } else if (job->kind != PORT_OPEN && port->client.fd < 0) {
         client_report("no port is open");

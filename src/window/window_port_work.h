@@ -8,4 +8,7 @@
 /* Fills in job->result and job->trouble. May last as long as the units take. */
 void port_work(struct window_port *port, struct port_job *job);
 
+/* Close the port, if one is open. */
+void port_work_close(struct window_port *port);
+
 #endif

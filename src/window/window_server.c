@@ -3,17 +3,15 @@
 
 #include <arpa/inet.h>
 #include <err.h>
-#include <errno.h>
 #include <libwebsockets.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
-#include <unistd.h>
 
 #include "options/options.h"
 #include "window_files.h"
 #include "window_inside.h"
+#include "window_system.h"
 
 #define SECURITY_HEADERS \
     "content-security-policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; " \
@@ -245,7 +243,7 @@ static const struct lws_protocols protocols[] = {
 static bool make_token(char token[WINDOW_TOKEN_SIZE])
 {
     unsigned char random[(WINDOW_TOKEN_SIZE - 1) / 2];
-    if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random)
+    if (!window_random(random, sizeof random))
         return false;
     for (size_t i = 0; i < sizeof random; i++)
         snprintf(token + 2 * i, 3, "%02x", random[i]);
@@ -259,25 +257,6 @@ static bool is_address(const char *name)
     struct in_addr four;
     return (inet_pton(AF_INET, name, &four) == 1 && four.s_addr != INADDR_ANY) ||
            (inet_pton(AF_INET6, name, &six) == 1 && !IN6_IS_ADDR_UNSPECIFIED(&six));
-}
-
-/* Can the address be listened at now? libwebsockets would wait for an interface that has it. */
-static bool is_free(const char *name, unsigned port)
-{
-    char digits[8];
-    struct addrinfo *found = NULL;
-    snprintf(digits, sizeof digits, "%u", port);
-    if (host_address_find(name, digits, AF_UNSPEC, 0, &found) != NULL)
-        return false;
-    int one = 1, fd = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    bool bound = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one) == 0 &&
-                 bind(fd, found->ai_addr, found->ai_addrlen) == 0;
-    int error = errno;
-    if (fd >= 0)
-        close(fd);
-    freeaddrinfo(found);
-    errno = error;
-    return bound;
 }
 
 bool window_server_begin(struct window *window, const char *address)
@@ -295,8 +274,8 @@ bool window_server_begin(struct window *window, const char *address)
         warnx("--http: expected one address of this machine in digits, like 127.0.0.1, found '%s'", name);
         return false;
     }
-    if (!is_free(name, (unsigned)number)) {
-        warn("cannot listen at %s", address);
+    if (!window_address_is_free(name, (unsigned)number)) {
+        warn("cannot listen at %s", address); /* libwebsockets would wait for an interface that has it */
         return false;
     }
     void *loops[] = {&window->loop};
