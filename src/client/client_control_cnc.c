@@ -119,23 +119,56 @@ static enum exit_status work_panel(struct client_job *job)
     return call_members(job, "cnc.panel", NULL, "NAME=VALUE..., as in `cnc panel mode=manual feed=50'");
 }
 
-/* ---- NC program --------------------------------------------------------------------------------------------------------- */
+/* ---- Texts -------------------------------------------------------------------------------------------------------------- */
 
-static enum exit_status load(struct client_job *job)
+/* What the end of a file's name says that it is: the parameters of cnc.load. */
+static const struct {
+    const char *end, *key, *name_key;
+} text_kinds[] = {{".plc", "plc", "plc_name"}, {".yaml", "machine", "machine_name"}, {".yml", "machine", "machine_name"},
+                  {".xml", "config", NULL},    {"", "text", "name"}};
+
+static size_t find_text_kind(const char *file)
+{
+    size_t at = 0, length = strlen(file);
+    while (length < strlen(text_kinds[at].end) || strcmp(file + length - strlen(text_kinds[at].end), text_kinds[at].end) != 0)
+        at++;
+    return at;
+}
+
+/* Read a file into the parameters of cnc.load. */
+static enum exit_status add_text(json_t *params, const char *file)
 {
     struct program_text text;
-    if (job->count != 2)
-        return client_usage("cnc load: expected one FILE, - is standard input");
-    const char *wrong = program_text_read(&text, job->words[1]);
+    const size_t kind = find_text_kind(file);
+    if (text_kinds[kind].name_key == NULL)
+        return client_usage("cnc load: the configuration of a machine that runs stays: end the emulator and start it with "
+                            "--config %s", file);
+    if (json_object_get(params, text_kinds[kind].key) != NULL)
+        return client_usage("cnc load: %s: expected one file of a kind", file);
+    const char *wrong = program_text_read(&text, file);
     if (wrong != NULL)
-        warnx("cannot read %s: %s", job->words[1], wrong);
+        warnx("cannot read %s: %s", file, wrong);
     json_t *content = wrong == NULL ? json_stringn(text.text, text.length) : NULL;
     if (wrong == NULL && content == NULL)
-        warnx("%s: expected UTF-8", job->words[1]);
+        warnx("%s: expected UTF-8", file);
     program_text_free(&text);
     if (content == NULL)
         return STATUS_FAILURE;
-    return client_job_show(job, "cnc.load", json_pack("{s:o, s:s}", "text", content, "name", job->words[1]), NULL);
+    json_object_set_new(params, text_kinds[kind].key, content);
+    json_object_set_new(params, text_kinds[kind].name_key, json_string(file));
+    return STATUS_SUCCESS;
+}
+
+static enum exit_status load(struct client_job *job)
+{
+    json_t *params = json_object();
+    enum exit_status status = job->count > 1 ? STATUS_SUCCESS : client_usage("cnc load: expected FILE..., - is standard input");
+    for (size_t i = 1; i < job->count && status == STATUS_SUCCESS; i++)
+        status = add_text(params, job->words[i]);
+    if (status == STATUS_SUCCESS)
+        return client_job_show(job, "cnc.load", params, NULL);
+    json_decref(params);
+    return status;
 }
 
 enum exit_status client_control_cnc(struct client_job *job)

@@ -76,13 +76,14 @@ static const struct help {
      "  -u UNIT\n" EMULATOR_OPTIONS,
      "  rkmctl cib command A 102 3000 500\n  rkmctl cib config put two-drives.yaml\n  rkmctl cib config apply\n"},
     {"cnc",
-     "cnc get CELL...|set CELL=VALUE...|cells [TEXT]|start|stop|reset|jog AXIS[+|-]...|home AXIS|panel NAME=VALUE...|load FILE",
+     "cnc get CELL...|set CELL=VALUE...|cells [TEXT]|start|stop|reset|jog AXIS[+|-]...|home AXIS|panel NAME=VALUE...|"
+     "load FILE...",
      "A CNC872: values of cells between CNC system and PLC program; set them; list those with a text in their names; keys of\n"
-     "the panel; jog begins a motion with + or - and ends it without; what else the panel has (docs/CNC872.md); load an NC\n"
-     "program.",
+     "the panel; jog begins a motion with + or - and ends it without; what else the panel has (docs/CNC872.md); load\n"
+     "texts: .plc is a PLC program, .yaml switches, anything else an NC program.",
      "  -u UNIT\n" EMULATOR_OPTIONS,
      "  rkmctl cnc get PO_STOP B_INK_EX[0]\n  rkmctl cnc set STOP_REQ=1\n  rkmctl cnc panel mode=manual feed=50\n"
-     "  rkmctl cnc jog X+\n"},
+     "  rkmctl cnc jog X+\n  rkmctl cnc load mill.plc\n"},
     {"trace", "trace start FILE|stop [NUMBER]", "Begin a trace (" TRACE_ENDINGS ", " WIRE_ENDINGS "), or end it.",
      "  --force\n" EMULATOR_OPTIONS, "  rkmctl trace start run.vcd\n"},
     {"call", "call METHOD [JSON|NAME=VALUE...]", "Any other method of the control socket.", EMULATOR_OPTIONS,

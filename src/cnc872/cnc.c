@@ -54,18 +54,33 @@ bool cnc_is_elsewhere(const struct cnc *cnc)
 
 /* ---- Time --------------------------------------------------------------------------------------------------------------- */
 
-void cnc_begin(struct cnc *cnc, const struct cnc_setup *setup)
+/* What a restart keeps. */
+struct kept {
+    uint64_t tick, turn, beyond_queue;
+    int64_t position[CNC_AXES], actual[CNC_AXES], homing;
+    struct cnc_panel panel;
+};
+
+static void power_up(struct cnc *cnc, const struct cnc_setup *setup, const struct kept *kept)
 {
     memset(cnc, 0, sizeof *cnc);
     cnc->config = setup->config;
     cnc->port = setup->port;
     cnc->context = setup->context;
-    cnc->panel.feed = cnc->panel.spindle = 100;
+    cnc->tick = kept->tick;
+    cnc->turn = kept->turn;
+    cnc->beyond_queue = kept->beyond_queue;
+    cnc->panel = kept->panel;
     cnc->machine.is_reached = true;
     memset(cnc->machine.m, CNC_NC_NO_M, sizeof cnc->machine.m);
     cnc->switches = setup->switches;
     cnc->switch_count = setup->switch_count;
     cnc_clear_cells(&cnc->cells);
+    for (unsigned i = 0; i < CNC_AXES; i++) {
+        cnc->axis[i].position = cnc->axis[i].block_start = kept->position[i];
+        cnc->axis[i].actual = kept->actual[i];
+    }
+    cnc_put_number(&cnc->cells, CNC_CELL_HOMING, 0, kept->homing);
     if (setup->backup != NULL)
         memcpy(cnc->cells.memory + cnc_cell_place(CNC_CELL_PLC_MEM_BACKUP), setup->backup, CNC_BACKUP_SIZE);
     cnc->plc_program = setup->plc;
@@ -77,6 +92,34 @@ void cnc_begin(struct cnc *cnc, const struct cnc_setup *setup)
     cnc_put_time(cnc);
     cnc_call_plc(cnc, CNC_PLC_INIT);
     cnc_put_status(cnc);
+}
+
+void cnc_begin(struct cnc *cnc, const struct cnc_setup *setup)
+{
+    power_up(cnc, setup, &(struct kept){.panel = {.feed = 100, .spindle = 100}});
+}
+
+enum cnc_result cnc_restart_refusal(const struct cnc *cnc)
+{
+    bool moves = cnc->move.is_going || cnc->machine.phase == CNC_MOVE || cnc->machine.phase == CNC_DELAY;
+    for (unsigned i = 0; i < CNC_AXES; i++)
+        moves = moves || cnc->axis[i].direction != 0;
+    return moves ? CNC_MOVES : CNC_OK;
+}
+
+enum cnc_result cnc_restart(struct cnc *cnc, const struct cnc_setup *setup)
+{
+    struct kept kept = {.tick = cnc->tick, .turn = cnc->turn, .beyond_queue = cnc->beyond_queue, .panel = cnc->panel,
+                        .homing = cnc_number(&cnc->cells, CNC_CELL_HOMING, 0)};
+    const enum cnc_result result = cnc_restart_refusal(cnc);
+    if (result != CNC_OK)
+        return result;
+    for (unsigned i = 0; i < CNC_AXES; i++) {
+        kept.position[i] = cnc->axis[i].position;
+        kept.actual[i] = cnc->axis[i].actual;
+    }
+    power_up(cnc, setup, &kept);
+    return CNC_OK;
 }
 
 void cnc_tick(struct cnc *cnc)
@@ -141,6 +184,7 @@ const char *cnc_result_text(enum cnc_result result)
         [CNC_DISABLED] = "START_DISABLE is 1",
         [CNC_NO_SUCH_BLOCK] = "the NC program has no such block",
         [CNC_NO_AXIS] = "the configuration has no such axis",
+        [CNC_MOVES] = "an axis moves, or a block is in its motion or delay: stop it and RESET",
         [CNC_STOPPED] = "a stop came before the start was done",
     };
     return text[result];

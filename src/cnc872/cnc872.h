@@ -58,6 +58,7 @@ enum cnc_result {
     CNC_DISABLED,     /* START_DISABLE is 1 */
     CNC_NO_SUCH_BLOCK,
     CNC_NO_AXIS,      /* the configuration has no such axis */
+    CNC_MOVES,        /* an axis moves, or a block is in its motion or delay */
     CNC_STOPPED,      /* a stop came while START_SUSPEND held the start back */
     CNC_RESULTS
 };
@@ -214,6 +215,13 @@ struct cnc_setup {
 
 /* Power-up (NT3). */
 void cnc_begin(struct cnc *cnc, const struct cnc_setup *setup);
+
+/* Power-up again, with another PLC program or other switches; T's count on. Positions, HOMING and the panel stay as they are, all
+ * else is as after cnc_begin(). A block that waits for a pass of the PLC program is over; CNC_MOVES: nothing is changed. */
+enum cnc_result cnc_restart(struct cnc *cnc, const struct cnc_setup *setup);
+
+/* What speaks against a restart now; CNC_OK: nothing. */
+enum cnc_result cnc_restart_refusal(const struct cnc *cnc);
 
 /* One T (NT2). */
 void cnc_tick(struct cnc *cnc);

@@ -130,13 +130,55 @@ bool cnc_set_cells(struct cnc_device *device, const json_t *cells, struct device
 
 /* ---- Conditions (NL2) --------------------------------------------------------------------------------------------------- */
 
-_Static_assert(CNC_TYPES <= 16 && CNC_OPERAND_CONSTANT < 16, "an operand fits a number: kind, type, block, index, place");
+_Static_assert(CNC_TYPES <= 16 && CNC_OPERAND_CONSTANT < 16 && CNC_TEXTS_MAX <= 4096,
+               "a cell fits a number: text and its mark, kind, type, block, index, place");
+#define CODE_IS_CELL (UINT64_C(1) << 48) /* so that it is not 0 */
+#define CODE_IS_OWN (UINT64_C(1) << 49)  /* of the PLC program whose text has the number behind: */
+#define CODE_TEXT 50u
 
-/* A cell as a number that is not 0. */
-static uint64_t code_of(const struct cnc_operand *operand)
+/* Bytes, or bits, of a name of a PLC program; 0: it has none. */
+static unsigned extent_of(const struct cnc_symbol *symbol, bool is_bit)
 {
-    return UINT64_C(1) << 48 | (uint64_t)operand->kind << 40 | (uint64_t)operand->type << 36 | (uint64_t)operand->index << 28 |
-           (uint64_t)operand->block << 20 | operand->place;
+    if (symbol->kind == CNC_SYMBOL_BIT)
+        return is_bit;
+    return symbol->kind == CNC_SYMBOL_VARIABLE && !is_bit ? cnc_type_size[symbol->type] : 0;
+}
+
+/* The name of a PLC program that an operand is in; NULL: it is none of its own. */
+static const struct cnc_symbol *symbol_at(const struct cnc_names *names, const struct cnc_operand *operand)
+{
+    const bool is_bit = operand->kind == CNC_OPERAND_BIT;
+    if (!is_bit && operand->kind != CNC_OPERAND_NUMBER)
+        return NULL;
+    for (unsigned at = 0; names != NULL && at < names->count; at++) {
+        const struct cnc_symbol *symbol = &names->symbols[at];
+        const unsigned extent = extent_of(symbol, is_bit);
+        if (operand->place >= symbol->place && operand->place < symbol->place + extent)
+            return symbol;
+    }
+    return NULL;
+}
+
+/* A cell as a number that is not 0. One of a PLC program has its text with it: another may be loaded later. */
+static uint64_t code_of(const struct cnc_device *device, const struct cnc_operand *operand)
+{
+    const bool is_own = symbol_at(names_of(device), operand) != NULL;
+    return (uint64_t)operand->kind << 40 | (uint64_t)operand->type << 36 | (uint64_t)operand->index << 28 |
+           (uint64_t)operand->block << 20 | operand->place | CODE_IS_CELL |
+           (is_own ? CODE_IS_OWN | (uint64_t)device->own.text[CNC_TEXT_PLC]->number << CODE_TEXT : 0);
+}
+
+/* An operand of another PLC program that was loaded once, in the present one: what has its name and type there. False: nothing
+ * has. */
+static bool find_again(const struct cnc_device *device, unsigned text, struct cnc_operand *operand)
+{
+    const struct cnc_names *names = names_of(device);
+    const struct cnc_symbol *old = symbol_at(&cnc_text_numbered(text)->plc->names, operand);
+    const struct cnc_symbol *now = names && old ? cnc_find_symbol(names, 0, old->name, strlen(old->name)) : NULL;
+    if (!now || now->kind != old->kind || now->type != old->type)
+        return false;
+    operand->place = (uint16_t)(now->place + (operand->place - old->place));
+    return true;
 }
 
 uint64_t cnc_find_cell_code(const struct device_unit *unit, const char *name, char error[DEVICE_ERROR_SIZE])
@@ -151,12 +193,17 @@ uint64_t cnc_find_cell_code(const struct device_unit *unit, const char *name, ch
         snprintf(error, DEVICE_ERROR_SIZE, "`%.60s': expected a bit or a cell of whole numbers", name);
         return 0;
     }
-    return code_of(&operand);
+    return code_of(cnc_in(unit), &operand);
 }
 
 int64_t cnc_cell_value(const struct device_unit *unit, uint64_t found)
 {
-    const struct cnc_operand operand = {.kind = found >> 40 & 15, .type = found >> 36 & 15, .index = (uint8_t)(found >> 28),
-                                        .block = (uint8_t)(found >> 20), .place = (uint16_t)found};
-    return number_at(&cnc_in(unit)->cnc, &operand);
+    const struct cnc_device *device = cnc_in(unit);
+    const struct cnc_text *plc = device->own.text[CNC_TEXT_PLC];
+    const unsigned text = (unsigned)(found >> CODE_TEXT) % CNC_TEXTS_MAX;
+    struct cnc_operand operand = {.kind = found >> 40 & 15, .type = found >> 36 & 15, .index = (uint8_t)(found >> 28),
+                                  .block = (uint8_t)(found >> 20), .place = (uint16_t)found};
+    if ((found & CODE_IS_OWN) != 0 && (!plc || plc->number != text) && !find_again(device, text, &operand))
+        return 0;
+    return number_at(&device->cnc, &operand);
 }

@@ -139,8 +139,7 @@ static void end(struct device_unit *unit)
         (void)on_save(device, cnc_backup(&device->cnc), sizeof stored);
 }
 
-static void note(const struct cnc_device *device, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void note(const struct cnc_device *device, const char *format, ...)
+void cnc_note(const struct cnc_device *device, const char *format, ...)
 {
     char text[DEVICE_ERROR_SIZE];
     va_list arguments;
@@ -171,14 +170,14 @@ static void on_event(void *context, enum cnc_event event, int64_t value)
     };
     const struct cnc_device *device = context;
     if (event == CNC_EVENT_START_REFUSED)
-        note(device, "start refused: %s", cnc_result_text((enum cnc_result)value));
+        cnc_note(device, "start refused: %s", cnc_result_text((enum cnc_result)value));
     else if (event == CNC_EVENT_REFERENCE_DONE || event == CNC_EVENT_REFERENCE_FAILED)
-        note(device, "reference of %s %s", cnc_axis_names[value & 15],
+        cnc_note(device, "reference of %s %s", cnc_axis_names[value & 15],
              event == CNC_EVENT_REFERENCE_DONE ? "is done" : "has ended without a position");
     else if (texts[event].after)
-        note(device, "%s%lld%s", texts[event].before, (long long)value, texts[event].after);
+        cnc_note(device, "%s%lld%s", texts[event].before, (long long)value, texts[event].after);
     else if (texts[event].before)
-        note(device, "%s", texts[event].before);
+        cnc_note(device, "%s", texts[event].before);
 }
 
 /* ---- Power and time ----------------------------------------------------------------------------------------------------- */
@@ -192,27 +191,40 @@ static void connect_port(struct cnc_device *device, const struct device_port *po
     device->cnc.context = device;
 }
 
+struct cnc_setup cnc_setup_of(struct cnc_device *device, const struct cnc_own *own, const uint8_t *backup)
+{
+    const struct cnc_text *const *text = own->text;
+    return (struct cnc_setup){
+        .config = text[CNC_TEXT_CONFIG] ? text[CNC_TEXT_CONFIG]->config : cnc_default_config(),
+        .program = text[CNC_TEXT_NC] ? text[CNC_TEXT_NC]->program : NULL,
+        .plc = text[CNC_TEXT_PLC] ? text[CNC_TEXT_PLC]->plc : NULL,
+        .switches = text[CNC_TEXT_MACHINE] ? text[CNC_TEXT_MACHINE]->machine.list : NULL,
+        .switch_count = text[CNC_TEXT_MACHINE] ? text[CNC_TEXT_MACHINE]->machine.count : 0,
+        .backup = backup,
+        .port = &device->port,
+        .context = device,
+    };
+}
+
+/* The memory of a unit that has been without power has the texts that were loaded. */
 static void begin(struct device_unit *unit, const struct device_config *config, const struct device_port *port, void *context)
 {
     struct cnc_device *device = cnc_of(unit);
     uint8_t backup[CNC_BACKUP_SIZE] = {0};
+    const struct cnc_text *loaded[CNC_TEXT_KINDS];
+    memcpy(loaded, device->loaded, sizeof loaded);
     memset(device, 0, sizeof *device);
+    memcpy(device->loaded, loaded, sizeof loaded);
     device->own = cnc_own_of(config);
+    for (unsigned kind = 0; kind < CNC_TEXT_KINDS; kind++)
+        if (loaded[kind])
+            device->own.text[kind] = loaded[kind];
     connect_port(device, port, context);
     const struct cnc_flash flash = flash_of(device);
     if (has_flash(device))
         (void)cnc_backup_load(&flash, backup, &device->backup);
-    const struct cnc_text *const *text = device->own.text;
-    cnc_begin(&device->cnc, &(struct cnc_setup){
-                                .config = text[CNC_TEXT_CONFIG] ? text[CNC_TEXT_CONFIG]->config : cnc_default_config(),
-                                .program = text[CNC_TEXT_NC] ? text[CNC_TEXT_NC]->program : NULL,
-                                .plc = text[CNC_TEXT_PLC] ? text[CNC_TEXT_PLC]->plc : NULL,
-                                .switches = text[CNC_TEXT_MACHINE] ? text[CNC_TEXT_MACHINE]->machine.list : NULL,
-                                .switch_count = text[CNC_TEXT_MACHINE] ? text[CNC_TEXT_MACHINE]->machine.count : 0,
-                                .backup = backup,
-                                .port = &device->port,
-                                .context = device,
-                            });
+    const struct cnc_setup setup = cnc_setup_of(device, &device->own, backup);
+    cnc_begin(&device->cnc, &setup);
     for (unsigned axis = 0; axis < CNC_AXES; axis++)
         device->shown[axis] = cnc_shown_position(&device->cnc, axis);
 }

@@ -33,12 +33,15 @@ struct cnc_text {
     const struct cnc_nc_program *program;
     const struct cnc_plc_program *plc;
     struct cnc_machine_switches machine;
-    struct cnc_text *next;
+    unsigned number; /* of all texts of the process */
 };
 
 /* Read a text. Returns NULL if it is wrong; each thing that is wrong is written to `errors` as NAME:LINE:COLUMN: error: ... */
 const struct cnc_text *cnc_text_read(enum cnc_text_kind kind, const struct cnc_text *needs, const char *name, const char *text,
                                      size_t length, FILE *errors);
+
+/* A text by its number; NULL: there is none. */
+const struct cnc_text *cnc_text_numbered(unsigned number);
 
 /* The configuration of a cnc without one: X, Y, Z with defaults. */
 const struct cnc_config *cnc_default_config(void);
@@ -53,6 +56,7 @@ struct cnc_own {
 struct cnc_device {
     struct cnc cnc;
     struct cnc_own own;              /* the texts that it has now */
+    const struct cnc_text *loaded[CNC_TEXT_KINDS]; /* those of cnc.load, which stay without power; NULL: none */
     struct cnc_port port;            /* calls that pass on to `outer` */
     const struct device_port *outer;
     void *context;                   /* of `outer` */
@@ -65,6 +69,9 @@ struct cnc_device {
     bool is_quiet;                   /* nothing is to happen of itself but that time passes */
 };
 
+/* Report in words. */
+void cnc_note(const struct cnc_device *device, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 struct cnc_device *cnc_of(struct device_unit *unit);
 const struct cnc_device *cnc_in(const struct device_unit *unit);
 
@@ -74,6 +81,13 @@ struct cnc_own cnc_own_of(const struct device_config *config);
 extern const struct device_option cnc_options[];
 extern const char *const cnc_setting_names[];
 void cnc_put_settings(const struct device_config *config, json_t *object);
+/* The text that one of this kind is read with: an NC program has the axes and M functions of the configuration, a switch may be a
+ * bit of the PLC program. NULL: none. */
+const struct cnc_text *cnc_needed_text(const struct cnc_own *own, enum cnc_text_kind kind);
+
+/* Has the configuration the axes of all switches? What is wrong goes to `errors`. */
+bool cnc_has_axes(const struct cnc_own *own, const char *name, FILE *errors);
+
 bool cnc_read_setting(struct device_config *config, const char *name, const json_t *value, char error[DEVICE_ERROR_SIZE]);
 const char *cnc_settings_difference(const struct device_config *a, const struct device_config *b);
 
@@ -113,7 +127,15 @@ extern const struct device_method cnc_methods[];
 #define CNC_REFUSE(...) (cnc_refuse(__VA_ARGS__), false)
 json_t *cnc_refuse(struct device_refusal *refusal, bool is_state, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* Load an NC program; NULL: none. False: it cannot be done now, and the refusal says why. */
+/* ---- cnc872_load.c ------------------------------------------------------------------------------------------------------ */
+
+/* Load an NC program. False: it cannot be done now, and the refusal says why. */
 bool cnc_load_program(struct cnc_device *device, const struct cnc_text *program, struct device_refusal *refusal);
+
+/* The method cnc.load: an NC program, a PLC program, switches, as texts; all of them or none. */
+json_t *cnc_load_texts(struct device_unit *unit, const json_t *params, struct device_refusal *refusal);
+
+/* What a cnc with these texts begins with. `backup`: CNC_BACKUP_SIZE bytes. */
+struct cnc_setup cnc_setup_of(struct cnc_device *device, const struct cnc_own *own, const uint8_t *backup);
 
 #endif

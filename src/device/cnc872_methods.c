@@ -235,39 +235,7 @@ static json_t *call_panel(struct device_unit *unit, const json_t *params, struct
     return json_pack("{s:I}", "t", (json_int_t)cnc->turn);
 }
 
-/* ---- NC program and state ----------------------------------------------------------------------------------------------- */
-
-bool cnc_load_program(struct cnc_device *device, const struct cnc_text *program, struct device_refusal *refusal)
-{
-    const enum cnc_result result = cnc_load(&device->cnc, program ? program->program : NULL);
-    if (result != CNC_OK)
-        return CNC_REFUSE(refusal, true, "%s", cnc_result_text(result));
-    device->own.text[CNC_TEXT_NC] = program;
-    return true;
-}
-
-static json_t *call_load(struct device_unit *unit, const json_t *params, struct device_refusal *refusal)
-{
-    struct cnc_device *device = cnc_of(unit);
-    const json_t *text = json_object_get(params, "text"), *name = json_object_get(params, "name");
-    char *lines = NULL;
-    size_t size = 0;
-    if (!json_is_string(text) || (name && !json_is_string(name)))
-        return cnc_refuse(refusal, false, "text: expected an NC program; name: its name, for messages");
-    FILE *errors = open_memstream(&lines, &size);
-    const struct cnc_text *program =
-        errors ? cnc_text_read(CNC_TEXT_NC, device->own.text[CNC_TEXT_CONFIG], name ? json_string_value(name) : "nc",
-                               json_string_value(text), json_string_length(text), errors)
-               : NULL;
-    if (errors)
-        fclose(errors);
-    if (!program)
-        cnc_refuse(refusal, false, "%.*s", lines ? (int)strcspn(lines, "\n") : 13, lines ? lines : "out of memory");
-    free(lines);
-    if (!program || !cnc_load_program(device, program, refusal))
-        return NULL;
-    return json_pack("{s:I}", "blocks", (json_int_t)program->program->block_count);
-}
+/* ---- State -------------------------------------------------------------------------------------------------------------- */
 
 static json_t *call_state(struct device_unit *unit, const json_t *params, struct device_refusal *refusal)
 {
@@ -286,7 +254,7 @@ const struct device_method cnc_methods[] = {
     {"cnc.set", call_set, true, NAMES("cells")},
     {"cnc.cells", call_cells, false, NAMES("search", "section", "limit")},
     {"cnc.panel", call_panel, true, NULL}, /* it reports more about its own */
-    {"cnc.load", call_load, true, NAMES("text", "name")},
+    {"cnc.load", cnc_load_texts, true, NAMES("text", "plc", "machine", "name", "plc_name", "machine_name", "config")},
     {"cnc.state", call_state, false, (const char *const[]){NULL}},
     {NULL, NULL, false, NULL},
 };

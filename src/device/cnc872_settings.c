@@ -15,17 +15,14 @@ struct cnc_own cnc_own_of(const struct device_config *config)
     return own;
 }
 
-/* The text that one of this kind needs: an NC program is read with the axes and M functions of the configuration, a switch may be
- * a bit of the PLC program. */
-static const struct cnc_text *needed_by(const struct cnc_own *own, enum cnc_text_kind kind)
+const struct cnc_text *cnc_needed_text(const struct cnc_own *own, enum cnc_text_kind kind)
 {
     return kind == CNC_TEXT_NC        ? own->text[CNC_TEXT_CONFIG]
            : kind == CNC_TEXT_MACHINE ? own->text[CNC_TEXT_PLC]
                                       : NULL;
 }
 
-/* The axes of all switches have to be there. */
-static bool has_axes(const struct cnc_own *own, const char *name, FILE *errors)
+bool cnc_has_axes(const struct cnc_own *own, const char *name, FILE *errors)
 {
     const struct cnc_machine_switches *machine = &own->text[CNC_TEXT_MACHINE]->machine;
     const struct cnc_text *config = own->text[CNC_TEXT_CONFIG];
@@ -44,9 +41,9 @@ static bool take_text(struct device_config *config, enum cnc_text_kind kind, con
                       FILE *errors)
 {
     struct cnc_own own = cnc_own_of(config);
-    own.text[kind] = cnc_text_read(kind, needed_by(&own, kind), name, text, length, errors);
+    own.text[kind] = cnc_text_read(kind, cnc_needed_text(&own, kind), name, text, length, errors);
     memcpy(config->own.byte, &own, sizeof own);
-    return own.text[kind] && (kind != CNC_TEXT_MACHINE || has_axes(&own, name, errors));
+    return own.text[kind] && (kind != CNC_TEXT_MACHINE || cnc_has_axes(&own, name, errors));
 }
 
 static bool read_config(struct device_config *config, const char *name, const char *text, size_t length, FILE *errors)

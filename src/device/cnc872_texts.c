@@ -8,8 +8,8 @@
 #include "cnc872_device.h"
 #include "text/text.h"
 
-static struct cnc_text *texts; /* all of them */
-static size_t texts_size;      /* bytes of all */
+static struct cnc_text *texts[CNC_TEXTS_MAX]; /* all of them, by their numbers */
+static size_t texts_size;                     /* bytes of all */
 static unsigned texts_count;
 
 struct error_log {
@@ -192,10 +192,16 @@ static size_t size_of(const struct cnc_text *text)
 
 static const struct cnc_text *find_text(enum cnc_text_kind kind, const struct cnc_text *needs, const char *text, size_t length)
 {
-    const struct cnc_text *at = texts;
-    while (at && (at->kind != kind || at->needs != needs || at->length != length || memcmp(at->text, text, length) != 0))
-        at = at->next;
-    return at;
+    for (unsigned at = 0; at < texts_count; at++)
+        if (texts[at]->kind == kind && texts[at]->needs == needs && texts[at]->length == length &&
+            memcmp(texts[at]->text, text, length) == 0)
+            return texts[at];
+    return NULL;
+}
+
+const struct cnc_text *cnc_text_numbered(unsigned number)
+{
+    return number < texts_count ? texts[number] : NULL;
 }
 
 /* One that is right. Nothing that a text is read for gives it back: there is no more room then. */
@@ -210,9 +216,9 @@ static const struct cnc_text *keep(struct cnc_text *made, const char *name, FILE
         return NULL;
     }
     texts_size += size;
-    texts_count++;
-    made->next = texts;
-    return texts = made;
+    made->number = texts_count;
+    texts[texts_count++] = made;
+    return made;
 }
 
 const struct cnc_text *cnc_text_read(enum cnc_text_kind kind, const struct cnc_text *needs, const char *name, const char *text,

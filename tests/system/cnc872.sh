@@ -92,6 +92,30 @@ test_NU1_exec_runs_an_nc_program_to_its_end() {
     holds "$said" "5000  idle" "positions"
 }
 
+# An author writes, loads, looks, without another start of the emulator.
+test_rkmctl_loads_plc_programs_and_switches() {
+    printf 'DATA\nNEAR BIT 0\nDATA_END\nMODULE_MAIN\n LDR NEAR\n WR STOP_REQ\nMODULE_MAIN_END\n' >"$folder/a.plc"
+    printf 'DATA\nNEAR BITS 0\nDATA_END\n' >"$folder/bad.plc"
+    printf 'switches: [{cell: NEAR, axis: X, at_least: 2000}]\n' >"$folder/a.yaml"
+    printf 'G1 X3 F1000\n' >"$folder/a.nc"
+    serve_cnc
+    exits 2 "$RKMCTL" -c "$folder/control" cnc load "$folder/bad.plc"
+    holds "$complained" "$folder/bad.plc:2:1: error: " "a wrong program"
+    exits 0 "$RKMCTL" -c "$folder/control" --json cnc load "$folder/a.yaml" "$folder/a.nc" "$folder/a.plc"
+    holds "$said" '"blocks":1,"instructions":3' "the answer"
+    cnc start
+    exits 0 "$RKMCTL" -c "$folder/control" wait --advance --limit 10s 'cell.NEAR=1'
+    exits 1 "$RKMCTL" -c "$folder/control" cnc load "$folder/a.plc"
+    holds "$complained" "an axis moves, or a block is in its motion or delay: stop it and RESET" "while it moves"
+    exits 0 "$RKMCTL" -c "$folder/control" wait --advance --limit 10s 'cell.PO_STOP=1'
+    exits 2 "$RKMCTL" -c "$folder/control" cnc load "$folder/a.plc" "$folder/bad.plc"
+    holds "$complained" "bad.plc: expected one file of a kind" "two PLC programs"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc load "$example/mill.xml"
+    holds "$complained" "start it with --config $example/mill.xml" "a configuration"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc load
+    holds "$complained" "cnc load: expected FILE..." "no file"
+}
+
 # A PLC program goes on for ever; what it was started for does not.
 test_NU1_exec_ends_with_the_nc_program_though_a_plc_program_runs() {
     local machine=(--config "$example/mill.xml" --plc "$example/mill.plc" --machine "$example/mill.machine.yaml")
