@@ -66,8 +66,8 @@ static const struct argp_option option_table[] = {
     {"once", KEY_ONCE, NULL, 0, "watch: print one picture as text", 0},
     {NULL, 0, NULL, 0, "Both:", 3},
     {"timeout", KEY_TIMEOUT, "MS", 0,
-     "How long to wait for an answer, 1 to 3600000 ms (default 1000; emulator: 10000; no limit for wait, advance and "
-     "call)", 0},
+     "How long to wait for an answer, 1 to 3600000 ms (default: RKM04_TIMEOUT of the environment, else 1000; emulator: 10000; no "
+     "limit for wait, advance and call)", 0},
     {"file", 'f', "FILE", 0, "shell: execute the commands of FILE (- is standard input) and end at the first that fails", 0},
     {"json", 'j', NULL, 0, "Print the answer as JSON", 0},
     {0},
@@ -237,6 +237,14 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     }
 }
 
+/* How long an answer of a unit on the line is waited for, in ms. */
+static unsigned answer_time(const struct options *options)
+{
+    const char *usual = getenv("RKM04_TIMEOUT");
+    return options->timed || usual == NULL || usual[0] == '\0' ? options->request.timeout_ms
+                                                               : read_number("RKM04_TIMEOUT", usual, 1, TIMEOUT_MS_MAX);
+}
+
 /* A command to a unit on the line. */
 static enum exit_status do_request(struct options *options)
 {
@@ -248,6 +256,7 @@ static enum exit_status do_request(struct options *options)
     const char *node = getenv("RKM04_NODE");
     if (options->node == NULL && node != NULL && node[0] != '\0')
         request->node = read_number("RKM04_NODE", node, 0, RKM04_NODE_MAX);
+    request->timeout_ms = answer_time(options);
     request->json = options->json;
     request->words = options->words;
     request->count = options->count;
@@ -280,7 +289,7 @@ static enum exit_status do_pmc(struct options *options)
     job->timeout_ms = options->timed ? (int)options->request.timeout_ms : 0;
     const struct client_pmc pmc = {
         .port = options->request.port, .face = options->face, .job = job, .node = options->request.node, .baud = options->baud,
-        .timeout_ms = options->request.timeout_ms, .json = options->json, .words = options->words, .count = options->count};
+        .timeout_ms = answer_time(options), .json = options->json, .words = options->words, .count = options->count};
     return client_pmc(&pmc);
 }
 

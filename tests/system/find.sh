@@ -11,7 +11,7 @@ fi
 . "$(dirname "$0")/lib.sh"
 
 # Nothing of the environment says where an emulator is.
-unset RKM04_PORT RKM04_CONTROL RKM04_NODE
+unset RKM04_PORT RKM04_CONTROL RKM04_NODE RKM04_TIMEOUT
 export XDG_RUNTIME_DIR=/nonexistent
 
 test_without_an_emulator_it_says_what_to_do() {
@@ -31,6 +31,18 @@ test_the_one_that_is_running_is_found() {
     exits 0 "$RKMCTL" state
     exits 2 env RKM04_NODE=17 "$RKMCTL" position
     holds "$complained" "RKM04_NODE" "a wrong address in the environment"
+}
+
+test_the_environment_says_how_long_an_answer_is_waited_for() {
+    export TMPDIR=$folder
+    serve bus
+    exits 3 env RKM04_TIMEOUT=201 "$RKMCTL" -n 2 version
+    holds "$complained" "within 201 ms" "what is said"
+    exits 3 env RKM04_TIMEOUT=100000 "$RKMCTL" -n 2 --timeout 202 version
+    holds "$complained" "within 202 ms" "the option goes first"
+    exits 2 env RKM04_TIMEOUT=soon "$RKMCTL" version
+    holds "$complained" "RKM04_TIMEOUT" "a wrong time in the environment"
+    exits 0 env RKM04_TIMEOUT=soon "$RKMCTL" state
 }
 
 test_of_several_one_is_to_be_chosen() {
