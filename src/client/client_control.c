@@ -178,9 +178,23 @@ static enum exit_status reset_unit(struct client_job *job)
     return call_without_result(job, "reset", NULL, true);
 }
 
+/* After its answer to `shutdown`: it has ended when the connection has; then its files are whole, its link and socket gone. */
+static bool emulator_has_ended(struct client_job *job)
+{
+    bool ended = client_rpc_ends(&job->rpc, job->timeout_ms > 0 ? job->timeout_ms : CLIENT_JOB_TIMEOUT_MS);
+    if (!ended)
+        warnx("the emulator at %s has not ended in time", job->rpc.path);
+    return ended;
+}
+
 static enum exit_status end_emulator(struct client_job *job)
 {
-    return call_without_result(job, "shutdown", NULL, false);
+    json_t *result;
+    enum exit_status status = client_job_call(job, "shutdown", NULL, false, &result);
+    if (status == STATUS_SUCCESS && emulator_has_ended(job))
+        return client_job_done(job, result);
+    json_decref(result);
+    return status == STATUS_SUCCESS ? STATUS_NO_ANSWER : status;
 }
 
 static enum exit_status switch_power(struct client_job *job)
@@ -291,6 +305,10 @@ static enum exit_status call_method(struct client_job *job)
         }
     }
     enum exit_status status = client_job_call_long(job, job->words[0], client_job_params(job, params, true), &result);
+    if (status == STATUS_SUCCESS && strcmp(job->words[0], "shutdown") == 0 && !emulator_has_ended(job)) {
+        json_decref(result);
+        status = STATUS_NO_ANSWER;
+    }
     return status == STATUS_SUCCESS ? client_print_json(result) : status;
 }
 

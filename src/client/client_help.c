@@ -90,7 +90,8 @@ static const struct help {
      "  rkmctl call units\n"},
     {"window", "window", "The service program in a browser, for real and virtual units.",
      "  -p PORT, -c PATH, --http=ADDRESS:PORT, --open", "  rkmctl window --open\n"},
-    {"shutdown", "shutdown", "End the emulator.", EMULATOR_OPTIONS, "  rkmctl shutdown\n"},
+    {"shutdown", "shutdown", "End the emulator, and wait until it has ended.", EMULATOR_OPTIONS,
+     "  rkmctl shutdown\n"},
     {"shell", "shell",
      "Type commands and program text; Tab completes, the history is kept. A line that begins with a small letter is a\n"
      "command, any other is program text for the present motor; `node N' and `motor M' choose. With -f FILE the commands of\n"

@@ -305,3 +305,18 @@ enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *meth
     *json = NULL;
     return client_rpc_send(rpc, method, params) ? client_rpc_receive(rpc, timeout_ms, json) : CLIENT_RPC_LOST;
 }
+
+bool client_rpc_ends(struct client_rpc *rpc, int timeout_ms)
+{
+    uint64_t end = client_now() + (uint64_t)timeout_ms * 1000u;
+    char rest[1024];
+    for (;;) {
+        uint64_t now = client_now();
+        bool more = client_socket_wait(rpc->fd, now < end ? (int)((end - now + 999u) / 1000u) : 0);
+        if (!more && now >= end)
+            return false;
+        ssize_t length = more ? client_socket_read(rpc->fd, rest, sizeof rest) : 1;
+        if (length == 0 || (length < 0 && errno != EINTR))
+            return true;
+    }
+}

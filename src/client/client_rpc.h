@@ -49,6 +49,9 @@ enum client_rpc_outcome client_rpc_receive(struct client_rpc *rpc, int timeout_m
 enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms,
                                         json_t **json);
 
+/* Wait up to `timeout_ms` for the end of the connection; what comes before it is dropped. Returns whether it has ended. */
+bool client_rpc_ends(struct client_rpc *rpc, int timeout_ms);
+
 /* Wait up to `timeout_ms` for at least one event, or the answer to the last request. With CLIENT_RPC_RESULT *json is NULL if only
  * events came. */
 enum client_rpc_outcome client_rpc_listen(struct client_rpc *rpc, int timeout_ms, json_t **json);

@@ -17,6 +17,7 @@
 
 static void call_shutdown(struct control *control)
 {
+    control->last = control->ender;
     control->ender = NULL;
     control->calls.shutdown(control->calls.context);
 }
@@ -107,6 +108,8 @@ static void remove_client(struct control_client *client)
         return;
     if (control->ender == client && control->open)
         call_shutdown(control);
+    if (control->last == client)
+        control->last = NULL;
     for (struct control_client **at = &control->clients; *at; at = &(*at)->next) {
         if (*at == client) {
             *at = client->next;
@@ -348,6 +351,10 @@ void control_close(struct control *control)
         return;
     control->open = false;
     control_place_release(&control->place);
+    struct control_client *last = control->last;
+    if (last && !last->connection.closing)
+        connection_abandon(&last->connection);
+    control->last = last;
     while (control->clients)
         connection_close(&control->clients->connection);
     while (control->strangers)
@@ -360,6 +367,12 @@ void control_close(struct control *control)
     uv_close((uv_handle_t *)&control->check, NULL);
     uv_close((uv_handle_t *)&control->ending, NULL);
     uv_close((uv_handle_t *)&control->door, NULL);
+}
+
+void control_hang_up(struct control *control)
+{
+    if (control && control->last)
+        connection_hang_up(&control->last->connection);
 }
 
 void control_free(struct control *control)

@@ -38,8 +38,10 @@ const char *control_address(const struct control *control);
 /* How many clients are there. */
 unsigned control_clients(const struct control *control);
 
-/* Remove the socket, hang up on everybody. The loop has to run out before control_free(). NULL: nothing. */
+/* Remove the socket, hang up on everybody; on who asked for the end with control_hang_up() alone, when nothing is left to be
+ * done. The loop has to run out before control_free(). NULL: nothing. */
 void control_close(struct control *control);
+void control_hang_up(struct control *control);
 void control_free(struct control *control);
 
 #endif

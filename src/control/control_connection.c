@@ -378,11 +378,21 @@ static void on_closed(uv_handle_t *handle)
     connection->calls->closed(connection);
 }
 
+void connection_abandon(struct connection *connection)
+{
+    connection->closing = true;
+    connection->calls->gone(connection);
+}
+
+void connection_hang_up(struct connection *connection)
+{
+    uv_close(&connection->end.handle, on_closed);
+}
+
 void connection_close(struct connection *connection)
 {
     if (connection->closing)
         return;
-    connection->closing = true;
-    connection->calls->gone(connection);
-    uv_close(&connection->end.handle, on_closed);
+    connection_abandon(connection);
+    connection_hang_up(connection);
 }

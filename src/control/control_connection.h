@@ -111,4 +111,8 @@ bool connection_is_gone(const struct connection *connection);
 /* Close the connection. closed() is called when the loop has closed its handle. */
 void connection_close(struct connection *connection);
 
+/* The same in two steps: nothing is done for the client any more, which sees the end of the connection later. */
+void connection_abandon(struct connection *connection);
+void connection_hang_up(struct connection *connection);
+
 #endif

@@ -72,6 +72,7 @@ struct control {
     struct control_client *strangers; /* clients that have not shown the token yet, the newest first */
     unsigned stranger_count;
     struct control_client *ender; /* who asked for shutdown; NULL: none */
+    struct control_client *last;  /* the same, when it has read its answer: sees the end of its connection last; NULL: none */
     struct trace_set traces;
 };
 

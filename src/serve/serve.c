@@ -346,6 +346,8 @@ static void end_serve(struct serve *serve)
     for (unsigned i = 0; i < serve->options.lines; i++)
         if (serve->bus[i] && !bus_end(serve->bus[i]))
             serve->status = STATUS_FAILURE;
+    coverage_close(&serve->coverage_files);
+    control_hang_up(serve->control);
     uv_walk(&serve->loop, close_handle, NULL);
     uv_run(&serve->loop, UV_RUN_DEFAULT);
     uv_loop_close(&serve->loop);
@@ -354,7 +356,6 @@ static void end_serve(struct serve *serve)
         if (serve->bus[i])
             bus_free(serve->bus[i]);
     line_watch_close(&serve->watch);
-    coverage_close(&serve->coverage_files);
 }
 
 static enum exit_status run_serve(struct serve *serve)

@@ -144,6 +144,7 @@ static void stop(void)
     control_close(control);
     for (unsigned i = 0; i < options.lines; i++)
         FUZZ_CHECK(bus_end(bus[i]), "line %u does not end well", i);
+    control_hang_up(control);
     uv_walk(&loop, close_handle, NULL);
     uv_run(&loop, UV_RUN_DEFAULT);
     int open = uv_loop_close(&loop);

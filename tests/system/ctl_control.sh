@@ -313,6 +313,24 @@ test_the_emulator_can_be_ended() {
     holds "$complained" "rkm04 serve" "the message says what should be there"
 }
 
+# Many buses take their time to end.
+test_when_shutdown_returns_the_emulator_has_ended() {
+    local word
+    mkdir "$folder/many"
+    export RKM04_CONTROL=$folder/many/control
+    for word in shutdown "call shutdown"; do
+        start many "$RKM04" serve --lines 100 --node 1-4 --link "$folder/many/bus%l" --control "$RKM04_CONTROL" \
+            --record "$folder/%l.record" --coverage "$folder/covered" --clock stepped
+        soon "the buses are ready" ready many
+        # shellcheck disable=SC2086
+        exits 0 control $word
+        same "" "$(ls -A "$folder/many")" "links, locks and sockets after $word"
+        same 100 "$(tail -qn 1 "$folder"/*.record | grep -c '"end":true')" "recordings that are complete after $word"
+        status_of "$started"
+        same 0 "$status" "exit status of serve after $word"
+    done
+}
+
 test_the_default_is_the_emulator_started_without_a_link() {
     unset RKM04_CONTROL
     export XDG_RUNTIME_DIR=$folder/run TMPDIR=$folder/tmp
