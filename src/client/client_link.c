@@ -58,15 +58,15 @@ static bool wait_for(const struct dialogue *d, short events)
     struct pollfd files[] = {{.fd = d->client->fd, .events = events}, {.fd = cancel != NULL ? *cancel : -1, .events = POLLIN}};
     for (;;) {
         uint64_t now = client_now();
-        if (now >= d->deadline)
-            return false;
-        uint64_t left = (d->deadline - now + 999u) / 1000u;
+        uint64_t left = now < d->deadline ? (d->deadline - now + 999u) / 1000u : 0; /* 0: what has come meanwhile counts */
         poll(files, 2, left < PROGRESS_MS ? (int)left : PROGRESS_MS);
         show_progress(d);
         if (files[1].revents != 0)
             return false;
         if (files[0].revents != 0)
             return true;
+        if (left == 0)
+            return false;
     }
 }
 
@@ -133,6 +133,7 @@ static bool drop_input(struct client *client)
     while ((n = read_bytes(client, bytes, sizeof bytes)) > 0)
         ;
     memset(&client->receiver, 0, sizeof client->receiver);
+    memset(&client->unbroken, 0, sizeof client->unbroken);
     if (n == 0)
         errno = 0;
     return n < 0 && (errno == EAGAIN || errno == EINTR);
@@ -176,23 +177,22 @@ static void wait_until_sent(const struct dialogue *d)
 /* ---- Receiving ---------------------------------------------------------------------------------------------------- */
 
 /* Messages 2 to 7 repeat the motor. */
-static bool is_for_motor(const struct dialogue *d)
+static bool is_for_motor(const struct dialogue *d, const struct rkm04_receiver *r, const uint8_t *message)
 {
     bool named = d->request[0] >= 2 && d->request[0] <= 7 && d->length >= 2 && d->request[1] >= '0' &&
                  d->request[1] <= '0' + RKM04_MOTORS;
-    return !named || (d->client->receiver.length >= 2 && d->client->answer[1] == d->request[1]);
+    return !named || (r->length >= 2 && message[1] == d->request[1]);
 }
 
-/* Is the message in the buffer the answer? */
-static bool is_answer(const struct dialogue *d)
+/* Is the message that was received the answer? */
+static bool is_answer(const struct dialogue *d, const struct rkm04_receiver *r, const uint8_t *message)
 {
     const struct client *client = d->client;
-    const struct rkm04_receiver *r = &client->receiver;
     if (client->framing->answer_names_sender ? r->dnode != 0 || r->snode != client->node : r->dnode != client->node)
         return false;
-    if (client->answer[0] == NUMBER_UNKNOWN && r->length >= 2 && client->answer[1] == d->request[0])
+    if (message[0] == NUMBER_UNKNOWN && r->length >= 2 && message[1] == d->request[0])
         return true;
-    return client->answer[0] == d->request[0] && is_for_motor(d);
+    return message[0] == d->request[0] && is_for_motor(d, r, message);
 }
 
 static const struct rkm04_framing *other_framing(const struct client *client)
@@ -209,6 +209,20 @@ static void count_unexpected(const struct dialogue *d)
                       memcmp(client->answer, d->request, d->length) == 0;
 }
 
+/* The plain framing takes a silence for the end of a frame that was cut. Where this machine, or the one at the other end, was
+ * busy, there was none on the line: then the byte ends the answer as it is without silences. Returns true if it does. */
+static bool ends_unbroken(struct dialogue *d, uint8_t byte)
+{
+    struct client *client = d->client;
+    struct rkm04_receiver *r = &client->unbroken;
+    if (!client->framing->receive(r, byte, 0, client->unbroken_message, sizeof client->unbroken_message) ||
+        !is_answer(d, r, client->unbroken_message))
+        return false;
+    memcpy(client->answer, client->unbroken_message, r->length);
+    client->length = r->length;
+    return true;
+}
+
 /* Take what came. Returns true when the answer is in the buffer. */
 static bool process_bytes(struct dialogue *d, const uint8_t *bytes, size_t length)
 {
@@ -218,13 +232,15 @@ static bool process_bytes(struct dialogue *d, const uint8_t *bytes, size_t lengt
     for (size_t i = 0; i < length; i++) {
         client->foreign += other_framing(client)->receive(&client->other, bytes[i], now, client->foreign_message,
                                                           sizeof client->foreign_message);
-        if (!client->framing->receive(&client->receiver, bytes[i], now, client->answer, sizeof client->answer))
-            continue;
-        if (is_answer(d)) {
+        bool whole = client->framing->receive(&client->receiver, bytes[i], now, client->answer, sizeof client->answer);
+        if (whole && is_answer(d, &client->receiver, client->answer)) {
             client->length = client->receiver.length;
             return true;
         }
-        count_unexpected(d);
+        if (whole)
+            count_unexpected(d);
+        if (ends_unbroken(d, bytes[i]))
+            return true;
     }
     uint64_t limit = now + (uint64_t)client->timeout_ms * 1000u;
     d->deadline = limit < d->last_moment ? limit : d->last_moment;

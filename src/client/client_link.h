@@ -38,6 +38,7 @@ struct client {
     size_t length;
 
     struct rkm04_receiver receiver;
+    struct rkm04_receiver unbroken; /* of the same bytes as if they had come without silences */
     size_t first_count;
     char first[256];             /* bytes that came: a text, if we are refused */
     uint32_t received;           /* bytes that came since the request */
@@ -46,6 +47,7 @@ struct client {
     struct rkm04_receiver other; /* what the same bytes are in the other framing: counts only */
     uint32_t foreign;            /* whole messages in it */
     uint8_t foreign_message[CLIENT_MESSAGE_MAX];
+    uint8_t unbroken_message[CLIENT_MESSAGE_MAX];
     uint8_t wire[2 * CLIENT_MESSAGE_MAX + 2 * RKM04_FRAME_EDGE_MAX];
 };
 
