@@ -167,7 +167,7 @@ test_pymodbus_moves_a_drive_in_real_time() {
 
 test_bytes_are_gathered_and_dropped_by_silence() {
     needs_pymodbus
-    serve_cib --device-option silence=100000
+    serve_cib --clock stepped --device-option silence=100000
     exits 0 "$python" -W ignore "$here/cib_client.py" silence "$folder/bus"
 }
 
@@ -193,13 +193,13 @@ test_mbpoll_over_tcp() {
     command -v mbpoll >/dev/null || skip_case "there is no mbpoll; apt-get install mbpoll"
     serve_cib --service modbus-tcp=127.0.0.1:0
     at=$(address modbus-tcp)
-    exits 0 mbpoll -m tcp -a 1 -p "${at##*:}" -0 -1 -q -t 3:hex -r 48 -c 1 "${at%:*}"
+    exits 0 mbpoll -o 10 -m tcp -a 1 -p "${at##*:}" -0 -1 -q -t 3:hex -r 48 -c 1 "${at%:*}"
     holds "$said" "0x0808" "the type"
 }
 
 test_mbpoll_reads_and_writes() {
     command -v mbpoll >/dev/null || skip_case "there is no mbpoll; apt-get install mbpoll"
-    local poll=(mbpoll -m rtu -a 1 -b 19200 -P none -0 -1 -q)
+    local poll=(mbpoll -o 10 -m rtu -a 1 -b 19200 -P none -0 -1 -q)
     serve_cib --baud 0
     exits 0 "${poll[@]}" -t 3:hex -r 48 -c 2 "$folder/bus"
     holds "$said" "0x0808" "the type"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Clients for cib.sh and qemu_cib.sh: cib_client.py WHAT PORT, Modbus masters with pymodbus; tcp HOST:PORT, the same over TCP;
-lines HOST:PORT CONTROL, a PLCComS client."""
+"""Clients for cib.sh and qemu_cib.sh: cib_client.py WHAT PORT, Modbus masters with pymodbus, of which `silence' wants a stepped
+clock and its control socket beside the port; tcp HOST:PORT, the same over TCP; lines HOST:PORT CONTROL, a PLCComS client."""
 import json
 import socket
 import sys
@@ -10,6 +10,7 @@ import serial
 from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 from pymodbus.pdu import ExceptionResponse
 
+LIMIT = 30  # seconds until something counts as never coming
 ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE = 1, 2, 3
 HOLDING = [*range(0, 9), *range(0x10, 0x15), *range(0x20, 0x25), *range(0x100, 0x10C), *range(0x110, 0x116), *range(0x120, 0x126)]
 INPUT = [*range(0, 3), *range(0x10, 0x1B), *range(0x20, 0x2B), 0x30, 0x31, *range(0x100, 0x10C), *range(0x110, 0x116),
@@ -72,7 +73,10 @@ def registers(bus, port):
         check_tables(bus, unit)
         check_writes(bus, unit)
         check_bits(bus, unit)
+    bus.close()
+    bus = serial_master(port, 1)
     assert bus.read_coils(0, 1, 5).isError(), "there is no unit 5"
+    bus.close()
 
 
 def registers_of_1(bus, port):
@@ -87,7 +91,7 @@ def read_type(bus, port):
 
 def motion(bus, port):
     assert not bus.write_registers(0x10, [1, 102, 0, 40, 200], 1).isError()
-    end = time.monotonic() + 20
+    end = time.monotonic() + LIMIT
     while (status := words(bus.read_input_registers(0x11, 1, 1))[0]) & 1:
         assert time.monotonic() < end
     assert status & 8, "TRG"
@@ -97,29 +101,33 @@ def motion(bus, port):
 def silence(bus, port):
     """Half a request, and then, behind silence, a whole one; and both halves within it."""
     bus.close()
+    control = port + ".control"
     request = bytes.fromhex("010400300002") + b"\x71\xc4"
     answer = bytes.fromhex("01040408080102")
-    with serial.Serial(port, 19200, timeout=10) as wire:
-        wire.write(request[:4])
-        time.sleep(0.3)
-        wire.write(request)
-        assert wire.read(9)[:7] == answer
-        wire.write(request[:4])
-        time.sleep(0.02)
-        wire.write(request[4:])
-        assert wire.read(9)[:7] == answer
+    passed = 0
+    with serial.Serial(port, 19200, timeout=LIMIT) as wire:
+        for part, pause in ((request[:4], 101000), (request, 10000), (request[:4], 90000), (request[4:], 10000)):
+            wire.write(part)
+            passed += len(part)
+            end = time.monotonic() + LIMIT
+            while call(control, "state")["line"]["bytes"] < passed:  # time stands until all of it is there
+                assert time.monotonic() < end
+            call(control, "advance", ticks=pause)
+            if part[-1] == request[-1]:
+                assert wire.read(9)[:7] == answer
+                passed += 9
 
 
 def tcp(address):
     host, port = address.rsplit(":", 1)
-    bus = ModbusTcpClient(host, port=int(port), timeout=10, retries=0)
+    bus = ModbusTcpClient(host, port=int(port), timeout=LIMIT, retries=0)
     assert bus.connect()
     check_tables(bus, 17)
     check_writes(bus, 17)
     check_bits(bus, 17)
     refused(bus.read_input_registers(0x30, 1, 9), 0x0B)
     bus.close()
-    with socket.create_connection((host, int(port)), timeout=10) as wrong:  # another protocol: the connection is closed
+    with socket.create_connection((host, int(port)), timeout=LIMIT) as wrong:  # another protocol: the connection is closed
         wrong.sendall(bytes.fromhex("000100010006010400300001"))
         assert wrong.recv(100) == b""
 
@@ -129,7 +137,7 @@ class Lines:
 
     def __init__(self, address):
         host, port = address.rsplit(":", 1)
-        self.socket = socket.create_connection((host, int(port)), timeout=10)
+        self.socket = socket.create_connection((host, int(port)), timeout=LIMIT)
         self.file = self.socket.makefile("r", encoding="ascii", newline="\r\n")
 
     def read(self):
@@ -144,13 +152,18 @@ class Lines:
             assert got == answer, f"{line}: expected {answer}, got {got}"
 
 
-def advance(control, time):
+def call(control, method, **params):
     with socket.socket(socket.AF_UNIX) as connection:
         connection.connect(control)
-        request = {"jsonrpc": "2.0", "id": 1, "method": "advance", "params": {"ticks": time}}
+        request = {"jsonrpc": "2.0", "id": 1, "method": method, "params": params}
         connection.sendall(json.dumps(request).encode() + b"\n")
         answer = json.loads(connection.makefile().readline())
         assert "result" in answer, answer
+        return answer["result"]
+
+
+def advance(control, ticks):
+    call(control, "advance", ticks=ticks)
 
 
 def lines(address, control):
@@ -181,9 +194,14 @@ def lines(address, control):
     client.ask("LIST:*RUN", "LIST:__PLC_RUN,BOOL", "LIST:")
 
 
-def serial_client(what, port):
-    bus = ModbusSerialClient(port, baudrate=19200, parity="N", timeout=20 if what != "registers" else 1, retries=0)
+def serial_master(port, timeout):
+    bus = ModbusSerialClient(port, baudrate=19200, parity="N", timeout=timeout, retries=0)
     assert bus.connect()
+    return bus
+
+
+def serial_client(what, port):
+    bus = serial_master(port, LIMIT)
     {"registers": registers, "registers_of_1": registers_of_1, "type": read_type, "motion": motion,
      "silence": silence}[what](bus, port)
     bus.close()

@@ -273,7 +273,7 @@ test_mbpoll_over_tcp() {
     command -v mbpoll >/dev/null || skip_case "there is no mbpoll; apt-get install mbpoll"
     unit --service modbus-tcp=127.0.0.1:0
     at=$(address)
-    exits 0 mbpoll -m tcp -a 1 -p "${at##*:}" -0 -1 -q -t 4 -r 1102 -c 2 "${at%:*}"
+    exits 0 mbpoll -o 10 -m tcp -a 1 -p "${at##*:}" -0 -1 -q -t 4 -r 1102 -c 2 "${at%:*}"
     holds "$said" "[1103]: 	400" "the acceleration"
 }
 

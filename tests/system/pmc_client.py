@@ -5,7 +5,7 @@ import time
 
 import serial
 
-LIMIT = 20  # s
+LIMIT = 30  # s
 
 
 def until(what, done):
@@ -28,8 +28,8 @@ class Unit:
         from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 
         host, _, number = port.rpartition(":")
-        self.bus = (ModbusTcpClient(host, port=int(number), timeout=5) if host
-                    else ModbusSerialClient(port, baudrate=9600, timeout=5))
+        self.bus = (ModbusTcpClient(host, port=int(number), timeout=LIMIT) if host
+                    else ModbusSerialClient(port, baudrate=9600, timeout=LIMIT))
         assert self.bus.connect()
 
     def holding(self, address, count=1):

@@ -92,10 +92,11 @@ test_an_instance_is_ready_when_it_says_so_and_tells_its_end() {
         kill -TERM "$started"
         status_of "$started"
         same 0 "$status" "exit status"
-        grep -qa STOPPING=1 "$folder/manager.out" || fail "the manager does not hear that the unit ends"
+        soon "the manager hears that the unit ends" grep -qa STOPPING=1 "$folder/manager.out"
         same "" "$(ls -A "$folder/run/rkm04/3")" "files left in the folder of the instance"
         [[ -s $folder/state/rkm04/3/3 ]] || fail "there is no flash image"
-        kill "${processes[-2]}" # the manager
+        kill "${processes[-2]}" # the manager, which removes its socket
+        status_of "${processes[-2]}"
         rm -f "$folder/notify"
     done
 }
