@@ -7,6 +7,7 @@ import os
 import socket
 import subprocess
 import sys
+import time
 
 import control_robust
 from control_client import LIMIT, Client, entrance, soon
@@ -14,6 +15,7 @@ from control_client import LIMIT, Client, entrance, soon
 WRONG = {"code": -32001, "message": "token: wrong: expected that of the control file"}
 FIRST = {"code": -32001, "message": "expected the method `authenticate' with the token of the control file first"}
 TOO_LONG = {"code": -32001, "message": FIRST["message"] + ", in a line of at most 512 bytes"}
+STRANGER = 5  # seconds that a stranger may stay
 UNITS = b'{"jsonrpc":"2.0","id":1,"method":"units"}\n'
 
 
@@ -21,6 +23,22 @@ def stranger(emulator):
     """A connection that has not shown the token."""
     emulator.clients.append(Client(emulator.path, admit=False))
     return emulator.clients[-1]
+
+
+def in_time(emulator, attempt):
+    """Something that a machine can do before a stranger's time is over; one that takes longer has to do it again."""
+    files = emulator.files()
+    for _ in range(10):
+        begin = time.monotonic()
+        try:
+            return attempt(files)
+        except (AssertionError, OSError):
+            if time.monotonic() - begin < STRANGER:
+                raise
+        for client in emulator.clients:
+            client.close()
+        soon("all of them are gone", lambda: emulator.files() == files)
+    raise AssertionError("the machine is too slow")
 
 
 def greeting(token):
@@ -102,17 +120,19 @@ def test_a_flood_after_the_refusal_is_cut(emulator):
 
 
 def test_strangers_are_few_and_the_oldest_makes_room(emulator):
-    emulator.client()
-    files = emulator.files()
-    strangers = [stranger(emulator) for _ in range(20)]
-    for client in strangers[:12]:
-        assert ended(client)
-    soon("the rest are there", lambda: emulator.files() == files + 8)
-    strangers[-1].send(greeting(entrance(emulator.path)[2]) + UNITS)
-    assert strangers[-1].line()["result"] == {}
-    assert strangers[-1].line()["result"]["units"] == ["1"]
-    for client in strangers[12:-1]:
-        assert client.silent()
+    def crowd(files):
+        emulator.client()
+        strangers = [stranger(emulator) for _ in range(20)]
+        for client in strangers[:12]:
+            assert ended(client)
+        soon("the rest are there", lambda: emulator.files() == files + 1 + 8)
+        strangers[-1].send(greeting(entrance(emulator.path)[2]) + UNITS)
+        assert strangers[-1].line()["result"] == {}
+        assert strangers[-1].line()["result"]["units"] == ["1"]
+        for client in strangers[12:-1]:
+            assert client.silent()
+
+    in_time(emulator, crowd)
 
 
 def test_who_holds_connections_open_keeps_nobody_out(emulator):
@@ -131,12 +151,15 @@ def test_a_stranger_has_little_time(emulator):
 
 
 def test_strangers_do_not_count_as_clients(emulator):
-    clients = [emulator.client() for _ in range(64)]
-    strange = [stranger(emulator) for _ in range(8)]
-    assert clients[0].call("units")["units"] == ["1"]
-    strange[0].send(greeting(entrance(emulator.path)[2]))
-    assert strange[0].line()["error"] == {"code": -32000, "message": "too many clients: expected at most 64 at a time"}
-    assert ended(strange[0])
+    def crowd(_files):
+        clients = [emulator.client() for _ in range(64)]
+        strange = [stranger(emulator) for _ in range(8)]
+        assert clients[0].call("units")["units"] == ["1"]
+        strange[0].send(greeting(entrance(emulator.path)[2]))
+        assert strange[0].line()["error"] == {"code": -32000, "message": "too many clients: expected at most 64 at a time"}
+        assert ended(strange[0])
+
+    in_time(emulator, crowd)
 
 
 def test_who_has_ended_its_sending_gets_its_answers_but_nothing_later(emulator):
@@ -153,8 +176,8 @@ def test_who_has_ended_its_sending_gets_its_answers_but_nothing_later(emulator):
 
 def test_what_a_client_waits_for_ends_with_it(emulator):
     other = emulator.client()
-    emulator.program(1, "G+")
     files = emulator.files()
+    emulator.program(1, "G+") # when its client goes, the emulator closes a file for a moment
     for request in [b'{"jsonrpc":"2.0","id":2,"method":"wait","params":{"until":{"di":{"1":1}}}}\n',
                     b'{"jsonrpc":"2.0","id":2,"method":"subscribe"}\n',
                     b'{"jsonrpc":"2.0","id":2,"method":"advance","params":{"ticks":"1000000s"}}\n' + UNITS]:

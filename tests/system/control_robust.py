@@ -57,6 +57,11 @@ class Emulator:
         with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * resource.getpagesize()
 
+    def work(self):
+        """Seconds of processor time."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
+            return sum(map(int, file.read().rsplit(")")[-1].split()[11:13])) / os.sysconf("SC_CLK_TCK")
+
     def files(self):
         return len(os.listdir(f"/proc/{self.process.pid}/fd"))
 
@@ -69,12 +74,17 @@ class Emulator:
         assert "Sanitizer" not in errors and "runtime error" not in errors, errors
 
 
-def brisk(client, limit=0.5):
-    """Another client is answered without delay."""
-    begin = time.monotonic()
-    client.call("units")
-    took = time.monotonic() - begin
-    assert took < limit, f"an answer took {took:.3f} s"
+def brisk(emulator, client, limit=0.5):
+    """Another client is answered without delay: within so many seconds or, if the machine has other work, so much of the
+    emulator's. The best of ten counts: what holds up a client holds up each."""
+    for _ in range(10):
+        begin, work = time.monotonic(), emulator.work()
+        client.call("units")
+        took, worked = time.monotonic() - begin, emulator.work() - work
+        if took < limit:
+            return
+        assert worked < limit, f"an answer took {worked:.2f} s of processor time"
+    raise AssertionError(f"an answer took {took:.3f} s, and so did those before it")
 
 
 def test_clients_do_not_see_one_another(emulator):
@@ -93,7 +103,7 @@ def test_megabytes_without_a_newline_are_refused_and_forgotten(emulator):
         bad.send(b"x" * MIB)
     answer = bad.line()
     assert answer["error"] == {"code": -32600, "message": "too long: expected a request of at most 1048576 bytes"}, answer
-    brisk(good)
+    brisk(emulator, good)
     assert emulator.memory() - before < 16 * MIB, emulator.memory() - before
     bad.send(b"\n")
     assert bad.call("units")["units"] == ["1"]
@@ -124,7 +134,7 @@ def test_a_flood_of_bytes_on_a_strict_line_does_not_hold_up_others(emulator):
                 os.write(line, b"\\xff" * 4095)""", emulator.link])
     try:
         for _ in range(20):
-            brisk(good, 1)
+            brisk(emulator, good, 1)
     finally:
         flood.kill()
         flood.wait()
@@ -140,11 +150,11 @@ def test_a_flood_of_requests_does_not_hold_up_others(emulator):
             sent += flood.socket.send(line)
         except TimeoutError:
             break
-        brisk(good, 2)
+        brisk(emulator, good, 2)
     else:
         raise AssertionError(f"{sent} bytes were taken from somebody who does not read")
     for _ in range(20):
-        brisk(good)
+        brisk(emulator, good)
     assert emulator.memory() - before < 64 * MIB, emulator.memory() - before
 
 
@@ -174,7 +184,7 @@ def test_a_client_that_leaves_in_the_middle_does_no_harm(emulator):
         bad = Client(emulator.path)
         bad.send(beginning)
         bad.close()
-    brisk(good)
+    brisk(emulator, good)
     good.call("di.set", mask=1)  # events without a client
     soon("all of them are gone", lambda: emulator.files() == files)
     emulator.program(1, "F9 R")
@@ -333,7 +343,7 @@ def test_an_advance_ends_with_its_client(emulator):
     one, two = emulator.client(), emulator.client()
     emulator.program(1, "G+")
     one.request("advance", ticks="1000000s")
-    brisk(two)
+    brisk(emulator, two)
     one.close()
     now = two.call("advance", ticks=1)["t_us"]
     assert now < 1000000000000, now

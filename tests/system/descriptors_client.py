@@ -7,7 +7,7 @@ import sys
 import time
 
 control, log = sys.argv[1:]
-LIMIT = 30  # seconds until a condition counts as never coming true
+LIMIT = 60  # seconds until a condition counts as never coming true
 
 
 def connect():

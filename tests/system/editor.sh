@@ -12,7 +12,7 @@ setup_node_packages "$root/tests/system/editor" "$modules" vscode-textmate || no
 # with_node CASE [FILE]...: a case of editor/test.js.
 with_node() {
     [[ -z ${no_node-} ]] || skip_case "there is no node with npm, or npm cannot install vscode-textmate (see $modules/npm.log)"
-    NODE_PATH=$modules/node_modules exits 0 timeout 60 node "$root/tests/system/editor/test.js" \
+    NODE_PATH=$modules/node_modules exits 0 timeout 200 node "$root/tests/system/editor/test.js" \
         "$1" "$root/tools/editor" "$RKM04" "${@:2}"
 }
 

@@ -8,7 +8,7 @@
 
 set -u
 : "${RKM04:=rkm04}" "${RKMCTL:=rkmctl}"
-limit=30 # seconds until a condition counts as never coming true
+limit=60 # seconds until a condition counts as never coming true
 export RKM04_TIMEOUT=20000 # ms: a busy machine may let a unit wait; a test that wants silence gives its --timeout
 
 # What went wrong, with what the programs said, and out.

@@ -10,7 +10,7 @@ from pygls.lsp.client import LanguageClient
 
 URI = "file:///tmp/drill.rks"
 DOCUMENT = lsp.TextDocumentIdentifier(uri=URI)
-WITHIN = 30  # seconds until a condition counts as never coming true
+WITHIN = 60  # seconds until a condition counts as never coming true
 
 
 class Editor(LanguageClient):

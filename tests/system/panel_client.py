@@ -20,7 +20,7 @@ import time
 
 import pyte
 
-LIMIT = 30  # seconds until something counts as never coming
+LIMIT = 60  # seconds until something counts as never coming
 
 
 class Terminal:

@@ -88,7 +88,7 @@ test_the_motors_run_while_no_client_is_attached() {
 # many WHAT TIMES: sessions of pty_client.c, one after the other; all are as they should be.
 many() {
     serve bus --baud 0
-    exits 0 timeout 100 "$PTY_CLIENT" "$1" "$folder/bus" "$2"
+    exits 0 timeout 500 "$PTY_CLIENT" "$1" "$folder/bus" "$2"
     same "$2 of $2" "$said" "sessions"
     ! grep -q 'another client' "$folder/bus.err" || fail "one client is called another one, too"
     exits 0 ctl bus version

@@ -24,7 +24,7 @@ url() {
     case $1 in
         pty) echo "$folder/bus" ;;
         socket) echo "socket://$(ready_value bus tcp)" ;;
-        rfc2217) echo "rfc2217://$(ready_value bus rfc2217)" ;;
+        rfc2217) echo "rfc2217://$(ready_value bus rfc2217)?timeout=30" ;; # for its settings
     esac
 }
 
@@ -105,7 +105,7 @@ test_a_client_of_another_speed_gets_silence_and_garbage_on_a_strict_line() {
     local way
     serve_all --strict-line
     for way in pty rfc2217; do
-        py 0 slow "$way"
+        py 0 garbled "$way"
         [[ $said != *0100* ]] || fail "$way: an answer at the wrong speed: $said"
         py 0 talk "$way"
     done

@@ -5,7 +5,7 @@ import time
 
 import serial
 
-LIMIT = 30  # seconds until an answer counts as never coming
+LIMIT = 60  # seconds until an answer counts as never coming
 # Frames of --framing plain: an unknown message (all bytes FF, which RFC 2217 has to double), and Get Position of motor 1.
 UNKNOWN = bytes.fromhex("01 00 01 ff"), bytes.fromhex("01 00 04 ff ff 00 00")
 POSITION = bytes.fromhex("01 00 02 04 31"), bytes.fromhex("01 00 0d 04 31 0a 20 20 20 20 20 20 20 20 20 30")
@@ -69,7 +69,7 @@ def lines(url):
         port.break_condition = True
         port.break_condition = False
         ask(port, POSITION)
-    with opened(url + "?poll_modem") as port:
+    with opened(url + ("&" if "?" in url else "?") + "poll_modem") as port:
         assert port.cts
 
 
@@ -82,12 +82,17 @@ def keep(url):
         ask(port, UNKNOWN)
 
 
-def slow(url):
-    """A client of 9600 baud asks twice and prints what it receives within half a second."""
-    with opened(url, baudrate=9600, timeout=0.5) as port:
+def slow(url, seconds=LIMIT):
+    """A client of 9600 baud asks twice and prints what it receives."""
+    with opened(url, baudrate=9600, timeout=seconds) as port:
         for _ in range(2):
             port.write(POSITION[0])
             print(port.read(len(POSITION[1])).hex(), flush=True)
+
+
+def garbled(url):
+    """The same on a line on which no answer comes whole: what comes within half a second."""
+    slow(url, 0.5)
 
 
 def exclusive(url):
@@ -105,5 +110,6 @@ def exclusive(url):
 
 
 what, where = sys.argv[1:]
-cases = {"talk": talk, "reset": reset, "settings": settings, "lines": lines, "keep": keep, "slow": slow, "exclusive": exclusive}
+cases = {"talk": talk, "reset": reset, "settings": settings, "lines": lines, "keep": keep, "slow": slow, "garbled": garbled,
+         "exclusive": exclusive}
 cases[what](where)

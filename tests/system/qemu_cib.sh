@@ -17,7 +17,7 @@ done
 firmware=${BUILD:-/tmp}/firmware_cib
 make -s -C "$tree/src/port/mps2_an385" DEVICE=cib SILENCE=100000 OUT="$firmware" >/dev/null || exit 1
 
-client() { timeout "$limit" "$python" -W ignore "$here/cib_client.py" "$1" "$line"; }
+client() { timeout 200 "$python" -W ignore "$here/cib_client.py" "$1" "$line"; }
 
 answers() { client type >"$folder/answer" 2>&1; }
 

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 
-LIMIT = 20.0
+LIMIT = 60.0
 PROMPT = b"> "
 
 

@@ -173,7 +173,7 @@ test_random_bytes_do_no_harm() {
 # A broadcast, or so much that the units have not received half of it; then the same client comes again at once.
 test_a_client_that_comes_again_at_once_is_served() {
     serve_tcp --tcp 0
-    exits 0 timeout "$limit" python3 "$(dirname "$0")/tcp_client.py" again "${address##*:}"
+    exits 0 timeout 200 python3 "$(dirname "$0")/tcp_client.py" again "${address##*:}"
     holds "$(<"$folder/bus.err")" "bytes that it had sent were dropped" "the log"
     same 0 "$(grep -c 'was refused: another' "$folder/bus.err")" "clients sent away"
 }
@@ -197,7 +197,7 @@ test_a_refused_client_reads_why() {
 
 test_clients_without_number_do_not_fill_the_log() {
     serve_occupied
-    exits 0 timeout "$limit" python3 "$(dirname "$0")/tcp_client.py" refused "${address##*:}"
+    exits 0 timeout 200 python3 "$(dirname "$0")/tcp_client.py" refused "${address##*:}"
     same 100 "$(grep -c 'was refused: another' "$folder/bus.err")" "lines of the log"
 }
 

@@ -47,7 +47,7 @@ test_clients_here_use_a_unit_there_to_the_last_step() {
     same "01.02,06.03.2009" "$(at "$port" version 2>ctl.err)" "the version"
     same "motor 1: ok" "$(at "$port" set '\C100 S100 V1000 A2000 F500 R' 2>ctl.err)" "a program"
     soon "the last step" is_at "$port" 500
-    exits 0 timeout "$limit" python3 "$tests/tcp_client.py" again "${port##*:}" 5
+    exits 0 timeout 200 python3 "$tests/tcp_client.py" again "${port##*:}" 5
     end_exe bus
     exits 0 "$RKM04" replay --trace here.csv --wire here.log there.record
     holds "$said" "the same" "the recording replayed here"
@@ -82,7 +82,7 @@ test_host_software_with_pyserial_uses_a_unit_there() {
     serve_exe bus --framing plain --tcp 0 --rfc2217 0
     for what in talk settings; do
         for url in "socket://$(part bus tcp)" "rfc2217://$(part bus rfc2217)"; do
-            exits 0 timeout "$limit" /usr/bin/python3 -W ignore "$tests/pyserial_client.py" "$what" "$url"
+            exits 0 timeout 200 /usr/bin/python3 -W ignore "$tests/pyserial_client.py" "$what" "$url"
         done
     done
     end_exe bus

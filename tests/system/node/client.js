@@ -4,7 +4,7 @@
 const assert = require("assert");
 const { SerialPort } = require("serialport");
 
-const limit = 30000; // ms until an answer counts as never coming
+const limit = 60000; // ms until an answer counts as never coming
 // Frames of --framing plain: an unknown message, Get Position of motor 1, and the program F1 R for it.
 const unknown = ["010001ff", "010004ffff0000"];
 const position = ["0100020431", "01000d04310a20202020202020202030"];

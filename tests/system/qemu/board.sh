@@ -2,7 +2,6 @@
 # board.sh: what the tests of boards under QEMU share. Sourced after lib.sh. QEMU puts the board's UART on a pty.
 
 tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
-limit=60 # an emulator of a processor, on a machine that may be busy
 
 # firmware PORT PACKAGES TOOL...: build the firmware of a port; its folder is $firmware. Skips the tests if a tool is missing.
 firmware() {

@@ -21,7 +21,7 @@ open_window() {
 
 # browse CASE: what a person does in the page. PICTURES names a folder for screenshots; WINDOW_LIMIT seconds are given.
 browse() {
-    HOME=$folder exits 0 timeout "${WINDOW_LIMIT-200}" node "$drive" "$1" "$address" "$folder" ${PICTURES-}
+    HOME=$folder exits 0 timeout "${WINDOW_LIMIT-500}" node "$drive" "$1" "$address" "$folder" ${PICTURES-}
     [[ -z $said ]] || printf '  %s\n' "$said"
 }
 

@@ -13,7 +13,7 @@ export const troubles = [];
 
 export async function openPage(context) {
   const page = await context.newPage();
-  page.setDefaultTimeout(30000);
+  page.setDefaultTimeout(60000);
   page.on("pageerror", (error) => troubles.push(error.message));
   page.on("console", (message) => {
     if (message.type() === "error" && !/WebSocket/.test(message.text()))
@@ -30,11 +30,11 @@ export const says = (page, id, text) => page.waitForFunction(([at, part]) =>
 
 // Some element of the selector fulfils the condition: an expression, read outside of the page, whose policy has no eval.
 export async function shows(page, selector, condition = "true") {
-  const end = Date.now() + 30000;
+  const end = Date.now() + 60000;
   const expression = `[...document.querySelectorAll(${JSON.stringify(selector)})].some((element) => ${condition})`;
   while (!await page.evaluate(expression)) {
     if (Date.now() > end)
-      throw new Error(`not within 30 s: ${selector} with ${condition}`);
+      throw new Error(`not within 60 s: ${selector} with ${condition}`);
     await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
   }
 }
