@@ -67,6 +67,7 @@ enum exit_status window_run(const struct window_options *options)
     static struct window window; /* its buffers are large */
     char address[160];
     window_system_begin();
+    window.timeout_ms = options->timeout_ms;
     window.pages = (struct pages){.loop = &window.loop, .request = window_request, .closed = window_page_closed,
                                   .context = &window};
     if (options->bound && !window_is_wanted())

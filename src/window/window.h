@@ -26,6 +26,7 @@ struct window_options {
     const char *http;    /* ADDRESS:PORT; port 0: any that is free */
     const char *port;    /* of units, opened at the start; NULL: none */
     const char *control; /* of an emulator; NULL: none */
+    unsigned timeout_ms; /* how long an answer of a unit is waited for if the page does not say, 1 to 60000 */
     bool open;           /* show the page in the user's browser */
     bool bound;          /* begin when a byte comes on stdin, end when stdin ends: with the process that started this one */
 };

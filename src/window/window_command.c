@@ -4,8 +4,11 @@
 
 #include <argp.h>
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "client/client.h"
 #include "options/options.h"
+#include "window_requests.h"
 #include "window_system.h"
 
 enum { KEY_HTTP = 0x100, KEY_OPEN, KEY_BOUND };
@@ -63,7 +66,8 @@ enum exit_status window_command(int argc, char **argv)
     static struct argp_option options[sizeof table / sizeof table[0]];
     char help[1024];
     struct argp argp = {.options = options, .parser = parse_option, .doc = help};
-    struct window_options wanted = {.http = "127.0.0.1:0"};
+    const char *usual = getenv("RKM04_TIMEOUT");
+    struct window_options wanted = {.http = "127.0.0.1:0", .timeout_ms = WINDOW_TIMEOUT_MS};
     snprintf(help, sizeof help, doc, window_examples, window_ended_by);
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
         options[i] = table[i];
@@ -72,5 +76,8 @@ enum exit_status window_command(int argc, char **argv)
     }
     argp_err_exit_status = STATUS_USAGE;
     arguments_parse(&argp, argc, argv, &wanted);
+    if (usual != NULL && usual[0] != '\0' &&
+        !client_usage_number("RKM04_TIMEOUT", usual, 1, WINDOW_TIMEOUT_MS_MAX, &wanted.timeout_ms))
+        return STATUS_USAGE;
     return window_run(&wanted);
 }

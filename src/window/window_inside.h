@@ -22,6 +22,7 @@ struct window {
     char token[WINDOW_TOKEN_SIZE];
     char host[80];    /* ADDRESS:PORT, as a browser names it */
     unsigned listens; /* the port number */
+    unsigned timeout_ms; /* how long an answer of a unit is waited for if the page does not say */
     struct pages pages;
     struct window_port port;
     struct window_watch watch;

@@ -13,8 +13,6 @@
 #include "window_ports.h"
 #include "window_tools.h"
 
-#define TIMEOUT_MS 1000u
-#define TIMEOUT_MS_MAX 60000u
 #define MESSAGE_MIN 64u
 
 static struct window *window_of(struct page *page)
@@ -54,7 +52,7 @@ static struct port_job *make_job(struct page *page, json_t *request, enum port_k
     unsigned node, motor, timeout;
     if (!read_number(page, request, "node", 0, RKM04_NODE_MAX, 1, &node) ||
         !read_number(page, request, "motor", 0, RKM04_MOTORS, 1, &motor) ||
-        !read_number(page, request, "timeout_ms", 1, TIMEOUT_MS_MAX, TIMEOUT_MS, &timeout))
+        !read_number(page, request, "timeout_ms", 1, WINDOW_TIMEOUT_MS_MAX, window_of(page)->timeout_ms, &timeout))
         return NULL;
     struct port_job *job = port_job_new(kind, page->number, request);
     if (job == NULL)

@@ -6,6 +6,9 @@
 
 #include <jansson.h>
 
+#define WINDOW_TIMEOUT_MS 1000 /* for an answer of a unit, if neither the page nor the environment says another time */
+#define WINDOW_TIMEOUT_MS_MAX 60000
+
 struct page;
 
 /* pages.request and pages.closed, with a struct window as pages.context. */

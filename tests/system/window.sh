@@ -10,7 +10,7 @@ client=$(cd "$(dirname "$0")" && pwd)/window_client.py
 open_window() {
     start window "$RKMCTL" window "$@"
     window=$started
-    soon "the address of the window" grep -q '^WINDOW http://' "$folder/window.out"
+    soon "the address of the window" grep -qs '^WINDOW http://' "$folder/window.out"
     address=$(sed -n 's/^WINDOW //p' "$folder/window.out")
 }
 
@@ -69,7 +69,7 @@ test_sigterm_ends_it_within_a_second() {
 test_serve_shows_its_units_and_ends_the_window() {
     start serve "$RKM04" serve --link "$folder/bus" --window
     local emulator=$started
-    soon "the address of the window" grep -q '^WINDOW http://' "$folder/serve.out"
+    soon "the address of the window" grep -qs '^WINDOW http://' "$folder/serve.out"
     same "READY WINDOW" "$(sed 's/ .*//' "$folder/serve.out" | xargs)" "lines on stdout"
     address=$(sed -n 's/^WINDOW //p' "$folder/serve.out")
     case_of doors "$address"
@@ -81,6 +81,15 @@ test_serve_shows_its_units_and_ends_the_window() {
 }
 
 refuses() { ! python3 "$client" tools "$1" 2>/dev/null; }
+
+test_the_environment_says_how_long_an_answer_is_waited_for() {
+    serve bus
+    export RKM04_TIMEOUT=203
+    open_window -p "$folder/bus"
+    case_of timeout "$address"
+    exits 2 env RKM04_TIMEOUT=60001 "$RKMCTL" window
+    holds "$complained" "RKM04_TIMEOUT: expected a number 1 to 60000" "the message"
+}
 
 test_wrong_usage_is_told() {
     exits 1 "$RKMCTL" window --http nonsense

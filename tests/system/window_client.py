@@ -218,6 +218,12 @@ def port(window, name):
     same("closed", page.ask(do="close")["outcome"], "close")
 
 
+def timeout(window):
+    """A port that was opened at the start, and a unit that is not there."""
+    answer = window.socket().ask(do="request", node=9, message="01")
+    same(True, "no answer from unit 9 within 203 ms" in answer["trouble"], answer)
+
+
 def tools(window):
     page = window.socket()
     answer = page.ask(do="check", text="F5000 R q", motor=1, language="cs")
@@ -245,5 +251,6 @@ def emulator(window):
     same(True, "unknown method" in answer["error"], answer)
 
 
-cases = {"emulator": emulator, "doors": doors, "limits": limits, "nonsense": nonsense, "port": port, "tools": tools}
+cases = {"emulator": emulator, "doors": doors, "limits": limits, "nonsense": nonsense, "port": port, "timeout": timeout,
+         "tools": tools}
 cases[sys.argv[1]](Window(sys.argv[2]), *sys.argv[3:])

@@ -5,7 +5,7 @@
 . "$(dirname "${BASH_SOURCE[0]}")/../../../tools/setup.sh"
 [[ -n ${RKM04_WINDOW-} ]] || skip_all "built without the window"
 CHROMIUM=$(command -v chromium) || skip_all "there is no chromium"
-export CHROMIUM
+export CHROMIUM RKM04_TIMEOUT=5000 # cases wait for silence, too
 drive=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/drive.mjs
 modules=${BUILD-${TMPDIR-/tmp}}/node-window
 export NODE_PATH=$modules/node_modules

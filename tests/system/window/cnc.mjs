@@ -2,9 +2,8 @@
 // cnc.mjs: the panel of a CNC872, a device without a bus.
 import { execFileSync, spawn } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
-import { cpus, loadavg } from "node:os";
 import assert from "node:assert/strict";
-import { changeLanguage, checkAccess, folder, openPage, openPanel, pictures, shows } from "./page.mjs";
+import { changeLanguage, checkAccess, folder, openPage, openPanel, pictures, roundTrip, shows } from "./page.mjs";
 
 const quoted = (text) => JSON.stringify(text);
 const reads = (page, row, column, text) => shows(page, `.axes tbody tr:nth-child(${row}) td:nth-child(${column})`,
@@ -64,10 +63,12 @@ export const cases = {
     await button(page, "STOP").click();
     await reads(page, 1, 2, "stopped");
     await line(page, "Stops", "po_stop sf_stop");
-    await page.locator(".device input[aria-label='Feed %']").fill("200");
-    await line(page, "Feed", "0.0 mm/min, 200 %");
+    await page.locator(".device input[aria-label='Feed %']").fill("20"); // a quarter of a minute
+    await line(page, "Feed", "0.0 mm/min, 20 %");
     await button(page, "START").click();
-    await line(page, "Feed", "1200.0 mm/min, 200 %");
+    await line(page, "Feed", "120.0 mm/min, 20 %");
+    await page.locator(".device input[aria-label='Feed %']").fill("200");
+    await line(page, "Feed", ", 200 %");
     await reads(page, 1, 3, "30.000");
     await reads(page, 2, 3, "2.000");
     await reads(page, 1, 2, "idle");
@@ -175,7 +176,7 @@ export const cases = {
     await button(page, "Show the place").click();
     assert.equal(await page.evaluate(() => getSelection().toString() || document.activeElement.value.slice(
       document.activeElement.selectionStart, document.activeElement.selectionEnd)), "Q");
-    writeFileSync(folder + "/slow.nc", "G1 X1 F600\n(slowly)\nX2 F60\nX3 M30\n");
+    writeFileSync(folder + "/slow.nc", "G1 X1 F600\n(slowly)\nX2 F1\nX3 M30\n"); // a minute a block
     await page.locator(".program input[type=file]").setInputFiles(folder + "/slow.nc");
     await shows(page, ".program textarea", "element.value.includes('(slowly)')");
     await button(page, "Load").click();
@@ -189,7 +190,7 @@ export const cases = {
     await button(page, "Select block").click();
     await shows(page, ".device > p[role=status].wrong");
     await button(page, "START").click();
-    await line(page, "Block", "move, block 1, line 3, next 2 of 3: X2 F60");
+    await line(page, "Block", "move, block 1, line 3, next 2 of 3: X2 F1");
     await button(page, "Load").click(); // a block is under way
     await shows(page, ".program p.wrong");
     await button(page, "RESET").click();
@@ -267,9 +268,15 @@ export const cases = {
     await page.fill(".cells input[aria-label='WORD.BZH09']", "70000");
     await page.press(".cells input[aria-label='WORD.BZH09']", "Enter");
     await says(page, "from 0 to 65535");
+    await page.evaluate(() => { // a mark does not stay
+      window.marked = [];
+      const mark = ({ target }) => target.classList.contains("changed") && window.marked.push(target.firstChild.textContent);
+      const observed = { attributes: true, attributeFilter: ["class"], subtree: true };
+      new MutationObserver((changes) => changes.forEach(mark)).observe(document.querySelector("table.cells"), observed);
+    });
     await page.locator("table.cells").getByRole("button", { name: "FEED_OVR 0", exact: true }).click();
     await value(page, "FEED_OVR", "1");
-    await shows(page, "table.cells tr.changed", "element.firstChild.textContent === 'FEED_OVR'");
+    await page.waitForFunction(() => window.marked.includes("FEED_OVR"));
     await page.waitForFunction(() => ![...document.querySelectorAll("table.cells tr.changed")].some((row) =>
       row.firstChild.textContent === "FEED_OVR"));
     const fixed = page.locator("table.cells tr", { hasText: "po_pol" });
@@ -299,7 +306,8 @@ export const cases = {
     assert.equal(await page.locator("table.cells tbody tr").count(), 7, "a name is there once");
   },
 
-  // What another client changes is seen soon, although nothing moves and no event comes: of nine times all but one count.
+  // What another client changes is seen soon, although nothing moves and no event comes. The middle one of nine counts, less the
+  // time that any answer takes: the machine may be busy.
   async cncnews(page) {
     await shows(page, ".axes td", "element.textContent === 'X'");
     const times = [];
@@ -308,10 +316,12 @@ export const cases = {
       execFileSync(process.env.RKMCTL, ["-c", folder + "/bus.control", "call", "cnc.set", cells]);
       const begun = performance.now();
       await line(page, "Spindle", `gear ${gear},`);
-      times.push(Math.round(performance.now() - begun));
+      const seen = performance.now();
+      await roundTrip(page);
+      times.push(Math.round(seen - begun - (performance.now() - seen)));
     }
     console.log(`seen after ${times.join(", ")} ms`);
-    assert.ok(times.sort((a, b) => a - b)[7] <= 300 || loadavg()[0] > cpus().length, "seen late");
+    assert.ok(times.sort((a, b) => a - b)[4] <= 300, `seen after ${times.join(", ")} ms`);
   },
 
   // A value that does not change for a while is drawn level, up to its change.

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // looks.mjs: how the page looks, and what it costs.
 import { readFileSync, writeFileSync } from "node:fs";
-import { cpus, loadavg } from "node:os";
 import assert from "node:assert/strict";
-import { address, AXIS, changeLanguage, checkAccess, connect, folder, openPanel, pictures, says, send, shows,
+import { address, AXIS, changeLanguage, checkAccess, connect, folder, isBusy, openPanel, pictures, says, send, shows,
   write } from "./page.mjs";
 
 // Figures of time count only on a machine that has nothing else to do; they are always printed.
-const isBusy = () => loadavg()[0] > cpus().length;
 
 export const cases = {
   // Both languages have all words; axe-core finds nothing, light and dark; pictures at three sizes.

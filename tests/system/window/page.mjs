@@ -86,6 +86,23 @@ export async function changeLanguage(page, language) {
   assert.deepEqual(emptied, [], "values that are gone");
 }
 
+// Milliseconds in which rkmctl window answers a request that it need not think about, on this machine, now.
+export const roundTrip = (page) => page.evaluate(async () => {
+  const { ask } = await import("./link.js"), begun = performance.now();
+  await ask("hello");
+  return performance.now() - begun;
+});
+
+// Has this machine other work, now? A figure of time says nothing then. It has if 0.3 s of work take longer.
+export function isBusy() {
+  const work = 300000, begun = performance.now(), before = process.cpuUsage();
+  let spent;
+  do {
+    spent = process.cpuUsage(before);
+  } while (spent.user + spent.system < work);
+  return performance.now() - begun > 1.2 * work / 1000;
+}
+
 // What axe-core finds.
 export async function checkAccess(page, what) {
   await page.evaluate(axe + ";0").catch(async () => page.addScriptTag({ content: axe }));
