@@ -14,9 +14,8 @@
 #define VALUE_MAX_LENGTH 48
 #define MOTORS_MAX 16 /* the emulator knows how many there are */
 #define NAME_CHARACTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.+-[]"
-#define EXPECTED_NAME \
-    "m1.position, true, steps, index, commands, state, led, fault or idle; idle, do1, di1, var80, cell.NAME, powered, message, " \
-    "dropped or t"
+#define MOTOR_NAMES "position, true, steps, index, commands, state, led, fault or idle"
+#define EXPECTED_NAME "m1." MOTOR_NAMES "; idle, do1, di1, var80, cell.NAME, powered, message, dropped or t"
 
 struct reader {
     const char *at;
@@ -213,8 +212,7 @@ static json_t *motor_term(const struct reader *reader, const struct term *term, 
         json_t *value = read_integer(reader, term);
         return value == NULL ? NULL : no_memory(reader, json_pack("{s:i, s:o}", "motor", motor, numbers[i].key, value));
     }
-    return report_expected(reader, "m%d.position, true, steps, index, commands, state, led, fault or idle, found '%s'", motor,
-                           term->name);
+    return report_expected(reader, "m%d." MOTOR_NAMES ", found '%s'%s", motor, term->name, nearest_hint(name, MOTOR_NAMES));
 }
 
 static json_t *named_bit_term(const struct reader *reader, const struct term *term, const char *key, const char *name)
@@ -324,7 +322,8 @@ static json_t *unit_term(const struct reader *reader, const struct term *term, c
     }
     if (strcmp(name, "idle") == 0 || strcmp(name, "powered") == 0)
         return flag_term(reader, term, name);
-    return report_expected(reader, EXPECTED_NAME ", found '%s'", term->name);
+    return report_expected(reader, EXPECTED_NAME ", found '%s'%s", term->name,
+                           nearest_hint(name, "idle, powered, message, dropped"));
 }
 
 /* The name of the unit in front of a name, "u3." or "u3-2."; returns what follows it, or the whole if there is none. */

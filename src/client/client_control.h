@@ -6,8 +6,8 @@
 #include "client_job.h"
 
 #define CLIENT_CONTROL_NAMES \
-    "state, di, wait, advance, watch, events, snapshot, restore, reset, power, switch, fault, plant, clock, trace, call or " \
-    "shutdown"
+    "state, di, wait, advance, watch, events, snapshot, restore, reset, power, switch, fault, plant, cib, cnc, clock, trace, " \
+    "call or shutdown"
 
 /* Is `name` one of them? */
 bool client_control_has(const char *name);

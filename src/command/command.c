@@ -97,9 +97,24 @@ static void list_methods(const struct sim *sim, char *list, size_t size)
         length += (size_t)snprintf(list + length, size - length, "%s, ", own->name);
 }
 
+/* A kind of device that has this method. NULL: there is none. */
+static const struct device_kind *kind_with(const char *name)
+{
+    const struct device_kind *kind;
+    for (unsigned at = 0; (kind = device_kind_at(at)) != NULL; at++)
+        for (const struct device_method *own = kind->methods; own && own->name; own++)
+            if (strcmp(own->name, name) == 0)
+                return kind;
+    return NULL;
+}
+
 static json_t *refuse_unknown(const struct sim *sim, const char *name, struct refusal *refusal)
 {
     char list[LIST_SIZE];
+    const struct device_kind *kind = kind_with(name);
+    if (kind)
+        return refuse(refusal, REFUSED_METHOD, "there is no method `%.80s' of the device %s: %s has it", name,
+                      sim_device(sim)->name, kind->name);
     list_methods(sim, list, sizeof list);
     return refuse(refusal, REFUSED_METHOD, "there is no method `%.80s'%s", name, nearest_hint(name, list));
 }
@@ -227,7 +242,7 @@ bool params_known(const json_t *params, const char *const *names, struct refusal
 {
     const char *key;
     const json_t *value;
-    char list[200] = "";
+    char list[400] = "";
     for (size_t i = 0; names[i]; i++)
         snprintf(list + strlen(list), sizeof list - strlen(list), i > 0 ? ", %s" : "%s", names[i]);
     json_object_foreach((json_t *)params, key, value) {
@@ -236,7 +251,8 @@ bool params_known(const json_t *params, const char *const *names, struct refusal
             i++;
         if (names[i])
             continue;
-        refuse(refusal, REFUSED_PARAMS, "unknown parameter `%.60s': expected %s", key, *list ? list : "none");
+        refuse(refusal, REFUSED_PARAMS, "unknown parameter `%.60s': expected %s%s", key, *list ? list : "none",
+               nearest_hint(key, list));
         return false;
     }
     return true;

@@ -3,6 +3,7 @@
 
 #include "fault_parameters.h"
 #include "methods.h"
+#include "text/text.h"
 
 #define SURE 1000000u        /* millionths */
 #define COUNT_MAX UINT32_MAX
@@ -129,7 +130,7 @@ static bool read_kind(const json_t *params, struct fault *fault, struct refusal 
         strncat(list, i > 0 ? ", " : "", sizeof list - strlen(list) - 1u);
         strncat(list, fault_kind_name((enum fault_kind)i), sizeof list - strlen(list) - 1u);
     }
-    refuse(refusal, REFUSED_PARAMS, "kind: expected one of %s", list);
+    refuse(refusal, REFUSED_PARAMS, "kind: expected one of %s%s", list, nearest_hint(name ? name : "", list));
     return false;
 }
 

@@ -190,7 +190,7 @@ static bool read_one_name(struct reader *r, struct term *group, struct term term
     list_names(device, (enum term_kind)term.kind, list);
     if (wanted == NULL)
         return REFUSE("%s: expected one of %s", key, list);
-    return REFUSE("%s: expected one of %s, found \"%.40s\"", key, list, wanted);
+    return REFUSE("%s: expected one of %s, found \"%.40s\"%s", key, list, wanted, nearest_hint(wanted, list));
 }
 
 /* A name, or an object of the relations == and != with names: a term each. */
@@ -364,6 +364,8 @@ static const struct {
     {"any", TERM_ANY, NEEDS_NOTHING, read_list},
 };
 #define KEYS (sizeof keys / sizeof keys[0])
+#define KEY_NAMES \
+    "t, position, true_position, steps, index, commands, state, led, fault, idle, di, do, var, powered, cell, message, all or any"
 
 static bool read_key(struct reader *r, struct term *group, const json_t *object, const char *key, const json_t *json)
 {
@@ -373,9 +375,8 @@ static bool read_key(struct reader *r, struct term *group, const json_t *object,
     while (i < KEYS && strcmp(key, keys[i].key) != 0)
         i++;
     if (i == KEYS)
-        return REFUSE("unknown condition \"%.40s\": expected t, position, true_position, steps, index, commands, state, led, "
-                      "fault, idle, di, do, var, powered, cell, message, all or any, with unit and motor",
-                      key);
+        return REFUSE("unknown condition \"%.40s\": expected " KEY_NAMES ", with unit and motor%s", key,
+                      nearest_hint(key, KEY_NAMES ", unit, motor"));
     term.kind = keys[i].kind;
     if (keys[i].needs != NEEDS_NOTHING) {
         term.unit = (uint8_t)param_unit(r->sim, object, r->refusal);

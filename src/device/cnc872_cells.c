@@ -16,7 +16,8 @@ static bool read_operand(const struct cnc_device *device, const char *name, stru
 {
     struct cnc_text_fault fault;
     if (!cnc_parse_operand(name, strlen(name), names_of(device), operand, &fault))
-        return CNC_REFUSE(refusal, false, "`%.60s': %s", name, fault.reason);
+        return CNC_REFUSE(refusal, false, "`%.60s': %s%s", name, fault.reason,
+                          cnc_nearest_cell(names_of(device), name, &fault));
     if (operand->kind == CNC_OPERAND_CONSTANT || operand->block == CNC_BLOCK_BX)
         return CNC_REFUSE(refusal, false, "`%.60s': expected a cell, not a constant or a register", name);
     return true;

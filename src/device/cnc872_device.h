@@ -113,6 +113,10 @@ json_t *cnc_get_cells(const struct cnc_device *device, const json_t *cells, stru
 /* {operand: value}: all of them, or none. False: refused. */
 bool cnc_set_cells(struct cnc_device *device, const json_t *cells, struct device_refusal *refusal);
 
+/* "; did you mean `PO_STOP'?": the cell, or variable of the PLC program (`names`; NULL: none), nearest to a name that is none by
+ * `fault`, valid until the next call; "" if none is near, or the fault is another. */
+const char *cnc_nearest_cell(const struct cnc_names *names, const char *name, const struct cnc_text_fault *fault);
+
 /* {search, section, limit} -> {cells: [{name, type, access, section}], more}: the cells whose name has this part; NULL:
  * refused. */
 json_t *cnc_find_names(const struct cnc_device *device, const json_t *params, struct device_refusal *refusal);

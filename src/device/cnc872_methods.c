@@ -6,6 +6,11 @@
 #include <string.h>
 
 #include "cnc872_device.h"
+#include "text/text.h"
+
+#define PANEL_NAMES \
+    "start, stop, reset, mode, home, jog, hand, rapid, feed, spindle, block_by_block, m01, select, technology, indication, " \
+    "simulation, high_speed, rtm or keys"
 
 json_t *cnc_refuse(struct device_refusal *refusal, bool is_state, const char *format, ...)
 {
@@ -198,8 +203,7 @@ static bool read_member(const struct cnc *cnc, const char *name, const json_t *v
     }
     return strcmp(name, "unit") == 0 ||
            CNC_REFUSE(refusal, false,
-                      "unknown parameter `%.40s': expected start, stop, reset, mode, home, jog, hand, rapid, feed, spindle, "
-                      "block_by_block, m01, select, technology, indication, simulation, high_speed, rtm or keys", name);
+                      "unknown parameter `%.40s': expected " PANEL_NAMES "%s", name, nearest_hint(name, PANEL_NAMES));
 }
 
 static json_t *call_panel(struct device_unit *unit, const json_t *params, struct device_refusal *refusal)

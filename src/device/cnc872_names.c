@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The names of a CNC872's cells, those of its PLC program with them, for a search by a part of a name. */
+#include <ctype.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "cnc872_device.h"
+#include "text/text.h"
 
 #define NAME_SIZE 64u
 #define LIMIT 100    /* names of an answer if nothing else is said */
@@ -12,7 +15,8 @@
 
 /* A search under way. */
 struct search {
-    const struct cnc_device *device;
+    const struct cnc_names *names; /* of the PLC program; NULL: there is none */
+    uint32_t axes;                 /* those of the configuration, a bit each */
     const char *part;    /* of a name, letters in either case */
     const char *section; /* NULL: of any */
     json_t *found;
@@ -44,7 +48,7 @@ static void add(struct search *search, const char *name, unsigned type, bool is_
 
 static bool is_configured(const struct search *search, unsigned axis)
 {
-    return (search->device->cnc.config->axes >> axis & 1u) != 0;
+    return (search->axes >> axis & 1u) != 0;
 }
 
 /* "MPxPI", "ZMMnPI": a bit for each axis of the configuration, or each number. */
@@ -104,9 +108,8 @@ static void add_row(struct search *search, const struct cnc_row *row, const char
 
 static void add_own(struct search *search)
 {
-    const struct cnc_text *text = search->device->own.text[CNC_TEXT_PLC];
-    for (unsigned at = 0; text != NULL && at < text->plc->names.count; at++) {
-        const struct cnc_symbol *symbol = &text->plc->names.symbols[at];
+    for (unsigned at = 0; search->names != NULL && at < search->names->count; at++) {
+        const struct cnc_symbol *symbol = &search->names->symbols[at];
         if (symbol->kind == CNC_SYMBOL_BIT)
             add(search, symbol->name, CNC_BIT, true, symbol->is_mechanism ? "mechanism" : "program");
         else if (symbol->kind == CNC_SYMBOL_VARIABLE)
@@ -114,23 +117,56 @@ static void add_own(struct search *search)
     }
 }
 
+static void add_all(struct search *search)
+{
+    search->found = json_array();
+    add_own(search);
+    for (unsigned at = 0; at < cnc_row_count; at++)
+        add_row(search, &cnc_rows[at], "");
+    for (unsigned at = 0; at < CNC_QUEUE_FIELDS; at++)
+        add_row(search, &cnc_queue_rows[at], "BLK[0].");
+}
+
+const char *cnc_nearest_cell(const struct cnc_names *names, const char *name, const struct cnc_text_fault *fault)
+{
+    if (strcmp(fault->reason, "there is no cell") != 0)
+        return "";
+    struct search search = {.names = names, .axes = UINT32_MAX, .part = "", .limit = INT32_MAX};
+    char *list = NULL, wanted[NAME_SIZE];
+    size_t size, at;
+    const json_t *cell;
+    add_all(&search);
+    FILE *out = open_memstream(&list, &size);
+    if (out != NULL) {
+        json_array_foreach(search.found, at, cell)
+            fprintf(out, "%s, ", json_string_value(json_object_get(cell, "name")));
+        fclose(out);
+    }
+    json_decref(search.found);
+    for (at = 0; name[at] != '\0' && at + 1u < sizeof wanted; at++)
+        wanted[at] = (char)toupper((unsigned char)name[at]);
+    wanted[at] = '\0';
+    const char *hint = list ? nearest_hint(wanted, list) : "";
+    free(list);
+    return hint;
+}
+
 json_t *cnc_find_names(const struct cnc_device *device, const json_t *params, struct device_refusal *refusal)
 {
     const json_t *part = json_object_get(params, "search"), *limit = json_object_get(params, "limit");
     const json_t *section = json_object_get(params, "section");
-    struct search search = {.device = device, .part = part ? json_string_value(part) : "",
-                            .section = json_string_value(section), .limit = limit ? json_integer_value(limit) : LIMIT};
+    const struct cnc_text *plc = device->own.text[CNC_TEXT_PLC];
+    struct search search = {.names = plc ? &plc->plc->names : NULL,
+                            .axes = device->cnc.config->axes,
+                            .part = part ? json_string_value(part) : "",
+                            .section = json_string_value(section),
+                            .limit = limit ? json_integer_value(limit) : LIMIT};
     if (!search.part)
         return cnc_refuse(refusal, false, "search: expected a part of a name");
     if (section && !search.section)
         return cnc_refuse(refusal, false, "section: expected its name, as in \"8.1.12\", \"program\", \"mechanism\"");
     if (search.limit < 1 || search.limit > LIMIT_MAX)
         return cnc_refuse(refusal, false, "limit: expected a whole number from 1 to %d", LIMIT_MAX);
-    search.found = json_array();
-    add_own(&search);
-    for (unsigned at = 0; at < cnc_row_count; at++)
-        add_row(&search, &cnc_rows[at], "");
-    for (unsigned at = 0; at < CNC_QUEUE_FIELDS; at++)
-        add_row(&search, &cnc_queue_rows[at], "BLK[0].");
+    add_all(&search);
     return json_pack("{s:o, s:I}", "cells", search.found, "more", search.more);
 }

@@ -69,13 +69,13 @@ static bool read_machine(struct device_config *config, const char *name, const c
 /* In the order in which they are read: what others need comes first. */
 const struct device_option cnc_options[] = {
     {.name = "config", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .read_file = read_config,
-     .help = "Configuration of the machine, XML: axes, gears, M functions; without it X, Y, Z with defaults"},
+     .help = "Machine of a CNC872, XML: axes, gears, M functions; without it X, Y, Z with defaults"},
     {.name = "plc", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .file_mib = CNC_PLC_TEXT_MAX >> 20, .read_file = read_plc,
-     .help = "PLC program, a text in the language of the CNC872"},
+     .help = "PLC program of a CNC872"},
     {.name = "nc", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .file_mib = DEVICE_FILE_MIB_MAX, .read_file = read_nc,
-     .help = "NC program that is loaded at the start"},
+     .help = "NC program of a CNC872 that is loaded at the start"},
     {.name = "machine", .argument = "FILE", .flags = DEVICE_OPTION_SWITCH, .read_file = read_machine,
-     .help = "Switches of the machine, YAML: bits that follow the positions of axes"},
+     .help = "Switches of the machine of a CNC872, YAML: bits that follow the positions of axes"},
     {.name = NULL}
 };
 

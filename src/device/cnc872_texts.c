@@ -52,7 +52,7 @@ static bool read_switch(const struct config_node *node, const struct cnc_names *
 {
     static const char *const keys[] = {"cell", "axis", "at_least", "at_most", NULL};
     struct cnc_operand operand;
-    struct cnc_text_fault fault;
+    struct cnc_text_fault fault = {.reason = ""};
     if (config_type(node) != CONFIG_MAP)
         return config_error(node, "expected a switch, as in {cell: KHX0, axis: X, at_least: 100000}");
     const struct config_node *cell = config_get(node, "cell"), *axis = config_get(node, "axis");
@@ -62,7 +62,8 @@ static bool read_switch(const struct config_node *node, const struct cnc_names *
         return config_error(cell ? cell : node, "expected cell, the name of a bit, as in KHX0");
     const char *name = config_text(cell);
     if (!cnc_parse_operand(name, strlen(name), names, &operand, &fault) || operand.kind != CNC_OPERAND_BIT || !operand.writable)
-        return config_error(cell, "expected a bit that may be written, as KHX0, found \"%.40s\"", name);
+        return config_error(cell, "expected a bit that may be written, as KHX0, found \"%.40s\"%s", name,
+                            cnc_nearest_cell(names, name, &fault));
     const bool is_text = axis && config_type(axis) == CONFIG_TEXT;
     const int number = is_text ? cnc_find_axis(config_text(axis), strlen(config_text(axis))) : -1;
     if (number < 0)

@@ -33,13 +33,13 @@ static const char help[] =
     "  or:  rkm04 signals [--json]\n"
     "A virtual RKM04, the unit for four stepper motors on RS485.\n"
     "\n"
-    "  serve      units on a bus (pseudo terminal, serial device or TCP), in real time\n"
+    "  serve      units on a bus (pty, serial device or TCP), in real time\n"
     "  exec       run programs in virtual time, as fast as the machine can\n"
     "  check      report errors and probable mistakes in programs\n"
     "  fmt        format programs\n"
     "  explain    describe in words what programs do\n"
     "  estimate   calculate how long programs take, how far and how fast they move\n"
-    "  lsp        serve editors: errors, labels, completion while a program is written\n"
+    "  lsp        serve editors: errors, labels, completion while you type\n"
     "  test       run scenarios in virtual time and report which pass\n"
     "  replay     repeat a recording of `serve' or `test' and compare\n"
     "  plot       draw speed and position over time\n"
@@ -58,8 +58,9 @@ static const char help[] =
     "  rkm04 replay --trace pulses.vcd session.record\n"
     "  rkm04 plot -o drill.svg drill.rks\n"
     "\n"
-    "Exit status: 0 success, 1 failure at run time, 2 usage, 3 a scenario has failed, 4 less than --min-coverage "
-    "of serve, 124 --until of exec reached with a motor still running.\n";
+    "Exit status: 0 success, 1 failure at run time, 2 usage, 3 a scenario has\n"
+    "failed, 4 less than --min-coverage of serve, 124 --until of exec reached with a\n"
+    "motor still running, or a program that never ends.\n";
 
 static const struct {
     const char *name, *full_name;
@@ -88,6 +89,11 @@ int main(int argc, char **argv)
         fputs("rkm04: no sub-command: expected " NAMES "; `rkm04 --help' tells more\n", stderr);
         return STATUS_USAGE;
     }
+    static char option_help[] = "--help";
+    if (strcmp(argv[1], "help") == 0 && argc > 2) {
+        argv[1] = argv[2];
+        argv[2] = option_help;
+    }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-?") == 0 || strcmp(argv[1], "help") == 0) {
         fputs(help, stdout);
         return arguments_printed();
@@ -105,6 +111,6 @@ int main(int argc, char **argv)
         }
     }
     fprintf(stderr, "rkm04: unknown sub-command `%s': expected " NAMES " (`rkm04 --help' tells more)%s\n", argv[1],
-            nearest_hint(argv[1], NAMES));
+            nearest_hint(argv[1], NAMES ", --help, --version"));
     return STATUS_USAGE;
 }

@@ -78,7 +78,7 @@ static const char arguments[] =
     "pmc COMMAND [...]\nstate|watch|reset|shutdown\ndi [N=LEVEL...]\nwait CONDITION\nadvance TIME|CONDITION\nevents [KIND...]\n"
     "snapshot|restore NAME|file=PATH\npower on|off\nswitch NODE [reset]\nclock [CLOCK]\nfault [inject KIND|clear] [...]\n"
     "plant [set FILE|none|motor=N ...]\n"
-    "cib status|command|di|do|pwm|config [...]\ncnc get|set|cells|start|stop|reset|jog|home|panel|load [...]\n"
+    "cib status|command|di|do|pwm|config [...]\ncnc get|set|cells|start|stop|jog|home|load... [...]\n"
     "trace start FILE\ntrace stop [NUMBER]\ncall METHOD [...]\n"
     "shell\nwindow [OPTION...]";
 
@@ -88,7 +88,7 @@ static const char doc[] =
     "\v"
     "Commands to a unit, with --port:\n"
     "  version      the unit's version text\n"
-    "  set TEXT     send a program text in one message; the unit begins to execute it\n"
+    "  set TEXT     send a program text in one message; the unit executes it\n"
     "  send FILE    check and send a program file, - is standard input\n"
     "  store        write the program in memory to flash\n"
     "  position     position counter; with -m 0 of all motors\n"
@@ -101,7 +101,7 @@ static const char doc[] =
     "  state        everything about the unit, or all units\n"
     "  watch        its front panel, live\n"
     "  di           the inputs; with 3=1 5=0 set them\n"
-    "  wait         wait until a condition holds; exit status 3 if not within --limit\n"
+    "  wait         wait until a condition holds; status 3 if not within --limit\n"
     "  advance      advance a stepped clock by a time, or until a condition holds\n"
     "  events       print events, a line each; KIND..., motor=N, count=N\n"
     "  snapshot     save the state of everything, under a NAME or in a file\n"
@@ -110,17 +110,16 @@ static const char doc[] =
     "  power        the power switch\n"
     "  switch       the address switch S1\n"
     "  fault        list injected faults; inject KIND NAME=VALUE...; clear [ID]\n"
-    "  plant        show the simulated mechanics; set FILE; none; motor=N jammed=true ...\n"
-    "  cib          a CIB module: status, command, di, do, pwm, config get, put FILE or apply\n"
-    "  cnc          a CNC872: cells, keys of its panel, NC program: get CELL..., set CELL=VALUE..., cells, start, stop, reset,\n"
-    "               jog, home, panel, load FILE\n"
+    "  plant        the simulated mechanics; set FILE; none; motor=N jammed=true ...\n"
+    "  cib          a CIB module: status, command, di, do, pwm, config\n"
+    "  cnc          a CNC872: cells, keys of its panel, NC program\n"
     "  clock        show or set it: real, xN, max, stepped\n"
     "  trace        start FILE (" TRACE_ENDINGS ", " WIRE_ENDINGS "), stop [NUMBER]\n"
     "  call         any other METHOD, parameters as JSON or NAME=VALUE...\n"
     "  shutdown     end the emulator\n"
     "\n"
     "Both:\n"
-    "  pmc          a PMC-1HS or PMC-2HS: run, jog, move, speed, stop, home, position, errors, program, parameters, store\n"
+    "  pmc          a PMC-1HS or PMC-2HS: motions, program, parameters\n"
     "  shell        type commands and program text, or take them from -f FILE\n"
     "  window       the service program in a browser: `rkmctl window --help'\n"
     "\n"
@@ -310,11 +309,12 @@ static enum exit_status do_shell(const struct options *options)
     return client_shell(&shell);
 }
 
+#define COMMAND_NAMES CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; pmc, shell or window"
+
 static enum exit_status run(struct options *options)
 {
     if (options->command == NULL)
-        return client_usage("no command: expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; "
-                            "pmc, shell or window");
+        return client_usage("no command: expected " COMMAND_NAMES);
     if (strcmp(options->command, "shell") == 0)
         return do_shell(options);
     if (options->file != NULL)
@@ -329,10 +329,8 @@ static enum exit_status run(struct options *options)
         return do_request(options);
     if (client_control_has(options->command))
         return do_job(options);
-    return client_usage("expected " CLIENT_REQUEST_NAMES " for a unit; " CLIENT_CONTROL_NAMES " for an emulator; pmc or "
-                        "shell, found '%s'%s",
-                        options->command,
-                        nearest_hint(options->command, CLIENT_REQUEST_NAMES ", " CLIENT_CONTROL_NAMES ", pmc, shell"));
+    return client_usage("expected " COMMAND_NAMES ", found '%s'%s", options->command,
+                        nearest_hint(options->command, COMMAND_NAMES));
 }
 
 /* Do a command line, from its options to the exit status. */
@@ -367,5 +365,13 @@ int main(int argc, char **argv)
         return (int)client_window(argv);
     argp_err_exit_status = STATUS_USAGE;
     signal(SIGPIPE, SIG_IGN); /* writing says so, too */
+    static char option_help[] = "--help";
+    if (argc > 1 && strcmp(argv[1], "help") == 0) { /* help [COMMAND] */
+        char *asked[] = {argv[0], argc > 2 ? argv[2] : option_help, argc > 2 ? option_help : NULL, NULL};
+        if (client_help_wanted(argc > 2 ? 3 : 2, asked))
+            return arguments_printed();
+        asked[2] = NULL; /* a word that is no command */
+        return run_line(2, asked);
+    }
     return run_line(argc, argv);
 }

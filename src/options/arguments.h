@@ -7,7 +7,7 @@
 
 /* argp_parse() without flags. Where it ends the program after printing on stdout (--help, --usage, --version), the exit status is
  * 1, and the reason is on stderr, if that could not be written. Where it ends the program because of a wrong command line,
- * characters in it that cannot be seen are named. */
+ * characters in it that cannot be seen are named, and for an option that there is not the nearest one is proposed. */
 void arguments_parse(const struct argp *argp, int argc, char **argv, void *input);
 
 /* What is wrong with the command line has been reported, with the characters in it that cannot be seen: arguments_parse() adds

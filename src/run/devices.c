@@ -64,7 +64,9 @@ int devices_main(int argc, char **argv)
                "\v"
                "Examples:\n"
                "  rkm04 devices\n"
-               "  rkm04 devices --json",
+               "  rkm04 devices --json\n"
+               "\n"
+               "Exit status: 0 success, 1 standard output cannot be written, 2 wrong usage.",
     };
     bool is_json = false;
     const struct device_kind *kind;

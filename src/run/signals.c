@@ -121,7 +121,9 @@ int signals_main(int argc, char **argv)
                "\v"
                "Examples:\n"
                "  rkm04 signals\n"
-               "  rkm04 signals --json",
+               "  rkm04 signals --json\n"
+               "\n"
+               "Exit status: 0 success, 1 standard output cannot be written, 2 wrong usage.",
     };
     bool is_json = false;
     arguments_parse(&argp, argc, argv, &is_json);

@@ -7,6 +7,7 @@
 #include "condition/condition.h"
 #include "file/file.h"
 #include "scenario_model.h"
+#include "text/text.h"
 
 #define SILENCE 1000000u /* ticks: how long `answer: none` listens */
 #define EXTRAS_MAX 5
@@ -462,7 +463,7 @@ static size_t find_action(const struct config_node *node, bool stimulus)
     while (i < ACTIONS && (config_get(node, actions[i].key) == NULL || (stimulus && !actions[i].stimulus)))
         i++;
     if (i == ACTIONS)
-        config_error(node, "expected one of %s", list);
+        config_error(node, "expected one of %s%s", list, config_count(node) > 0 ? nearest_hint(config_key(node, 0), list) : "");
     return i;
 }
 

@@ -14,7 +14,8 @@ static const struct argp_option table[] = {
     {"flash", KEY_FLASH, "FILE", 0,
      "Flash image of a unit; created if it does not exist. %n in it stands for the unit's address, %l for the number of the bus. "
      "Without it stored programs are lost when the emulator ends", 0},
-    {"backup", KEY_BACKUP, "FILE", 0, "The same of a CNC872, whose flash is its backup memory", 0},
+    {"backup", KEY_BACKUP, "FILE", 0,
+     "Backup memory of a CNC872, kept in this file; created if it does not exist. The same as --flash", 0},
     {NULL, 0, NULL, 0, "The bus:", 2},
     {"link", KEY_LINK, "PATH", 0,
      "Name of the symbolic link to the pty; default $XDG_RUNTIME_DIR/rkm04/bus0, else rkm04-UID/bus0 in the temporary "
@@ -29,7 +30,8 @@ static const struct argp_option table[] = {
     {"tcp", KEY_TCP, "HOST:PORT", 0,
      "Offer the bus over TCP as plain bytes; default host 127.0.0.1, port 0: a free one. No pty without --link",
      0},
-    {"rfc2217", KEY_RFC2217, "HOST:PORT", 0, "The same with RFC 2217: settings, purge, break and modem lines", 0},
+    {"rfc2217", KEY_RFC2217, "HOST:PORT", 0,
+     "Offer the bus over TCP with RFC 2217: settings, purge, break and modem lines; HOST and PORT as of --tcp", 0},
     {"service", KEY_SERVICE, "NAME=HOST:PORT", 0,
      "Listen for clients of a server that the device has itself (`rkm04 devices --json' lists them); up to four", 0},
     {"baud", KEY_BAUD, "RATE", 0,

@@ -33,21 +33,29 @@ static size_t distance(const char *a, size_t a_length, const char *b, size_t b_l
     return cost[a_length][b_length];
 }
 
-const char *nearest_hint(const char *word, const char *list)
+const char *nearest_name(const char *word, const char *list)
 {
-    static char hint[WORD_MAX + 32];
+    static char nearest_one[WORD_MAX + 1];
     size_t length = strlen(word), nearest = FAR_AWAY;
-    hint[0] = '\0';
+    nearest_one[0] = '\0';
     for (const char *at = list; length <= WORD_MAX && *at != '\0';) {
         size_t name = strcspn(at, ", ");
         if (name > 0 && name <= WORD_MAX) {
             size_t found = distance(word, length, at, name);
             if (found < nearest && 2u * found <= least(length, name)) { /* "top" is not "low" */
                 nearest = found;
-                snprintf(hint, sizeof hint, "; did you mean `%.*s'?", (int)name, at);
+                snprintf(nearest_one, sizeof nearest_one, "%.*s", (int)name, at);
             }
         }
         at += name + (at[name] != '\0');
     }
+    return nearest_one;
+}
+
+const char *nearest_hint(const char *word, const char *list)
+{
+    static char hint[WORD_MAX + 32];
+    const char *name = nearest_name(word, list);
+    snprintf(hint, sizeof hint, name[0] != '\0' ? "; did you mean `%s'?" : "%s", name);
     return hint;
 }

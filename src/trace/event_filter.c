@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "text/text.h"
+
 #define ALL_MOTORS 0x1Eu
 #define ALL_UNITS 0x1FFFEu
 
@@ -25,8 +27,9 @@ static bool read_kinds(const json_t *kinds, uint32_t *chosen, struct refusal *re
             for (unsigned k = 0; k < WATCH_KINDS; k++)
                 snprintf(list + strlen(list), sizeof list - strlen(list), k > 0 ? ", %s" : "%s",
                          watch_kind_name((enum watch_kind)k));
-            refuse(refusal, REFUSED_PARAMS, "kinds: unknown event kind `%.40s'; kinds are: %s",
-                   json_is_string(kind) ? json_string_value(kind) : "?", list);
+            const char *name = json_is_string(kind) ? json_string_value(kind) : "?";
+            refuse(refusal, REFUSED_PARAMS, "kinds: unknown event kind `%.40s'; kinds are: %s%s", name, list,
+                   nearest_hint(name, list));
             return false;
         }
         *chosen |= WATCH_BIT(found);

@@ -72,6 +72,15 @@ test_NL1_what_rkmctl_cnc_cannot_do_is_said() {
     serve_cnc
     exits 2 "$RKMCTL" -c "$folder/control" cnc get NO_CELL
     holds "$complained" "NO_CELL" "an unknown cell"
+    [[ $complained != *mean* ]] || fail "nothing is near: $complained"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc get po_stp
+    holds "$complained" "there is no cell; did you mean \`PO_STOP'?" "a slip in a cell"
+    exits 2 "$RKMCTL" -c "$folder/control" wait 'cell.B_PLO[0]>5'
+    holds "$complained" "did you mean \`B_POL[0]'?" "a slip in a condition"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc get PO_STOP+1
+    [[ $complained != *mean* ]] || fail "another fault: $complained"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc panel fed=50
+    holds "$complained" "did you mean \`feed'?" "a slip in a name of the panel"
     exits 2 "$RKMCTL" -c "$folder/control" cnc get
     exits 2 "$RKMCTL" -c "$folder/control" cnc set PO_STOP
     exits 2 "$RKMCTL" -c "$folder/control" cnc jog +
@@ -205,6 +214,10 @@ test_NP8_wrong_files_are_named_with_line_and_column() {
     printf 'switches:\n  - {cell: PO_F, axis: X, at_least: 1}\n' >"$folder/bad.yaml"
     exits 2 "$RKM04" serve --device cnc872 --machine "$folder/bad.yaml"
     holds "$complained" "bad.yaml:2:12: error: expected a bit that may be written" "serve --machine"
+    [[ $complained != *mean* ]] || fail "it is known: $complained"
+    printf 'switches:\n  - {cell: KXH0, axis: X, at_least: 1}\n' >"$folder/bad.yaml"
+    exits 2 "$RKM04" serve --device cnc872 --machine "$folder/bad.yaml"
+    holds "$complained" "did you mean \`KHX0'?" "a slip in a machine file"
     printf 'switches:\n  - {cell: KH40, axis: 4, at_least: 1}\n' >"$folder/bad.yaml"
     exits 2 "$RKM04" serve --device cnc872 --machine "$folder/bad.yaml"
     holds "$complained" "bad.yaml: error: switch 1: the configuration has no axis 4" "serve --machine"

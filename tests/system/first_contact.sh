@@ -169,6 +169,84 @@ test_a_mistyped_command_is_answered_with_all_there_are_and_the_nearest() {
     holds "$complained" "did you mean \`wait'?" "the nearest of an emulator"
 }
 
+# slip NEAREST COMMAND...: a wrong command line, whose answer proposes what is meant.
+slip() {
+    exits 2 "${@:2}"
+    holds "$complained$said" "did you mean \`$1'?" "the answer to ${*:2}"
+}
+
+test_a_slip_in_any_name_is_answered_with_the_nearest() {
+    local ctl=("$RKMCTL" -c "$folder/bus.control")
+    serve bus --clock stepped
+    slip --node "$RKM04" serve --nde 3
+    slip --turnaround "$RKM04" serve --node 3 --turnaruond=5
+    slip --json "$RKM04" devices --jsn
+    slip --json "$RKM04" exec --config --jsnn --jsn
+    slip --timeout "$RKMCTL" --timout 3 version
+    slip --help "$RKM04" --hlp
+    slip step "${ctl[@]}" events setp
+    slip drop "${ctl[@]}" fault inject drp
+    slip direction "${ctl[@]}" fault inject drop direcion=both
+    slip jammed "${ctl[@]}" plant motor=1 jamed=true
+    slip unit "${ctl[@]}" call di.set mask=1 unt=1
+    slip idle "${ctl[@]}" wait m1.state=idl
+    slip position "${ctl[@]}" wait 'm1.positon>=5'
+    slip powered "${ctl[@]}" wait pwered=1
+    printf 'steps:\n  - st: F1 R\n' >"$folder/step.yaml"
+    slip set "$RKM04" test "$folder/step.yaml"
+    printf 'steps:\n  - wait: {motor: 1, sate: idle}\n' >"$folder/condition.yaml"
+    slip state "$RKM04" test "$folder/condition.yaml"
+    exits 2 "$RKM04" serve --nde 3 --trun 4
+    [[ $complained != *mean*mean* ]] || fail "two are proposed: $complained"
+    exits 2 "$RKM04" serve --node 17
+    [[ $complained != *mean* ]] || fail "one is proposed for a right name: $complained"
+}
+
+test_help_is_a_word_too() {
+    local whole
+    exits 0 "$RKM04" serve --help
+    whole=$said
+    exits 0 "$RKM04" help serve
+    same "$whole" "$said" "rkm04 help serve"
+    exits 0 "$RKMCTL" --help
+    whole=$said
+    exits 0 "$RKMCTL" help
+    same "$whole" "$said" "rkmctl help"
+    exits 0 "$RKMCTL" wait --help
+    whole=$said
+    exits 0 "$RKMCTL" help wait
+    same "$whole" "$said" "rkmctl help wait"
+    exits 2 "$RKMCTL" help wiat
+    holds "$complained" "did you mean \`wait'?" "a slip"
+}
+
+# Lines fit a terminal of 80 columns, and each command names its exit statuses.
+test_help_fits_a_terminal_and_has_the_exit_status() {
+    local command
+    for command in '' serve exec check fmt explain estimate lsp test replay plot devices signals; do
+        # shellcheck disable=SC2086
+        exits 0 "$RKM04" $command --help
+        holds "$said" "Exit status: " "rkm04 $command --help"
+        same "" "$(grep -E '^.{81}' <<<"$said")" "long lines of rkm04 $command --help"
+    done
+    exits 0 "$RKMCTL" --help
+    same "" "$(grep -E '^[a-z]+$|^.{81}' <<<"$said")" "lines of rkmctl --help that are broken in their middle, or long"
+    for command in $(sed -n 's/^  \([a-z]*\) .*/\1/p' <<<"$said"); do
+        [[ $command == rkmctl ]] && continue
+        exits 0 "$RKMCTL" "$command" --help
+        holds "$said" "Exit status: " "rkmctl $command --help"
+        same "" "$(grep -E '^.{81}' <<<"$said" | grep -v '^Usage')" "long lines of rkmctl $command --help"
+    done
+}
+
+test_a_command_for_another_device_names_it() {
+    serve bus --clock stepped
+    exits 1 "$RKMCTL" -c "$folder/bus.control" cnc get PO_STOP
+    holds "$complained" "there is no method \`cnc.get' of the device rkm04: cnc872 has it" "the answer"
+    exits 1 "$RKMCTL" -c "$folder/bus.control" cib status
+    holds "$complained" "of the device rkm04: cib has it" "the answer"
+}
+
 test_a_character_that_cannot_be_seen_is_named() {
     local space=$'\xc2\xa0' none=$'\xe2\x80\x8b'
     local name='a no-break space (U+00A0)' other='a zero-width space (U+200B)'

@@ -14,10 +14,14 @@ LIMIT = 60.0
 PROMPT = b"> "
 
 
+found = 0  # where what was waited for last ends: pieces that are read may have more than that
+
+
 def read_until(terminal, shown, part):
-    """Read until `part` has been shown behind what was there before."""
-    begin, end = len(shown), time.monotonic() + LIMIT
-    while part not in shown[begin:]:
+    """Read until `part` has been shown behind what was waited for last."""
+    global found
+    end = time.monotonic() + LIMIT
+    while (at := shown.find(part, found)) < 0:
         if time.monotonic() > end or not select.select([terminal], [], [], LIMIT)[0]:
             sys.exit(f"not within {LIMIT:g} s: {part!r}; shown: {bytes(shown)!r}")
         try:
@@ -27,6 +31,7 @@ def read_until(terminal, shown, part):
         if not piece:
             return False
         shown += piece
+    found = at + len(part)
     return True
 
 
