@@ -251,10 +251,13 @@ def test_exchanges_over_tcp_leave_the_port_to_the_program(over_tcp):
 
 
 def test_exchanges_over_tcp_follow_each_other_at_once(over_tcp):
-    begin = time.monotonic()
+    times = []
     for _ in range(20):
+        begin = time.monotonic()
         over_tcp.exchange(1, rkm04.request("Version"))
-    assert time.monotonic() - begin < 15  # not the second for which the emulator keeps a client that has closed its side
+        times.append(time.monotonic() - begin)
+    # not the second for which the emulator keeps a client that has closed its side; a busy machine may make some of them late
+    assert sorted(times)[5] < 0.9, times
 
 
 def test_what_tcp_does_not_carry_is_refused(over_tcp):

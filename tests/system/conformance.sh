@@ -50,12 +50,26 @@ xml_count() {
         "$folder/report.xml" "$1"
 }
 
+# failures: the names of the cases that failed, as options.
+failures() { sed -n 's/^FAILED .* \([^ ]*\)$/--only \1/p' <<<"$said"; }
+
+# Where a motion takes a tenth of a second, this machine may be too late to ask about it: such a case is done again with a unit
+# that is not so fast.
 test_every_case_that_needs_no_hands_passes_without_a_control_socket() {
-    serve bus --clock x30 --no-control
-    conforms 0 --speed 30
+    local speed only=()
+    for speed in 30 10 3 1; do
+        serve bus --clock "x$speed" --no-control
+        said=$("$python" "$kit" --port "$folder/bus" --timeout 10000 --latency 5000 --speed "$speed" "${only[@]}" \
+            2>"$folder/kit.err")
+        if [[ $speed == 30 ]]; then
+            holds "$said" "needs inputs" "what was left out"
+            holds "$said" "need a control socket" "what was left out"
+        fi
+        read -ra only < <(failures | xargs)
+        ((${#only[@]} > 0)) || break
+        status_of_serve
+    done
     holds "$(last_line)" " passed, 0 failed" "the summary"
-    holds "$said" "needs inputs" "what was left out"
-    holds "$said" "need a control socket" "what was left out"
 }
 
 test_units_with_other_addresses_and_over_tcp() {

@@ -75,6 +75,8 @@ start() {
     local name=$1
     shift
     rm -f "$folder/$name.out" "$folder/$name.err" # of a process of the same name before
+    : >"$folder/$name.out"
+    : >"$folder/$name.err"
     "$@" >"$folder/$name.out" 2>"$folder/$name.err" </dev/null &
     started=$!
     processes+=("$started")

@@ -27,8 +27,23 @@ line_found() {
     [[ -n $line ]]
 }
 
-# monitor COMMAND: what QEMU says to it.
-monitor() { echo "$*" | timeout "$limit" socat -t 2 - "unix-connect:$folder/monitor"; }
+# monitor COMMAND: what QEMU says to it, until it asks for the next one.
+monitor() {
+    timeout "$limit" python3 - "$folder/monitor" "$*" <<'END'
+import socket, sys
+monitor = socket.socket(socket.AF_UNIX)
+monitor.connect(sys.argv[1])
+for command in (sys.argv[2].encode() + b"\n", b""):
+    said = b""
+    while not said.endswith(b"(qemu) "):
+        more = monitor.recv(4096)
+        if not more:
+            break
+        said += more
+    monitor.sendall(command)
+print(said.decode(errors="replace"))
+END
+}
 
 # unit ARGUMENTS...: the client on the board's line.
 unit() {
