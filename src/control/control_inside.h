@@ -114,7 +114,7 @@ struct control_context {
 typedef json_t *control_method(struct control_context *context, struct refusal *refusal);
 
 control_method control_wait, control_advance, control_exchange; /* control_time.c */
-control_method control_subscribe, control_unsubscribe;    /* control_subscribe.c */
+control_method control_subscribe, control_collected, control_unsubscribe; /* control_subscribe.c */
 control_method control_trace_start, control_trace_stop;   /* control_trace.c */
 control_method control_restore;                           /* control_restore.c: with `file` */
 

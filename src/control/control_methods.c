@@ -100,6 +100,7 @@ static const struct {
     {"wait", control_wait},
     {"advance", control_advance},
     {"subscribe", control_subscribe},
+    {"collected", control_collected},
     {"unsubscribe", control_unsubscribe},
     {"trace.start", control_trace_start},
     {"trace.stop", control_trace_stop},

@@ -48,6 +48,8 @@ json_t *handle_subscribe(struct handle *handle, const json_t *params, struct ref
     struct event_filter filter;
     if (!event_filter_read(&filter, sim, params, refusal))
         return NULL;
+    if (json_object_get(params, "collect"))
+        return refuse(refusal, REFUSED_PARAMS, "collect: expected a client of the control socket");
     struct handle_subscription *subscription = handle_subscription(handle, 0);
     if (!subscription)
         return refuse(refusal, REFUSED_STATE, "too many subscriptions: expected at most %u", HANDLE_SUBSCRIPTIONS);

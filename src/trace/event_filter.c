@@ -78,7 +78,7 @@ static bool read_some(struct sim *sim, const json_t *given,
 
 bool event_filter_read(struct event_filter *filter, struct sim *sim, const json_t *params, struct refusal *refusal)
 {
-    static const char *const names[] = {"kinds", "motor", "unit", "cells", NULL};
+    static const char *const names[] = {"kinds", "motor", "unit", "cells", "collect", NULL};
     const json_t *cells = json_object_get(params, "cells"), *kinds = json_object_get(params, "kinds");
     *filter = (struct event_filter){WATCH_ALL, ALL_MOTORS, ALL_UNITS};
     if (!read_kinds(kinds, &filter->kinds, refusal))

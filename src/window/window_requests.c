@@ -196,17 +196,20 @@ static void on_ended(void *context)
     page_send(page, json_pack("{s:s}", "event", "uncalled")); /* what has not been answered will not be */
 }
 
-/* Methods with which a page works, and those that the device brings along. */
-static bool is_allowed(const struct window *window, const char *method)
+/* Methods with which a page works, and those that the device brings along. What is subscribed to is collected: nothing comes to
+ * the page unasked. */
+static bool is_allowed(const struct window *window, const char *method, const json_t *params)
 {
     static const char *const methods[] = {
         "units", "device", "state", "ready", "motor.program", "di.set", "reset", "power", "switch", "clock", "advance",
         "trace.start", "trace.stop", "plant.get", "plant.set", "fault.inject", "fault.clear", "fault.list", "fault.kinds",
-        "snapshot", "restore",
+        "snapshot", "restore", "collected", "unsubscribe",
     };
     for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
         if (strcmp(methods[i], method) == 0)
             return true;
+    if (strcmp(method, "subscribe") == 0)
+        return json_is_true(json_object_get(params, "collect"));
     return window_watch_has_method(&window->watch, method);
 }
 
@@ -237,7 +240,7 @@ static char *make_call(struct page *page, const json_t *request, json_t *id)
     const struct window *window = window_of(page);
     const char *method = read_string(page, request, "method");
     json_t *params = json_deep_copy(json_object_get(request, "params"));
-    if (method == NULL || (params != NULL && !json_is_object(params)) || !is_allowed(window, method)) {
+    if (method == NULL || (params != NULL && !json_is_object(params)) || !is_allowed(window, method, params)) {
         if (method != NULL)
             page_refuse(page, request, "unknown method, or params that are no object");
         json_decref(params);

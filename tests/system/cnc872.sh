@@ -293,6 +293,33 @@ test_NL2_rkmctl_shows_cells_that_change() {
     holds "$complained" "NO_CELL" "the refusal"
 }
 
+test_NL2_what_cells_have_been_is_collected_until_a_client_asks() {
+    cat >"$folder/blip.plc" <<'PLC'
+DATA
+COUNT DW 0
+PHASE DB 0
+BLIP BIT 0
+DATA_END
+MODULE_MAIN
+  LOD COUNT
+  AD CNST.1
+  STO COUNT
+  LOD PHASE
+  AD CNST.1
+  STO PHASE
+  EQ CNST.100
+  WR BLIP
+  JL0 DONE
+  LOD CNST.0
+  STO PHASE
+DONE:
+MODULE_MAIN_END
+PLC
+    serve_cnc --plc "$folder/blip.plc"
+    exits 0 python3 "$(dirname "$0")/cnc_collect.py" "$folder/control"
+    same "done" "$said" "what the client prints"
+}
+
 test_NL2_events_of_cells_wait_for_a_client_that_advances_and_reads_late() {
     serve_cnc
     exits 0 python3 "$(dirname "$0")/cnc_client.py" "$folder/control" "$started"

@@ -54,7 +54,9 @@ class Session:
     def __init__(self, options):
         self.folder = tempfile.TemporaryDirectory()
         path = os.path.join(self.folder.name, "bus")
-        self.emulator = subprocess.Popen([os.environ["RKM04"], "serve", "--link", path, "--clock", "stepped", *options],
+        bus = [] if "cnc872" in options else ["--link", path]
+        command = [os.environ["RKM04"], "serve", *bus, "--control", path + ".control", "--clock", "stepped", *options]
+        self.emulator = subprocess.Popen(command,
                                          cwd=self.folder.name, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         ready = self.emulator.stdout.readline()
         assert ready.startswith("READY "), f"no unit: {self.emulator.stderr.read()}"

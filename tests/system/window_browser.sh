@@ -75,6 +75,32 @@ PLC
     show_cnc cncplc --plc "$folder/show.plc"
 }
 test_cells_of_a_CNC872_are_found_shown_and_set() { show_cnc cnccells; }
+test_a_bit_that_is_1_for_one_T_is_seen() {
+    export RKMCTL
+    cat >"$folder/blip.plc" <<'PLC'
+DATA
+COUNT DW 0
+BLIP BIT 0
+PEAK DW 0
+DATA_END
+MODULE_MAIN
+  LOD COUNT
+  AD CNST.1
+  STO COUNT
+  EQ CNST.5
+  WR BLIP
+  FL1 1,SHORT
+  LOD CNST.0
+  JL0 LOW
+  LOD CNST.7
+LOW: STO PEAK
+MECH_BEGIN SHORT
+  EX
+MECH_END SHORT
+MODULE_MAIN_END
+PLC
+    show_cnc cncpulse --plc "$folder/blip.plc" --clock stepped
+}
 test_cells_that_change_without_motion_are_seen_soon() {
     export RKMCTL
     show_cnc cncnews

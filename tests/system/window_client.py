@@ -247,8 +247,9 @@ def emulator(window):
         event = page.receive()
         if event.get("event") == "state" and event["state"]["di"] == 4:
             break
-    answer = page.ask(do="call", method="shutdown")
-    same(True, "unknown method" in answer["error"], answer)
+    for method, params in [("shutdown", {}), ("subscribe", {"kinds": ["motion"]}), ("subscribe", {"collect": "true"})]:
+        answer = page.ask(do="call", method=method, params=params)
+        same(True, "unknown method" in answer["error"], answer)
 
 
 cases = {"emulator": emulator, "doors": doors, "limits": limits, "nonsense": nonsense, "port": port, "timeout": timeout,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Cells between CNC system and PLC program as a table: found by a part of their name, read ten times a second, marked when they
-// change, set where that is allowed. And the mechanisms of the PLC program as lamps. By cnc.cells, cnc.get and cnc.set.
+// change, set where that is allowed. And the mechanisms of the PLC program as lamps. By cnc.cells, cnc.get and cnc.set. What was
+// otherwise between two readings, be it for one T, is shown for a moment: the emulator collects it (subscribe, collected).
 import { call } from "./link.js";
 import { word } from "./words.js";
 import { lamp, light, make, makeScrolled, write } from "./make.js";
@@ -8,6 +9,8 @@ import { lamp, light, make, makeScrolled, write } from "./make.js";
 const NOTHING = "–"; // where a value is not known
 const READ_MS = 100;
 const MARKED_MS = 1500;
+const PULSE_MS = 300;
+const COLLECT_MAX = 64; // cells of a subscription
 const FIND_MS = 150;
 const FOUND_MAX = 60; // names offered at a time
 const FIRST = ["PO_F", "PO_STOP", "STOP_REQ"];
@@ -72,6 +75,7 @@ export class Cells {
   async begin() {
     const answer = await call("cnc.cells", { unit: this.unit, section: "mechanism" });
     this.mechanisms = (answer.cells ?? []).map(({ name }) => ({ name }));
+    this.collected = null;
     this.showMechanisms();
     for (const row of this.rows)
       row.type = row.error = row.shown = undefined;
@@ -189,20 +193,53 @@ export class Cells {
       return;
     const isFirst = row.shown === undefined;
     row.shown = value;
-    const text = String(value ?? NOTHING);
+    this.showText(row, String(value ?? NOTHING));
+    if (!isFirst)
+      this.mark(row);
+  }
+
+  showText(row, text) {
     if (!row.control)
       write(row.value, text);
     else if (row.type === "BIT") {
       write(row.control, text);
       row.control.setAttribute("aria-label", `${row.name} ${text}`);
-      row.control.setAttribute("aria-pressed", String(Boolean(value)));
+      row.control.setAttribute("aria-pressed", String(text === "1"));
     } else if (document.activeElement !== row.control)
       row.control.value = text;
-    if (isFirst)
-      return;
+  }
+
+  mark(row) {
     row.line.classList.add("changed");
     clearTimeout(row.marked);
     row.marked = setTimeout(() => row.line.classList.remove("changed"), MARKED_MS);
+  }
+
+  // It was otherwise since the last reading, and is again as it was.
+  showPulse(row) {
+    if (row.type !== "BIT") {
+      this.mark(row);
+      return;
+    }
+    this.showText(row, String(1 - row.shown));
+    row.line.classList.add("pulsed");
+    this.mark(row);
+    clearTimeout(row.pulsed);
+    row.pulsed = setTimeout(() => {
+      row.line.classList.remove("pulsed");
+      this.showText(row, String(row.shown));
+    }, PULSE_MS);
+  }
+
+  lightMechanism(one, isLit) { light(one.lamp, isLit, one.name); }
+
+  pulseMechanism(one) {
+    this.lightMechanism(one, true);
+    clearTimeout(one.pulsed);
+    one.pulsed = setTimeout(() => {
+      one.pulsed = null;
+      this.lightMechanism(one, Boolean(one.shown));
+    }, PULSE_MS);
   }
 
   showMechanisms() {
@@ -225,21 +262,52 @@ export class Cells {
     while (this.element.isConnected || !this.wasShown) {
       this.wasShown ||= this.element.isConnected;
       const rows = this.rows.filter((row) => row.type !== undefined && !row.error);
-      const names = [...new Set([...rows, ...this.mechanisms].map(({ name }) => name))];
-      if (this.isSeen() && names.length > 0)
-        this.take(await call("cnc.get", { unit: this.unit, cells: names }), rows);
+      const names = [...new Set([...this.mechanisms, ...rows].map(({ name }) => name))];
+      const isSeen = this.isSeen() && names.length > 0;
+      if (isSeen) {
+        const collected = await this.readCollected(rows);
+        const answer = await call("cnc.get", { unit: this.unit, cells: names });
+        this.take(answer, rows, this.wasSeen ? collected : {});
+      }
+      this.wasSeen = isSeen;
       await new Promise((done) => setTimeout(done, READ_MS));
     }
     this.isReading = this.wasShown = false;
   }
 
-  take({ cells }, rows) {
-    for (const row of cells ? rows : [])
-      if (cells[row.name] !== undefined)
-        this.showValue(row, cells[row.name]);
+  // What cells have been since the last call: {name: {value, changes, least, greatest}}. By one subscription.
+  async readCollected(rows) {
+    const names = [...new Set([...this.mechanisms, ...rows.filter(({ type }) => type !== "REAL")].map(({ name }) => name))]
+      .slice(0, COLLECT_MAX);
+    if (names.join() !== this.collected) {
+      if (this.subscription)
+        await call("unsubscribe", { subscription: this.subscription });
+      this.collected = names.join();
+      const answer = names.length > 0 ? await call("subscribe", { unit: this.unit, cells: names, collect: true }) : {};
+      this.subscription = answer.subscription;
+    }
+    if (!this.subscription)
+      return {};
+    const answer = await call("collected", { subscription: this.subscription });
+    if (!answer.cells)
+      this.collected = this.subscription = undefined; // another connection
+    return answer.cells ?? {};
+  }
+
+  take({ cells }, rows, collected) {
+    for (const row of cells ? rows : []) {
+      const before = row.shown, value = cells[row.name];
+      if (value !== undefined)
+        this.showValue(row, value);
+      if (value === before && collected[row.name])
+        this.showPulse(row);
+    }
     for (const one of cells ? this.mechanisms : []) {
       one.shown = cells[one.name];
-      light(one.lamp, Boolean(one.shown), one.name);
+      if (!one.shown && collected[one.name]?.greatest === 1)
+        this.pulseMechanism(one);
+      else if (!one.pulsed || one.shown)
+        this.lightMechanism(one, Boolean(one.shown));
     }
   }
 }

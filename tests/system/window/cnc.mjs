@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // cnc.mjs: the panel of a CNC872, a device without a bus.
-import { execFileSync, spawn } from "node:child_process";
+import { execFile, execFileSync, spawn } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import assert from "node:assert/strict";
 import { changeLanguage, checkAccess, folder, openPage, openPanel, pictures, roundTrip, shows } from "./page.mjs";
@@ -304,6 +304,32 @@ export const cases = {
     await value(page, "PO_F", "0");
     await add(page, "PO_POS PO_POL PO_F PO_F");
     assert.equal(await page.locator("table.cells tbody tr").count(), 7, "a name is there once");
+  },
+
+  // A bit, a mechanism and a number that are otherwise for one T, between two readings, on a clock that another client advances.
+  async cncpulse(page) {
+    await shows(page, ".axes td", "element.textContent === 'X'");
+    await add(page, "BLIP PEAK COUNT");
+    await value(page, "COUNT", "0");
+    await value(page, "BLIP", "0");
+    await shows(page, ".device .lamp:not(.lit)", "element.textContent === 'SHORT'");
+    const row = (name, condition) => `element.firstChild.textContent === ${quoted(name)} && ${condition}`;
+    const blip = () => Promise.all([
+      shows(page, "table.cells tr.pulsed", row("BLIP", "element.children[2].textContent === '1'")),
+      shows(page, "table.cells tr.changed", row("PEAK", "element.children[2].firstChild.value === '0'")),
+      shows(page, ".device .lamp.lit", "element.textContent === 'SHORT'"),
+      new Promise((done, failed) => execFile(process.env.RKMCTL, ["-c", folder + "/bus.control", "advance", "20ms"],
+        (error) => error ? failed(error) : done())),
+    ]);
+    await blip();
+    await shows(page, "table.cells tr:not(.pulsed)", row("BLIP", "element.children[2].textContent === '0'"));
+    await shows(page, ".device .lamp:not(.lit)");
+    await page.fill(".cells input[aria-label=COUNT]", "0");
+    await page.press(".cells input[aria-label=COUNT]", "Enter");
+    await page.waitForFunction(() => document.querySelectorAll("table.cells tr.changed").length === 0);
+    await add(page, "MPXPI"); // another list of cells
+    await value(page, "MPXPI", "1");
+    await blip();
   },
 
   // What another client changes is seen soon, although nothing moves and no event comes. The middle one of nine counts, less the
