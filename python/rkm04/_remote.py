@@ -75,6 +75,8 @@ class ControlSocket(Transport):
                 if answer.get("id") == self._next:
                     break
                 self._take(answer)
+            while method == "shutdown" and "result" in answer and self._socket.recv(65536):
+                pass  # it has ended when the connection has
         except OSError as error:
             raise Error(f"expected an answer from {self._path}, found: {error.strerror or error}") from None
         if "error" in answer:

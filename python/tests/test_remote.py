@@ -16,6 +16,7 @@ import serial
 import rkm04
 from helpers import VERSION, VERSION_ANSWER
 from rkm04 import _windows
+from rkm04._programs import find_program
 
 
 @pytest.fixture(scope="module")
@@ -192,6 +193,15 @@ def test_an_emulator_that_has_ended_says_so():
         with pytest.raises(rkm04.Error, match="expected an answer"):
             while bus.now >= 0:
                 pass
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows")
+def test_an_emulator_that_was_asked_to_end_has_ended(tmp_path):
+    command = [find_program("rkm04"), "serve", "--lines", "100", "--link", tmp_path / "bus%l", "--control", tmp_path / "control"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:  # many buses take their time
+        assert process.stdout.readline().startswith(b"READY ")
+        rkm04.connect(tmp_path / "control").call("shutdown")
+        assert os.listdir(tmp_path) == []
 
 
 def test_it_ends_with_the_block():
