@@ -18,6 +18,19 @@ void cnc_begin_phase(struct cnc *cnc, enum cnc_phase phase)
     cnc->machine.phase = (uint8_t)phase;
     cnc_rewind_plc(cnc, phase == CNC_INIT ? CNC_PLC_BLOCK_INIT : CNC_PLC_BLOCK_DONE);
     cnc->machine.text_passed = cnc->machine.outside_passed = cnc->machine.is_passed = false;
+    if (phase == CNC_INIT)
+        cnc_put_number(&cnc->cells, CNC_CELL_CNT_NEXT_BLOCKS, 0, cnc_queue_length(cnc));
+}
+
+void cnc_show_start(struct cnc *cnc, enum cnc_bit mode)
+{
+    static const enum cnc_bit modes[] = {CNC_BIT_AUTPI, CNC_BIT_REFPI, CNC_BIT_CAPI};
+    for (unsigned i = 0; i < 3; i++)
+        cnc_set(cnc, modes[i], modes[i] == mode);
+    cnc_set(cnc, CNC_BIT_G00PI, false);
+    cnc_set(cnc, CNC_BIT_G33PI, false);
+    cnc_set(cnc, CNC_BIT_PO_F, true);
+    cnc_set(cnc, CNC_BIT_SF_BLOCKFINISHED, false);
 }
 
 static void set_request_bits(struct cnc *cnc, uint16_t axes, bool value)
@@ -75,13 +88,9 @@ void cnc_publish_block(struct cnc *cnc)
     const bool is_selected = machine->block == machine->selected;
     machine->is_continued = is_selected && cnc_is_elsewhere(cnc);
     cnc_begin_phase(cnc, CNC_INIT);
-    cnc_set(cnc, CNC_BIT_PO_F, true);
-    cnc_set(cnc, CNC_BIT_AUTPI, true);
-    cnc_set(cnc, CNC_BIT_REFPI, false);
-    cnc_set(cnc, CNC_BIT_CAPI, false);
+    cnc_show_start(cnc, CNC_BIT_AUTPI);
     cnc_set(cnc, CNC_BIT_G00PI, block->motion == CNC_MOTION_RAPID);
     cnc_set(cnc, CNC_BIT_G33PI, block->motion == CNC_MOTION_THREAD);
-    cnc_set(cnc, CNC_BIT_SF_BLOCKFINISHED, false);
     cnc_end_functions(cnc);
     if (!is_selected || !machine->technology_off)
         cnc_publish_functions(cnc, block);
@@ -238,14 +247,10 @@ static void begin_annulment(struct cnc *cnc)
     struct cnc_machine *machine = &cnc->machine;
     const bool is_passing = (machine->phase == CNC_INIT || machine->phase == CNC_DONE) && !machine->is_passed;
     machine->annulment = CNC_ANNULMENT_PASSES;
-    cnc_set(cnc, CNC_BIT_CAPI, true);
-    cnc_set(cnc, CNC_BIT_AUTPI, false);
-    cnc_set(cnc, CNC_BIT_REFPI, false);
-    cnc_set(cnc, CNC_BIT_PO_F, true);
+    cnc_show_start(cnc, CNC_BIT_CAPI);
     cnc_set(cnc, CNC_BIT_PO_STOP, false);
     cnc_set(cnc, CNC_BIT_PRODLEVA, false);
     cnc_set(cnc, CNC_BIT_BLOCK_RESTART, false);
-    cnc_set(cnc, CNC_BIT_SF_BLOCKFINISHED, false);
     cnc_put_number(&cnc->cells, CNC_CELL_STATUS_RESTART, 0, 0);
     cnc_drop_references(cnc);
     cnc_set_critical(cnc, 0);

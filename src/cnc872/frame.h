@@ -59,6 +59,10 @@ void cnc_end_block(struct cnc *cnc);
 /* Phase INIT or DONE with its pass before it. */
 void cnc_begin_phase(struct cnc *cnc, enum cnc_phase phase);
 
+/* A block, a reference or a central annulment has been started: `mode` is CNC_BIT_AUTPI, _REFPI or _CAPI. It is neither rapid nor
+ * threading until a block says so (8.2.2 to 8.2.4). */
+void cnc_show_start(struct cnc *cnc, enum cnc_bit mode);
+
 /* What comes after the motion, or in its place: DELAY or DONE. */
 void cnc_begin_delay(struct cnc *cnc);
 
@@ -185,8 +189,8 @@ void cnc_position_spindle(struct cnc *cnc, unsigned axis);
 void cnc_publish_functions(struct cnc *cnc, const struct cnc_nc_block *block);
 void cnc_end_functions(struct cnc *cnc);
 
-/* Parts of it: a function of group 3; S. */
-void cnc_publish_gear(struct cnc *cnc, uint8_t m, const struct cnc_nc_block *block);
+/* Parts of it: the gear; S. */
+void cnc_publish_gear(struct cnc *cnc, const struct cnc_nc_block *block);
 void cnc_publish_spindle(struct cnc *cnc, const struct cnc_nc_block *block);
 
 /* Is S of the block within the limits of its gear (NF5)? */

@@ -44,12 +44,6 @@ static bool has_group(const struct cnc_nc_block *block, unsigned group)
     return block->m[group] != CNC_NC_NO_M;
 }
 
-/* Is it one of the functions that are always in this group? */
-static bool is_fixed(const struct cnc_nc_block *block, unsigned group)
-{
-    return has_group(block, group) && cnc_fixed_group(block->m[group]) == group;
-}
-
 static void publish_m(struct cnc *cnc, const struct cnc_nc_block *block)
 {
     for (unsigned group = 1; group <= CNC_M_GROUPS; group++) {
@@ -66,9 +60,8 @@ static void publish_m(struct cnc *cnc, const struct cnc_nc_block *block)
     for (size_t i = 0; i < COUNT(bytes); i++)
         if (has_group(block, bytes[i].group))
             cnc_put_number(&cnc->cells, bytes[i].cell, 0, cnc_bcd(block->m[bytes[i].group]));
-    if (is_fixed(block, 3))
-        cnc_publish_gear(cnc, block->m[3], block);
-    if (is_fixed(block, 8))
+    cnc_publish_gear(cnc, block);
+    if (block->m[8] == 48 || block->m[8] == 49)
         cnc->machine.override_cancelled = block->m[8] == 48;
 }
 

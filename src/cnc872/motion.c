@@ -111,10 +111,6 @@ static void step_path(struct cnc *cnc, enum cnc_hold hold)
     struct cnc_move *move = &cnc->move;
     const struct cnc_section *section = &move->section;
     const enum cnc_set set = hold_set(cnc, hold);
-    if (set == CNC_SETS) {
-        cnc_path_halt(&move->path, move->ring);
-        return;
-    }
     int64_t target[CNC_SEGMENTS_MAX];
     struct cnc_borders borders;
     cnc_find_targets(cnc, target);
@@ -123,12 +119,16 @@ static void step_path(struct cnc *cnc, enum cnc_hold hold)
         borders.border[k] = (struct cnc_border){section->segment[k].border, target[k + 1]};
     bool is_held = hold != CNC_HOLD_NONE;
     int64_t deceleration = 0;
-    if (!cnc->config->is_parabolic)
+    if (set == CNC_SETS)
+        cnc_path_halt(&move->path, move->ring);
+    else if (!cnc->config->is_parabolic)
         deceleration = is_held ? section->acceleration[set] : 0;
     else
         is_held = cnc_path_change(&move->path, move->ring, section->acceleration[set], section->n[set]) && is_held;
     if (section->count > 1)
         cnc_watch_section(cnc, hold, target, &borders);
+    if (set == CNC_SETS)
+        return;
     const int64_t speed = is_held ? 0 : cnc_lowest_target(section, &move->path, target);
     cnc_path_step(&move->path, move->ring, speed, deceleration, &borders);
 }

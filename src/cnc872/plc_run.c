@@ -2,6 +2,8 @@
 /* Runs PLC programs: registers, sections, mechanisms that wait (NP5, NP6, NP7). */
 #include "plc_code.h"
 
+#include <string.h>
+
 #ifdef __FLT_EVAL_METHOD__
 _Static_assert(__FLT_EVAL_METHOD__ == 0 || __FLT_EVAL_METHOD__ == 1, "REAL is IEEE double: -msse2 -mfpmath=sse on i386");
 #endif
@@ -63,6 +65,15 @@ static double read_real(const struct run *run, const struct cnc_operand *operand
 
 /* ---- Numbers --------------------------------------------------------------------------------------------------------- */
 
+/* What is no number has one form: processors differ in theirs. */
+static double unify(double value)
+{
+    const uint64_t none = UINT64_C(0x7FF8000000000000);
+    if (value != value)
+        memcpy(&value, &none, sizeof value);
+    return value;
+}
+
 /* Cut towards 0; what no number of 64 bits is, is the nearest one; what is no number is 0. */
 static int64_t cut_real(double value)
 {
@@ -94,6 +105,7 @@ static void calculate_real(struct run *run, const struct cnc_instruction *instru
         *real = value == 0 ? 0 : *real / value;
         break;
     }
+    *real = unify(*real);
     run->plc->dr = cut_real(*real);
 }
 

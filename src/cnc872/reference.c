@@ -55,11 +55,7 @@ static void begin_block(struct cnc *cnc)
 {
     cnc->machine.is_reference = true;
     cnc_begin_phase(cnc, CNC_INIT);
-    cnc_set(cnc, CNC_BIT_REFPI, true);
-    cnc_set(cnc, CNC_BIT_AUTPI, false);
-    cnc_set(cnc, CNC_BIT_CAPI, false);
-    cnc_set(cnc, CNC_BIT_PO_F, true);
-    cnc_set(cnc, CNC_BIT_SF_BLOCKFINISHED, false);
+    cnc_show_start(cnc, CNC_BIT_REFPI);
     cnc_report_event(cnc, CNC_EVENT_BLOCK, 0);
 }
 
@@ -235,9 +231,11 @@ static void begin_reference(struct cnc *cnc, unsigned i)
 static void move_reference(struct cnc *cnc, unsigned i)
 {
     struct cnc_axis *axis = &cnc->axis[i];
+    const struct switches switches = read_switches(cnc, i);
+    if (axis->kind == CNC_SINGLE_SPINDLE)
+        return; /* it comes to its place first */
     if (axis->kind == CNC_SINGLE_NONE)
         begin_reference(cnc, i);
-    const struct switches switches = read_switches(cnc, i);
     follow_switches(axis, &switches);
     const int direction = find_direction(cnc, i);
     const bool is_limit = cnc_find_limit(cnc, i, direction) != CNC_LIMIT_NONE;

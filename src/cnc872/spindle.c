@@ -39,10 +39,16 @@ static unsigned choose_gear(const struct cnc *cnc, int64_t speed)
     return chosen;
 }
 
-/* The gear that M40 to M44 ask for. */
-static unsigned find_gear(const struct cnc *cnc, uint8_t m, const struct cnc_nc_block *block)
+/* The gear that the block asks for: by M41 to M44, by M40, or by S while M40 is in force; 0: it asks for none. */
+static unsigned find_gear(const struct cnc *cnc, const struct cnc_nc_block *block)
 {
-    return m == 40 ? choose_gear(cnc, cnc_nc_value(cnc->program, block->speed)) : m - 40u;
+    const uint8_t m = block->m[3];
+    const bool has_speed = block->has_speed && (block->modes & CNC_NC_CONSTANT_CUT) == 0;
+    if (m > 40 && m <= 44)
+        return m - 40u;
+    if (m == 40 || (m == CNC_NC_NO_M && has_speed && cnc->machine.m[3] == 40))
+        return choose_gear(cnc, cnc_nc_value(cnc->program, block->speed));
+    return 0;
 }
 
 static bool has_external_gear(const struct cnc *cnc)
@@ -50,9 +56,13 @@ static bool has_external_gear(const struct cnc *cnc)
     return cnc_is_set(cnc, CNC_BIT_REQ_EXT_SPINDLE_GEAR) && cnc_is_set(cnc, CNC_BIT_REQ_MAN_SPINDLE_GEAR);
 }
 
-void cnc_publish_gear(struct cnc *cnc, uint8_t m, const struct cnc_nc_block *block)
+void cnc_publish_gear(struct cnc *cnc, const struct cnc_nc_block *block)
 {
-    const unsigned gear = find_gear(cnc, m, block);
+    const unsigned gear = find_gear(cnc, block);
+    if (gear == 0)
+        return;
+    if (!cnc_is_set(cnc, CNC_BIT_M41PI + gear - 1))
+        cnc_set(cnc, CNC_BIT_ZMMnPI + 3 - 1, true);
     for (unsigned i = 1; i <= 4; i++)
         cnc_set(cnc, CNC_BIT_M41PI + i - 1, i == gear);
     if (!has_external_gear(cnc)) /* else the PLC program writes the gear */
@@ -62,11 +72,10 @@ void cnc_publish_gear(struct cnc *cnc, uint8_t m, const struct cnc_nc_block *blo
 bool cnc_gear_fits(const struct cnc *cnc, const struct cnc_nc_block *block)
 {
     const int64_t speed = cnc_nc_value(cnc->program, block->speed);
-    const bool has_gear = block->m[3] >= 40 && block->m[3] <= 44;
-    if ((block->modes & CNC_NC_CONSTANT_CUT) != 0 || speed == 0 || !(block->has_speed || has_gear) || has_external_gear(cnc))
+    const unsigned asked = find_gear(cnc, block);
+    if ((block->modes & CNC_NC_CONSTANT_CUT) != 0 || speed == 0 || !(block->has_speed || asked != 0) || has_external_gear(cnc))
         return true;
-    const int64_t gear = has_gear ? find_gear(cnc, block->m[3], block)
-                                  : cnc_number(&cnc->cells, CNC_CELL_SPINDLE_GEAR_ACT_1, 0);
+    const int64_t gear = asked != 0 ? asked : cnc_number(&cnc->cells, CNC_CELL_SPINDLE_GEAR_ACT_1, 0);
     if (gear < 1 || gear > (int64_t)CNC_GEARS || !cnc->config->gear[gear].is_configured)
         return true;
     const struct cnc_gear *limits = &cnc->config->gear[gear];

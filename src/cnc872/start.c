@@ -112,13 +112,15 @@ void cnc_take_stop(struct cnc *cnc)
 {
     struct cnc_machine *machine = &cnc->machine;
     const bool emergency = cnc_is_set(cnc, CNC_BIT_STOP_EMERGENCY_REQ);
-    const bool stop = watch_stoppi(cnc) || machine->stop_requested || cnc_is_set(cnc, CNC_BIT_STOP_REQ);
+    const bool by_bits = watch_stoppi(cnc) || cnc_is_set(cnc, CNC_BIT_STOP_REQ) || emergency;
+    const bool stop = by_bits || machine->stop_requested;
     machine->stop_requested = false;
     cnc_set(cnc, CNC_BIT_STOP_REQ, false);
     cnc_set(cnc, CNC_BIT_STOP_EMERGENCY_REQ, false);
-    if (!stop && !emergency)
+    if (!stop)
         return;
-    if (machine->start == CNC_START_WAITS && cnc_is_set(cnc, CNC_BIT_START_SUSPEND))
+    /* The panel's STOP has dropped what came before it; bits have no order: the stop counts. */
+    if (machine->start == CNC_START_WAITS && (by_bits || cnc_is_set(cnc, CNC_BIT_START_SUSPEND)))
         refuse(cnc, CNC_STOPPED);
     cnc_stop_manual(cnc, emergency);
     cnc_stop_references(cnc, emergency);

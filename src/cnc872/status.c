@@ -84,8 +84,6 @@ void cnc_put_status(struct cnc *cnc)
     cnc_set(cnc, CNC_BIT_SF_SIMULATIONMODE, cnc->panel.simulation);
     cnc_set(cnc, CNC_BIT_SF_HIGHSPEEDMODE, cnc->panel.high_speed);
     cnc_put_number(&cnc->cells, CNC_CELL_PLC_PASS, 0, passes && !machine->is_passed ? machine->phase : 0);
-    if (machine->phase == CNC_INIT && machine->block != CNC_NO_BLOCK)
-        cnc_put_number(&cnc->cells, CNC_CELL_CNT_NEXT_BLOCKS, 0, cnc_queue_length(cnc));
 }
 
 static void put_set(struct cnc *cnc, unsigned i, enum cnc_set set)

@@ -168,7 +168,13 @@ static void on_event(void *context, enum cnc_event event, int64_t value)
         [CNC_EVENT_SAVED] = {"the backup memory is saved", NULL},
         [CNC_EVENT_NOT_SAVED] = {"the backup memory cannot be saved", NULL},
     };
-    const struct cnc_device *device = context;
+    struct cnc_device *device = context;
+    if (event == CNC_EVENT_BLOCK)
+        device->refused = CNC_OK;
+    else if (event == CNC_EVENT_BLOCK_REFUSED)
+        device->refused = CNC_RESULTS;
+    else if (event == CNC_EVENT_START_REFUSED)
+        device->refused = (uint8_t)value;
     if (event == CNC_EVENT_START_REFUSED)
         cnc_note(device, "start refused: %s", cnc_result_text((enum cnc_result)value));
     else if (event == CNC_EVENT_REFERENCE_DONE || event == CNC_EVENT_REFERENCE_FAILED)
@@ -353,6 +359,10 @@ static bool is_stuck(const struct device_unit *unit, unsigned number, char text[
         snprintf(text, DEVICE_ERROR_SIZE, "critical error %d", (int)cnc_number(&cnc->cells, CNC_CELL_BZH13, 0));
     else if (cnc_bit(&cnc->cells, CNC_BIT_PO_STOP))
         snprintf(text, DEVICE_ERROR_SIZE, "the program is stopped: START makes it go on");
+    else if (cnc_in(unit)->refused == CNC_RESULTS)
+        snprintf(text, DEVICE_ERROR_SIZE, "a block is refused: S is outside of the limits of the gear");
+    else if (cnc_in(unit)->refused != CNC_OK)
+        snprintf(text, DEVICE_ERROR_SIZE, "start refused: %s", cnc_result_text(cnc_in(unit)->refused));
     else
         return false;
     return true;

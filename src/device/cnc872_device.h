@@ -66,6 +66,7 @@ struct cnc_device {
     uint32_t backup;                 /* number of the image of the backup memory that counts */
     uint16_t moving;                 /* axes whose motion has been reported as begun */
     bool is_critical;                /* BZH13 has been reported */
+    uint8_t refused;                 /* why a START was, enum cnc_result; CNC_RESULTS: a block was; CNC_OK: none */
     bool is_quiet;                   /* nothing is to happen of itself but that time passes */
 };
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What single clauses of docs/CNC872.md demand beside the worked examples: borders of ranges, other axes than X, second times. */
+#include <stdio.h>
 #include <string.h>
 
 #include "cnc_rig.h"
@@ -285,6 +286,41 @@ START_TEST(NM8_TIME_DIST_stands_in_a_hold)
 }
 END_TEST
 
+/* A hold that stops at once changes neither acceleration nor target: TIME_DIST is worked out anew behind it all the same. */
+START_TEST(NM8_TIME_DIST_behind_a_hold_that_stops_at_once)
+{
+    for (unsigned critical = 0; critical < 2; critical++) {
+        rig_begin_with(critical ? NULL : "<ChannelConfig AccelerationType=\"1\"><Axis Name=\"X\"/></ChannelConfig>",
+                       "G23 G1 X10 F1000\nX20");
+        run_to(100);
+        set_bit("MPXPI", critical);
+        cnc_set_critical(&cnc, critical ? 7 : 0);
+        run_to(200);
+        ck_assert(at(200).v == 0 && bit("G23ACT"));
+        set_bit("MPXPI", true);
+        cnc_set_critical(&cnc, 0);
+        run_to(201);
+        const uint64_t end = 201 + (uint64_t)cell("TIME_DIST", 0);
+        run_to(end);
+        ck_assert_int_eq(at(end).x, 20 * MM);
+        ck_assert_int_lt(at(end - 1).x, 20 * MM);
+    }
+}
+END_TEST
+
+START_TEST(NM8_G23ACT_from_the_first_T_also_in_a_hold)
+{
+    rig_begin_with("<ChannelConfig AccelerationType=\"1\"><Axis Name=\"X\"/></ChannelConfig>", "G23 G1 X10 F1000\nX20");
+    set_bit("MPXPI", false);
+    run_to(2);
+    ck_assert(bit("G23ACT"));
+    set_bit("MPXPI", true);
+    run_to(3);
+    run_to(3 + (uint64_t)cell("TIME_DIST", 0));
+    ck_assert_int_eq(cnc.axis[0].position, 20 * MM);
+}
+END_TEST
+
 /* The same angle as in cnc_block, exactly 984 807 / 1 000 000, between ways whose products have all their digits. */
 START_TEST(NM8_the_angle_in_all_its_digits)
 {
@@ -341,6 +377,45 @@ START_TEST(NG2_H_is_cut)
 }
 END_TEST
 
+/* A reference and central annulment are starts, too, of something that is neither threading nor rapid (8.2.3, 8.2.4). */
+START_TEST(NB8_threading_and_rapid_end_with_the_next_start)
+{
+    for (unsigned by_reference = 0; by_reference < 2; by_reference++) {
+        rig_begin("S1000 M3 G33 X1 F1\nG0 X2");
+        cnc.panel.spindle = 50;
+        run_to(50);
+        ck_assert(bit("G33PI"));
+        ck_assert_int_eq(cell("REQ_SPEED_PM", 0), 999908);
+        if (by_reference) {
+            run_to(20000);
+            ck_assert(!bit("PO_F") && bit("G00PI")); /* of the block that was the last one */
+            set_cell("HOMING_START_REQ", 0, 1);
+            run_to(20001);
+            ck_assert(bit("REFPI"));
+        } else {
+            cnc_reset(&cnc);
+            run_to(100);
+            ck_assert(bit("CAPI"));
+            ck_assert_int_eq(cell("REQ_SPEED_PM", 0), 499893); /* the pot counts again */
+        }
+        ck_assert(!bit("G33PI") && !bit("G00PI"));
+    }
+}
+END_TEST
+
+/* CNT_NEXT_BLOCKS is set at the begin of each pass of MODULE_BLOCK_INIT (8.3.2): central annulment has gone back to the begin. */
+START_TEST(NQ1_next_blocks_in_the_pass_of_a_central_annulment)
+{
+    rig_begin("G1 X1 F1000\nX2\nX3 M0\nX4");
+    run_to(2000);
+    ck_assert_int_eq(cell("CNT_NEXT_BLOCKS", 0), 1);
+    cnc_reset(&cnc);
+    run_to(2001);
+    ck_assert(bit("CAPI"));
+    ck_assert_int_eq(cell("CNT_NEXT_BLOCKS", 0), 4);
+}
+END_TEST
+
 /* NE4: a stop drops a start only if one waits. */
 START_TEST(NE4_a_stop_without_a_start)
 {
@@ -352,6 +427,34 @@ START_TEST(NE4_a_stop_without_a_start)
     start_in(6);
     run_to(7);
     ck_assert(bit("PO_F"));
+}
+END_TEST
+
+/* A PLC program answers the event of a START with a stop: nothing moves. STOP acts on what is there, the start is not yet. */
+START_TEST(NE4_a_stop_by_the_event_of_a_start_drops_it)
+{
+    static const char *const stops[] = {"STOP_REQ", "STOP_EMERGENCY_REQ", "STOPPI"};
+    for (unsigned i = 0; i < 3; i++) {
+        char plc[100];
+        snprintf(plc, sizeof plc, "PROC_BEGIN _ON_EVENT\n FL 1,%s\nPROC_END _ON_EVENT\n", stops[i]);
+        rig_begin_plc(NULL, "G1 X10 F1000", plc);
+        run_to(100);
+        ck_assert(!bit("PO_F") && at(100).x == 0 && bit("SF_STOP"));
+        ck_assert_uint_eq(count_events(CNC_EVENT_START_REFUSED), 1);
+    }
+    rig_begin("G1 X10 F1000");
+    run_to(100);
+    cnc_stop(&cnc);
+    start_in(200);
+    set_bit("STOP_REQ", true);
+    run_to(300);
+    ck_assert(bit("PO_STOP") && !bit("STOP_REQ")); /* it is as it was */
+    ck_assert_int_eq(at(300).x, at(199).x);
+    ck_assert_int_eq(last_event(CNC_EVENT_START_REFUSED), CNC_STOPPED);
+    cnc_stop(&cnc); /* the panel knows the order: this STOP came before the START */
+    start_in(301);
+    run_to(400);
+    ck_assert_int_gt(at(400).x, at(300).x);
 }
 END_TEST
 
@@ -430,12 +533,17 @@ static Suite *clauses_suite(void)
     tcase_add_test(clauses, NQ2_Cont_by_where_the_chosen_block_begins);
     tcase_add_test(clauses, NM8_a_section_of_fifteen_blocks);
     tcase_add_test(clauses, NM8_TIME_DIST_stands_in_a_hold);
+    tcase_add_test(clauses, NM8_TIME_DIST_behind_a_hold_that_stops_at_once);
+    tcase_add_test(clauses, NM8_G23ACT_from_the_first_T_also_in_a_hold);
     tcase_add_test(clauses, NM8_the_angle_in_all_its_digits);
     tcase_add_test(clauses, NF4_the_slowest_spindle_there_is);
     tcase_add_test(clauses, NH4_software_limits_count_in_POS5);
     tcase_add_test(clauses, NF1_the_smallest_feed_with_the_greatest_overrides);
     tcase_add_test(clauses, NG2_H_is_cut);
+    tcase_add_test(clauses, NB8_threading_and_rapid_end_with_the_next_start);
+    tcase_add_test(clauses, NQ1_next_blocks_in_the_pass_of_a_central_annulment);
     tcase_add_test(clauses, NE4_a_stop_without_a_start);
+    tcase_add_test(clauses, NE4_a_stop_by_the_event_of_a_start_drops_it);
     tcase_add_test(clauses, NF5_a_gear_leaves_the_functions_of_other_groups);
     tcase_add_test(clauses, NQ1_fields_of_other_values);
     tcase_add_test(clauses, NA4_after_an_emergency_stop_an_axis_moves_again);

@@ -146,6 +146,24 @@ START_TEST(reals_go_through_dr_real_and_cut_into_dr)
 }
 END_TEST
 
+/* Processors differ in what a number that is none looks like; a program that stores it and reads it as whole sees one. */
+START_TEST(a_real_that_is_no_number_is_the_same_on_every_machine)
+{
+    const char *data = "Z DQ 0\nHUGE DQ 7FE0000000000000h\nR DQ 0";
+    static const char *const lines[] = {
+        "LOD REAL.HUGE\nMULB REAL.HUGE\nMULB REAL.Z\nSTO REAL.R",               /* infinite x 0 */
+        "LOD REAL.HUGE\nMULB REAL.HUGE\nSTO REAL.R\nSU REAL.R\nSTO REAL.R",     /* infinite - infinite */
+        "LOD REAL.HUGE\nMULB REAL.HUGE\nSTO REAL.R\nDIVB REAL.R\nSTO REAL.R",   /* infinite / infinite */
+        "LOD REAL.HUGE\nMULB REAL.HUGE\nSTO REAL.R\nSU REAL.R\nAD REAL.Z\nSTO REAL.R",
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        rig_run(data, lines[i]);
+        ck_assert_int_eq(rig_value("R"), INT64_C(0x7FF8000000000000));
+        ck_assert_int_eq(rig.plc.dr, 0);
+    }
+}
+END_TEST
+
 START_TEST(division_by_0_gives_0_and_an_event)
 {
     ck_assert_int_eq(rig_run("Z DD 0", "LOD CNST.7\nDIVB Z"), 0);
@@ -417,6 +435,7 @@ int main(void)
     tcase_add_test(tcase, comparisons_set_rlo);
     tcase_add_test(tcase, numbers_are_stored_in_the_width_of_the_operand);
     tcase_add_test(tcase, reals_go_through_dr_real_and_cut_into_dr);
+    tcase_add_test(tcase, a_real_that_is_no_number_is_the_same_on_every_machine);
     tcase_add_test(tcase, division_by_0_gives_0_and_an_event);
     tcase_add_test(tcase, the_queue_is_read_by_number_and_by_bx);
     tcase_add_test(tcase, errors_licences_and_the_spindle_reach_the_surroundings);

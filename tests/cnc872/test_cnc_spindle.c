@@ -207,6 +207,34 @@ START_TEST(nf5_gears)
 }
 END_TEST
 
+/* M40 stays in force: from then on the gear follows S (8.2.9), and the change bit follows the gear. */
+START_TEST(nf5_the_automatic_gear_follows_S)
+{
+    static const struct {
+        int64_t gear;
+        bool change;
+    } wanted[] = {{1, true}, {3, true}, {3, false}, {3, false}, {2, true}, {4, true}, {4, false}};
+    rig_begin_with(gears, "M40 S500\nS1500\nS1200\nG96 S100 L400\nG97 S600\nM44 S2500\nS600");
+    for (unsigned i = 0; i < 7; i++) {
+        run_to(1 + 2 * i);
+        ck_assert(bit("PO_F"));
+        ck_assert_int_eq(cell("SPINDLE_GEAR_ACT_1", 0), wanted[i].gear);
+        ck_assert_int_eq(bit("M41PI") + 2 * bit("M42PI") + 3 * bit("M43PI") + 4 * bit("M44PI"), wanted[i].gear);
+        ck_assert_int_eq(bit("ZMM3PI"), wanted[i].change);
+    }
+    rig_begin_with(gears, "M40 S500\nS4001\nM8"); /* no gear reaches it */
+    run_to(20);
+    ck_assert_int_eq(last_event(CNC_EVENT_BLOCK_REFUSED), 2);
+    ck_assert_int_eq(cell("SPINDLE_GEAR_ACT_1", 0), 1);
+    rig_begin_with(gears, "M40 S500\nS1500"); /* the PLC program writes the gear; the bits ask for it */
+    set_bit("REQ_EXT_SPINDLE_GEAR", true);
+    set_bit("REQ_MAN_SPINDLE_GEAR", true);
+    run_to(3);
+    ck_assert(bit("M43PI") && bit("ZMM3PI"));
+    ck_assert_int_eq(cell("SPINDLE_GEAR_ACT_1", 0), 1);
+}
+END_TEST
+
 START_TEST(nf5_blocks_that_are_not_refused)
 {
     rig_begin_with(gears, "M43 S1500\nM41 G96 S100 L400\nM8"); /* the limits are of G97 */
@@ -423,6 +451,32 @@ START_TEST(nf6_a_block_waits_for_a_spindle_axis)
 }
 END_TEST
 
+/* SPI_AX_4 in the INIT pass of a reference of the same axis: the reference begins once the axis is at its whole turn. */
+START_TEST(nf6_a_reference_waits_for_a_spindle_axis)
+{
+    power_rotary();
+    set_bit("EXT_PLC", true);
+    set_cell("HOMING_START_REQ", 0, 8);
+    run_to(10);
+    cnc_position_spindle(&cnc, 3);
+    run_to(20);
+    set_bit("PLC_PASS_DONE", true);
+    int64_t before = cnc.axis[3].position;
+    while (bit("POLOHV_4")) {
+        run_to(cnc.turn + 1);
+        const int64_t by = cnc.axis[3].position - before;
+        before = cnc.axis[3].position;
+        ck_assert(by >= 0 && by <= cnc_speed_of(config.axis[3].feed_reference));
+    }
+    ck_assert_int_eq(before, INT64_C(360000) * CNC_U_PER_UM);
+    run_to(cnc.turn + 10);
+    ck_assert_int_lt(cnc.axis[3].position, before); /* the reference, in - */
+    set_bit("KR4", true);
+    run_to(cnc.turn + 200);
+    ck_assert_int_eq(cell("HOMING", 0), 8);
+}
+END_TEST
+
 START_TEST(nf6_central_annulment_ends_it)
 {
     power_rotary();
@@ -466,6 +520,7 @@ int main(void)
     tcase_add_test(all, w46_threading);
     tcase_add_test(all, nf4_threading_waits_for_the_spindle);
     tcase_add_test(all, nf5_gears);
+    tcase_add_test(all, nf5_the_automatic_gear_follows_S);
     tcase_add_test(all, nf5_blocks_that_are_not_refused);
     tcase_add_test(all, nf5_other_functions_of_the_group_of_gears);
     tcase_add_test(all, nm7_the_greatest_feed);
@@ -477,6 +532,7 @@ int main(void)
     tcase_add_test(all, nf6_waits_for_other_motions_of_its_axis);
     tcase_add_test(all, nf6_while_other_axes_move);
     tcase_add_test(all, nf6_a_block_waits_for_a_spindle_axis);
+    tcase_add_test(all, nf6_a_reference_waits_for_a_spindle_axis);
     tcase_add_test(all, nf6_central_annulment_ends_it);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);

@@ -135,6 +135,8 @@ class Machine:
         cells = self.cells
         stop = self.stop_asked or cells["STOP_REQ"] or (cells["STOPPI"] and not self.was_stoppi)
         emergency = cells["STOP_EMERGENCY_REQ"]
+        if emergency or cells["STOP_REQ"]:
+            self.starts = False
         self.was_stoppi, self.stop_asked = cells["STOPPI"], False
         cells.update(STOP_REQ=0, STOP_EMERGENCY_REQ=0)
         if stop or emergency:

@@ -140,13 +140,13 @@ class Section:
     def step(self, hold):
         """One T under a hold: None, "STOP", "LIMIT", "EMERGENCY", "ENABLE" or "ERROR"."""
         machine, path, held, cap = self.machine, self.path, hold is not None, None
-        if hold == "ERROR" or (hold == "ENABLE" and machine.parabolic):
-            path.halt()
-            return
-        which = {None: RAPID if self.rapid else NORMAL, "STOP": RAPID, "LIMIT": RAPID if machine.parabolic else EMERGENCY,
-                 "EMERGENCY": EMERGENCY, "ENABLE": EMERGENCY}[hold]
+        at_once = hold == "ERROR" or (hold == "ENABLE" and machine.parabolic)
+        which = {None: RAPID if self.rapid else NORMAL, "LIMIT": RAPID if machine.parabolic else EMERGENCY,
+                 "STOP": RAPID}.get(hold, EMERGENCY)
         a, n = self.set_of(which)
-        if machine.parabolic:
+        if at_once:
+            path.halt()
+        elif machine.parabolic:
             held = path.change(a, n) and held
         elif held:
             cap = a
@@ -158,6 +158,8 @@ class Section:
                 time = machine.cells["TIME_DIST"] if look == self.look else self.time_to_end(targets)
                 machine.cells["TIME_DIST"] = time - (time < ENDLESS)
             self.look = look
+        if at_once:
+            return
         path.step(0 if held else self.lowest(path, targets), cap, self.allows(path, targets))
         if path.rest() == 0:
             machine.cells["G23ACT"] = machine.cells["TIME_DIST"] = 0

@@ -139,9 +139,25 @@ test_NU1_exec_ends_with_the_nc_program_though_a_plc_program_runs() {
 
 # All axes have one program.
 test_NU1_exec_reports_a_stop_once() {
-    printf 'MODULE_MAIN\n FL 1,STOP_REQ\nMODULE_MAIN_END\n' >"$folder/stop.plc"
+    printf 'MODULE_BLOCK_INIT\n FL 1,STOP_REQ\nMODULE_BLOCK_INIT_END\n' >"$folder/stop.plc"
     exits 1 "$RKM04" exec --device cnc872 --plc "$folder/stop.plc" "$example/part.nc"
     same "rkm04 exec: motor 1: the program is stopped: START makes it go on" "$complained" "a stop that the PLC program makes"
+}
+
+test_NU1_exec_reports_a_start_that_is_dropped() {
+    printf 'MODULE_MAIN\n FL 1,START_DISABLE\nMODULE_MAIN_END\n' >"$folder/never.plc"
+    exits 1 "$RKM04" exec --device cnc872 --plc "$folder/never.plc" "$example/part.nc"
+    same "rkm04 exec: motor 1: start refused: START_DISABLE is 1" "$complained" "a PLC program that disables it"
+    printf 'MODULE_MAIN\n FL 1,STOP_REQ\nMODULE_MAIN_END\n' >"$folder/stop.plc"
+    exits 1 "$RKM04" exec --device cnc872 --plc "$folder/stop.plc" "$example/part.nc"
+    same "rkm04 exec: motor 1: start refused: a stop came before the start was done" "$complained" "one that stops it"
+}
+
+test_NU1_exec_reports_a_block_that_is_refused() {
+    printf 'G1 X1 F1000\nS9000 M3\n' >"$folder/fast.nc"
+    exits 1 "$RKM04" exec --device cnc872 "$folder/fast.nc"
+    same "rkm04 exec: motor 1: a block is refused: S is outside of the limits of the gear" \
+        "$complained" "a speed that is too high"
 }
 
 test_NU1_exec_runs_one_nc_program() {
