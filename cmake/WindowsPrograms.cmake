@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-# rkm04.exe, the rooms that need no event loop, and rkmctl.exe, which talks to units: with src/windows in place of what POSIX has
-# (docs/WINDOWS.md).
+# rkm04.exe, and rkmctl.exe with the window in it: with src/windows in place of what POSIX has (docs/WINDOWS.md).
 find_library(JANSSON jansson REQUIRED)
 find_library(YAML yaml REQUIRED)
 find_library(UV uv_a REQUIRED)
+find_library(LWS websockets_static REQUIRED)
+set(system_libraries psapi user32 advapi32 iphlpapi userenv ws2_32)
 enable_language(RC)
 
 # What POSIX has of these rooms, src/windows has for Windows.
@@ -24,13 +25,14 @@ endfunction()
 add_rooms(rkm04-sim ${SIM_ROOMS} plot run line bus control serve windows)
 get_target_property(sources rkm04-sim SOURCES)
 set(windows_client windows/client_screen.c windows/client_socket.c windows/client_typing.c windows/client_window.c windows/port.c)
-foreach(source ${posix_only} ${windows_client})
+set(windows_window windows/window_devices.c windows/window_system.c)
+foreach(source ${posix_only} ${windows_client} ${windows_window})
   list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${source})
 endforeach()
 set_target_properties(rkm04-sim PROPERTIES SOURCES "${sources};${page_js}")
 use_windows(rkm04-sim)
 set_source_files_properties(line/net_address.c options/host_address.c PROPERTIES COMPILE_OPTIONS "-include;${posix}/sockets.h")
-target_link_libraries(rkm04-sim PUBLIC rkm04-core ${JANSSON} ${YAML} ${UV} psapi user32 advapi32 iphlpapi userenv ws2_32)
+target_link_libraries(rkm04-sim PUBLIC rkm04-core ${JANSSON} ${YAML} ${UV} ${system_libraries})
 
 add_executable(rkm04 main/main.c windows/rkm04.rc)
 use_windows(rkm04)
@@ -44,7 +46,16 @@ add_executable(rkmctl main/rkmctl.c windows/rkm04.rc ${windows_client} ${client_
 use_windows(rkmctl)
 set_source_files_properties(client/client_link.c client/client_pmc.c client/client_pmc_way.c client/client_request.c PROPERTIES
   COMPILE_OPTIONS "-include;${posix}/port_names.h")
-target_link_libraries(rkmctl PRIVATE rkm04-sim -static pthread)
+file(GLOB window_files CONFIGURE_DEPENDS window/*.c)
+foreach(name devices system)
+  list(REMOVE_ITEM window_files ${CMAKE_CURRENT_SOURCE_DIR}/window/window_${name}.c)
+endforeach()
+add_library(rkm04-window-server STATIC ${windows_window} ${window_files})
+use_windows(rkm04-window-server)
+set_source_files_properties(window/window_port_work.c PROPERTIES COMPILE_OPTIONS "-include;${posix}/port_names.h")
+include(${PROJECT_SOURCE_DIR}/cmake/WindowPages.cmake)
+target_link_libraries(rkm04-window-server PUBLIC rkm04-sim ${LWS} ${UV} ${system_libraries} shell32 ole32)
+target_link_libraries(rkmctl PRIVATE rkm04-window-server rkm04-sim -static pthread)
 set_target_properties(rkm04 rkmctl PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 
 # The extension of the Python package, against the stable ABI: python3.dll.
@@ -65,7 +76,7 @@ endif()
 # A zip with the program, the documents and a prompt (cpack --preset windows).
 install(TARGETS rkm04 rkmctl RUNTIME DESTINATION .)
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-prompt.cmd ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-serve.cmd
-  DESTINATION .)
+  ${PROJECT_SOURCE_DIR}/packaging/windows/rkm04-window.cmd DESTINATION .)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD-PARTY.md
   ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION .)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION . PATTERN man EXCLUDE)

@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include "window_server.h"
 
-#include <arpa/inet.h>
 #include <err.h>
 #include <libwebsockets.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "options/options.h"
+#include "text/text.h"
 #include "window_files.h"
 #include "window_inside.h"
-#include "window_system.h"
 
 #define SECURITY_HEADERS \
     "content-security-policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; " \
@@ -19,7 +17,7 @@
     "x-content-type-options: nosniff\r\nreferrer-policy: no-referrer\r\ncross-origin-opener-policy: same-origin\r\n" \
     "cross-origin-resource-policy: same-origin\r\ncache-control: no-store\r\n"
 #define CHUNK 16384u
-#define CONNECTIONS_MAX 64u
+#define CONNECTIONS_MAX 60u /* on Windows, libwebsockets has 64 events, and needs one itself */
 
 struct http_session {
     const struct window_file *file;
@@ -243,20 +241,46 @@ static const struct lws_protocols protocols[] = {
 static bool make_token(char token[WINDOW_TOKEN_SIZE])
 {
     unsigned char random[(WINDOW_TOKEN_SIZE - 1) / 2];
-    if (!window_random(random, sizeof random))
+    if (uv_random(NULL, NULL, random, sizeof random, 0, NULL) != 0)
         return false;
     for (size_t i = 0; i < sizeof random; i++)
         snprintf(token + 2 * i, 3, "%02x", random[i]);
     return true;
 }
 
-/* One address, which a browser can name: it is what Host has to be. */
-static bool is_address(const char *name)
+/* One address, which a browser can name: it is what Host has to be. Returns false if it is none. */
+static bool read_address(const char *name, unsigned port, struct sockaddr_storage *address)
 {
-    struct in6_addr six;
-    struct in_addr four;
-    return (inet_pton(AF_INET, name, &four) == 1 && four.s_addr != INADDR_ANY) ||
-           (inet_pton(AF_INET6, name, &six) == 1 && !IN6_IS_ADDR_UNSPECIFIED(&six));
+    struct sockaddr_in *four = (struct sockaddr_in *)address;
+    struct sockaddr_in6 *six = (struct sockaddr_in6 *)address;
+    *address = (struct sockaddr_storage){0};
+    if (uv_ip4_addr(name, (int)port, four) == 0)
+        return four->sin_addr.s_addr != INADDR_ANY;
+    return strchr(name, '%') == NULL && uv_ip6_addr(name, (int)port, six) == 0 && !IN6_IS_ADDR_UNSPECIFIED(&six->sin6_addr);
+}
+
+static void on_connection(uv_stream_t *listener, int status)
+{
+    (void)listener;
+    (void)status; /* its loop does not run */
+}
+
+/* Can the address be listened at now? libwebsockets would wait for an interface that has it. Returns 0 or an error of libuv. */
+static int try_address(const struct sockaddr_storage *address)
+{
+    uv_loop_t loop;
+    uv_tcp_t listener;
+    int error = uv_loop_init(&loop);
+    if (error != 0)
+        return error;
+    uv_tcp_init(&loop, &listener);
+    error = uv_tcp_bind(&listener, (const struct sockaddr *)address, 0);
+    if (error == 0)
+        error = uv_listen((uv_stream_t *)&listener, 1, on_connection);
+    uv_close((uv_handle_t *)&listener, NULL);
+    uv_run(&loop, UV_RUN_DEFAULT);
+    uv_loop_close(&loop);
+    return error;
 }
 
 bool window_server_begin(struct window *window, const char *address)
@@ -265,25 +289,29 @@ bool window_server_begin(struct window *window, const char *address)
     const char *colon = strrchr(address, ':');
     const char *digits = address[0] == '[' ? address + 1 : address;
     uint64_t number;
+    struct sockaddr_storage place;
     if (colon == NULL || !number_read(colon + 1, 0, UINT16_MAX, &number) || colon == address ||
         snprintf(name, sizeof name, "%.*s", (int)(colon - digits - (address[0] == '[')), digits) >= (int)sizeof name) {
         warnx("--http: expected ADDRESS:PORT, like 127.0.0.1:0, found '%s'", address);
         return false;
     }
-    if (!is_address(name)) {
+    if (!read_address(name, (unsigned)number, &place)) {
         warnx("--http: expected one address of this machine in digits, like 127.0.0.1, found '%s'", name);
         return false;
     }
-    if (!window_address_is_free(name, (unsigned)number)) {
-        warn("cannot listen at %s", address); /* libwebsockets would wait for an interface that has it */
+    int error = try_address(&place);
+    if (error != 0) {
+        warnx("cannot listen at %s: %s", address, uv_strerror(error));
         return false;
     }
     void *loops[] = {&window->loop};
+    const uint64_t family = place.ss_family == AF_INET ? LWS_SERVER_OPTION_DISABLE_IPV6 : 0;
     const struct lws_context_creation_info info = {
         .iface = name, .port = (int)number, .protocols = protocols, .user = window, .foreign_loops = loops,
         .pcontext = &window->server,
         .fd_limit_per_thread = CONNECTIONS_MAX, .timeout_secs = 10, .keepalive_timeout = 10,
-        .options = LWS_SERVER_OPTION_LIBUV | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_VALIDATE_UTF8,
+        .options = LWS_SERVER_OPTION_LIBUV | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_VALIDATE_UTF8 |
+                   family,
         .vhost_name = "window",
     };
     lws_set_log_level(0, NULL);

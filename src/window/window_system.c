@@ -2,16 +2,11 @@
 #include "window_system.h"
 
 #include <err.h>
-#include <errno.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <sys/eventfd.h>
-#include <sys/random.h>
 #include <unistd.h>
-
-#include "options/options.h"
 
 extern char **environ;
 
@@ -60,29 +55,6 @@ void window_show_in_browser(const char *address)
     signal(SIGCHLD, SIG_IGN); /* its end is not awaited */
     if (posix_spawnp(&child, words[0], NULL, NULL, words, environ) != 0)
         warnx("cannot start xdg-open: open the address yourself");
-}
-
-bool window_random(void *bytes, size_t length)
-{
-    return getrandom(bytes, length, 0) == (ssize_t)length;
-}
-
-bool window_address_is_free(const char *name, unsigned port)
-{
-    char digits[8];
-    struct addrinfo *found = NULL;
-    snprintf(digits, sizeof digits, "%u", port);
-    if (host_address_find(name, digits, AF_UNSPEC, 0, &found) != NULL)
-        return false;
-    int one = 1, fd = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    bool bound = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one) == 0 &&
-                 bind(fd, found->ai_addr, found->ai_addrlen) == 0;
-    int error = errno;
-    if (fd >= 0)
-        close(fd);
-    freeaddrinfo(found);
-    errno = error;
-    return bound;
 }
 
 int window_stream_open(uv_loop_t *loop, union window_stream *stream, int fd)

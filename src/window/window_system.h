@@ -4,7 +4,6 @@
 #define RKM04_WINDOW_SYSTEM_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <uv.h>
 
 #define WINDOW_SIGNALS 3u
@@ -29,12 +28,6 @@ void window_watch_input(uv_loop_t *loop, uv_poll_t *input);
 
 /* Show the address in the user's browser; what does not work is reported. */
 void window_show_in_browser(const char *address);
-
-/* Bytes that cannot be guessed. Returns false if the system has none. */
-bool window_random(void *bytes, size_t length);
-
-/* Can the address, in digits, be listened at now? If not, errno says why. */
-bool window_address_is_free(const char *name, unsigned port);
 
 /* A connection to an emulator. */
 union window_stream {

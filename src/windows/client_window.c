@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* client_window.c: rkm04-window is not in the programs for Windows. */
+/* client_window.c: the window is in rkmctl.exe itself. */
 #include "client/client_window.h"
 
-#include "client/client_usage.h"
+#include "window/window.h"
 
 enum exit_status client_window(char **argv)
 {
-    (void)argv;
-    return client_usage("window is not in the program for Windows: run rkmctl on Linux or in WSL (docs/WINDOWS.md)");
+    static char name[] = "rkmctl window"; /* in messages */
+    int count = 1;
+    argv[1] = name;
+    while (argv[count + 1] != NULL)
+        count++;
+    return window_command(count, argv + 1);
 }

@@ -11,11 +11,13 @@
 #include "client/client_port.h"
 #include "client/client_report.h"
 #include "com.h"
+#include "options/host_address.h"
 #include "text/text.h"
 
 #define TCP "tcp:"
 #define LOOK_MS 1 /* between two looks at a COM port */
 #define WRITE_MS 1000
+#define CONNECT_LOOK_MS 20 /* between two looks whether a connection is still wanted */
 
 static HANDLE com = INVALID_HANDLE_VALUE;
 static SOCKET tcp = INVALID_SOCKET;
@@ -69,17 +71,29 @@ static const char *find_service(const char *port)
 /* Wait until the socket can be read or written. Returns the events. */
 static short poll_tcp(short events, int timeout)
 {
-    fd_set in, out;
+    fd_set in, out, refused;
     struct timeval limit = {timeout / 1000, timeout % 1000 * 1000};
     FD_ZERO(&in);
     FD_ZERO(&out);
+    FD_ZERO(&refused);
     if (events & PORT_IN)
         FD_SET(tcp, &in);
     if (events & PORT_OUT)
         FD_SET(tcp, &out);
-    if (select(0, &in, &out, NULL, &limit) <= 0)
+    FD_SET(tcp, &refused);
+    if (select(0, &in, &out, &refused, &limit) <= 0)
         return 0;
-    return (short)((FD_ISSET(tcp, &in) ? PORT_IN : 0) | (FD_ISSET(tcp, &out) ? PORT_OUT : 0));
+    return (short)((FD_ISSET(tcp, &in) || FD_ISSET(tcp, &refused) ? PORT_IN : 0) | (FD_ISSET(tcp, &out) ? PORT_OUT : 0));
+}
+
+/* Wait until the connection is there. Returns false if it is refused, cancelled, or the time is over. */
+static bool await_connection(unsigned timeout_ms)
+{
+    uint64_t end = client_now() + (uint64_t)timeout_ms * 1000u;
+    short found = 0;
+    while (found == 0 && client_now() < end && !port_is_cancelled())
+        found = poll_tcp(PORT_OUT, CONNECT_LOOK_MS);
+    return found == PORT_OUT;
 }
 
 static bool connect_to(const struct addrinfo *address, unsigned timeout_ms)
@@ -90,7 +104,7 @@ static bool connect_to(const struct addrinfo *address, unsigned timeout_ms)
         return false;
     ioctlsocket(tcp, (long)FIONBIO, &on);
     setsockopt(tcp, IPPROTO_TCP, TCP_NODELAY, (const char *)&on, sizeof on);
-    if (connect(tcp, address->ai_addr, (int)address->ai_addrlen) == 0 || poll_tcp(PORT_OUT, (int)timeout_ms) == PORT_OUT)
+    if (connect(tcp, address->ai_addr, (int)address->ai_addrlen) == 0 || await_connection(timeout_ms))
         return true;
     windows_port_close(PORT_FD);
     return false;
@@ -100,12 +114,12 @@ static int open_tcp(const char *port, unsigned timeout_ms)
 {
     const char *name = port + strlen(TCP), *colon = find_service(port);
     bool bracketed = name[0] == '[' && colon[-1] == ']', connected = false;
-    struct addrinfo hints = {.ai_socktype = SOCK_STREAM}, *list = NULL;
+    struct addrinfo *list = NULL;
     char host[256];
-    WSADATA data;
     snprintf(host, sizeof host, "%.*s", (int)(colon - name) - 2 * bracketed, name + bracketed);
-    if (WSAStartup(MAKEWORD(2, 2), &data) != 0 || getaddrinfo(host, colon + 1, &hints, &list) != 0) {
-        client_report("cannot find %s", port);
+    const char *why = host_address_find(host, colon + 1, AF_UNSPEC, timeout_ms, &list);
+    if (why) {
+        client_report("cannot find %s: %s", port, why);
         return -1;
     }
     for (const struct addrinfo *address = list; address && !connected; address = address->ai_next)

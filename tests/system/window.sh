@@ -45,6 +45,16 @@ test_a_port_over_tcp_is_opened_asked_and_stopped() {
     case_of port "$address" "tcp:$(sed -n 's/^READY .*"tcp":"\([^"]*\)".*/\1/p' "$folder/bus.out")"
 }
 
+test_files_of_an_emulator_named_by_a_short_path_are_downloaded_and_removed() {
+    serve bus
+    cd "$folder" || fail "cd"
+    open_window -c bus.control
+    case_of files "$address"
+    kill -TERM $window
+    wait $window || fail "exit status $?"
+    same "" "$(find "$folder" -name 'rkm04-window-*')" "folders left behind"
+}
+
 test_the_program_tools_answer() {
     open_window
     case_of tools "$address"

@@ -23,7 +23,7 @@ class Window:
     def __init__(self, address):
         url = urllib.parse.urlsplit(address)
         self.host, self.port = url.hostname, url.port
-        self.name = f"{self.host}:{self.port}"
+        self.name = url.netloc
         self.token = urllib.parse.parse_qs(url.query)["token"][0]
         self.cookie = f"rkm04-{self.port}={self.token}"
 
@@ -169,7 +169,7 @@ def limits(window):
     same(True, "version" in good.ask(do="hello"), "hello")
 
 
-def nonsense(window):
+def nonsense(window, trouble="not a serial device"):
     """Whatever a page sends, the answer names what is wrong."""
     page = window.socket()
     for text in ("", "{", "[]", "7", '"x"', "{}", '{"do": 7}', '{"do": "shutdown"}', '{"do": "open"}',
@@ -189,7 +189,7 @@ def nonsense(window):
     same("lost", page.ask(do="request", message="01")["outcome"], "without a port")
     same("lost", page.ask(do="stop", node=1)["outcome"], "stop without a port")
     answer = page.ask(do="open", port="/dev/null")
-    same(True, "not a serial device" in answer["trouble"], answer)
+    same(True, trouble in answer["trouble"], answer)
 
 
 def port(window, name):
@@ -252,6 +252,38 @@ def emulator(window):
         same(True, "unknown method" in answer["error"], answer)
 
 
-cases = {"emulator": emulator, "doors": doors, "limits": limits, "nonsense": nonsense, "port": port, "timeout": timeout,
-         "tools": tools}
+def files(window):
+    """A trace that the emulator writes for the window can be downloaded."""
+    page = window.socket()
+
+    def call(method, **params):
+        page.send(json.dumps({"id": 8, "do": "call", "method": method, "params": params}))
+        while True:
+            answer = page.receive()
+            if answer.get("id") == 8:
+                sys.exit(f"{method}: {answer}")
+            if answer.get("event") == "called":
+                return answer["answer"]["result"]
+    call("trace.start", file="short.csv")
+    call("trace.stop")
+    status, _, body = window.get("/download/short.csv", Cookie=window.cookie)
+    same((200, True), (status, len(body) > 0), "the trace")
+
+
+def awaits(window):
+    """Leaves a request that no unit answers."""
+    page = window.socket()
+    page.ask(do="request", node=1, message="01")
+    page.send('{"id": 1, "do": "request", "node": 9, "message": "01", "timeout_ms": 60000}')
+    page.ask(do="hello")
+
+
+def ports(window, *names):
+    """These ports are listed, in this order."""
+    listed = [one["port"] for one in window.socket().ask(do="ports")["ports"]]
+    same(list(names), [name for name in listed if name in names], "ports")
+
+
+cases = {"awaits": awaits, "doors": doors, "emulator": emulator, "files": files, "limits": limits, "nonsense": nonsense,
+         "port": port, "ports": ports, "timeout": timeout, "tools": tools}
 cases[sys.argv[1]](Window(sys.argv[2]), *sys.argv[3:])

@@ -161,6 +161,7 @@ test_the_zip_has_the_program_documents_and_a_prompt() {
     for script in rkm04-prompt.cmd rkm04-serve.cmd; do
         same "$("$RKM04" --version)" "$(wine_in "$prefix" cmd /c "$script" --version 2>/dev/null | tr -d '\r')" "$script"
     done
+    same "$("$RKMCTL" --version)" "$(wine_in "$prefix" cmd /c rkm04-window.cmd --version 2>/dev/null | tr -d '\r')" "the window"
 }
 
 # rkmctl.exe at $port of the unit $folder/bus.

@@ -61,9 +61,6 @@ test_what_is_wrong_is_refused_alike() {
         # shellcheck disable=SC2086
         alike $? $arguments
     done
-    wine_in "$prefix" "$RKMCTL_EXE" window >window.out 2>window.err
-    same 2 $? "exit status of window"
-    holds "$(<window.err)" "docs/WINDOWS.md" "the message"
 }
 
 test_it_changes_what_rkmctl_changes() {

@@ -10,7 +10,7 @@ struct pollfd {
     short events, revents;
 };
 
-/* Of the port that rkmctl has open, and of nothing else, for a time; or of standard input, without waiting. */
+/* For a time of the port that rkmctl has open, with the flag that ends it (port.h); of standard input, without waiting. */
 int poll(struct pollfd *fds, unsigned long count, int timeout);
 
 #endif
