@@ -132,24 +132,32 @@ static bool check_timeouts(const struct port *port)
     return expect(timed_read(port, all, VERSION_FRAME, &took) == VERSION_FRAME, "a read that waits for all bytes");
 }
 
-/* A read ends after a gap between two bytes. */
+/* A read ends after a gap between two bytes; not within the answer, unless the machine is so busy that there is one. */
 static bool check_gap(const struct port *port)
 {
-    static const COMMTIMEOUTS gap = {200, 0, LIMIT_MS, 0, 0};
-    uint64_t took;
-    return send_version(port) && expect(timed_read(port, gap, 64, &took) == VERSION_FRAME && took < LIMIT_MS,
-                                        "a read that ends after a gap of 200 ms");
+    static const COMMTIMEOUTS gap = {200, 0, LIMIT_MS, 0, 0}, constant = {0, 0, 2000, 0, 0};
+    uint64_t took, rest;
+    for (unsigned tries = 0; tries < 10; tries++) {
+        if (!send_version(port))
+            return false;
+        DWORD length = timed_read(port, gap, 64, &took);
+        if (length == VERSION_FRAME && took < LIMIT_MS)
+            return true;
+        if (length < VERSION_FRAME)
+            timed_read(port, constant, VERSION_FRAME - length, &rest);
+    }
+    return expect(false, "a read that ends after a gap of 200 ms");
 }
 
 /* A read waits, and ends with the first byte. */
 static bool check_first_byte(const struct port *port)
 {
-    static const COMMTIMEOUTS first = {MAXDWORD, MAXDWORD, 5000, 0, 0};
+    static const COMMTIMEOUTS first = {MAXDWORD, MAXDWORD, LIMIT_MS, 0, 0};
     uint64_t took;
     if (!send_version(port))
         return false;
     DWORD length = timed_read(port, first, 64, &took);
-    return expect(length > 0 && length <= VERSION_FRAME && took < 5000, "a read that ends with the first byte");
+    return expect(length > 0 && length <= VERSION_FRAME && took < LIMIT_MS, "a read that ends with the first byte");
 }
 
 /* ---- Overlapped ----------------------------------------------------------------------------------------------------- */
