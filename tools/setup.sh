@@ -99,14 +99,17 @@ setup_packages() {
 }
 
 # setup_node_packages SOURCE FOLDER MODULE: the npm packages of SOURCE/package-lock.json in the folder, MODULE among them; nothing
-# is compiled.
+# is compiled. Tests that run at the same time want the same: one at a time.
 setup_node_packages() {
-    command -v node >/dev/null && command -v npm >/dev/null || return
-    cmp -s "$1/package-lock.json" "$2/package-lock.json" &&
-        NODE_PATH=$2/node_modules node -e "require('$3')" 2>/dev/null && return
-    mkdir -p "$2" && cp "$1/package.json" "$1/package-lock.json" "$2" &&
-        timeout 120 npm ci --prefix "$2" --no-audit --no-fund --ignore-scripts </dev/null >"$2/npm.log" 2>&1 &&
-        NODE_PATH=$2/node_modules node -e "require('$3')" 2>>"$2/npm.log"
+    command -v node >/dev/null && command -v npm >/dev/null && mkdir -p "$2" || return
+    (
+        exec 9>"$2.lock" && flock 9
+        cmp -s "$1/package-lock.json" "$2/package-lock.json" &&
+            NODE_PATH=$2/node_modules node -e "require('$3')" 2>/dev/null && exit
+        cp "$1/package.json" "$1/package-lock.json" "$2" &&
+            timeout 500 npm ci --prefix "$2" --no-audit --no-fund --ignore-scripts </dev/null >"$2/npm.log" 2>&1 &&
+            NODE_PATH=$2/node_modules node -e "require('$3')" 2>>"$2/npm.log"
+    )
 }
 
 # setup_serialport FOLDER: node-serialport, as tests/system/node/package-lock.json has it, in the folder.

@@ -60,6 +60,12 @@ alone() {
     unshare --net "${map[@]}" "$@"
 }
 
+# make_in FOLDER COMMAND...: the command makes what is in this folder of the build, which belongs to several tests: one at a time.
+make_in() {
+    mkdir -p "$1"
+    flock "$1.lock" "${@:2}"
+}
+
 # soon WHAT COMMAND...: the command succeeds before the time limit.
 soon() {
     local what=$1 end=$((SECONDS + limit))

@@ -15,7 +15,7 @@ for tool in qemu-system-arm arm-none-eabi-gcc; do
     command -v "$tool" >/dev/null || skip_all "$tool not found: apt-get install qemu-system-arm gcc-arm-none-eabi"
 done
 firmware=${BUILD:-/tmp}/firmware_cib
-make -s -C "$tree/src/port/mps2_an385" DEVICE=cib SILENCE=100000 OUT="$firmware" >/dev/null || exit 1
+make_in "$firmware" make -s -C "$tree/src/port/mps2_an385" DEVICE=cib SILENCE=100000 OUT="$firmware" >/dev/null || exit 1
 
 client() { timeout 200 "$python" -W ignore "$here/cib_client.py" "$1" "$line"; }
 

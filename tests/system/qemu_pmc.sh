@@ -15,7 +15,7 @@ done
 # of a frame may come with gaps of 25 ms between them.
 power_up() {
     firmware=${BUILD:-/tmp}/firmware_$1
-    make -s -C "$tree/src/port/mps2_an385" OUT="$firmware" "${@:2}" >"$folder/make.out" 2>&1 ||
+    make_in "$firmware" make -s -C "$tree/src/port/mps2_an385" OUT="$firmware" "${@:2}" >"$folder/make.out" 2>&1 ||
         fail "the firmware is not built: $(<"$folder/make.out")"
     board qemu-system-arm -M mps2-an385 -icount shift=5 -d unimp,guest_errors -D "$folder/pins"
 }

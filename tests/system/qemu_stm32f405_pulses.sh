@@ -12,7 +12,7 @@ here=$tree/tests/system/qemu
 build=${BUILD:-/tmp}
 firmware stm32f405 "qemu-system-arm gcc-arm-none-eabi libnewlib-arm-none-eabi" qemu-system-arm arm-none-eabi-gcc python3
 elf=$build/firmware_stm32f405_traced/firmware.elf
-make -s -C "$tree/src/port/stm32f405" OUT="${elf%/*}" TRACE="$here/trace.c" >/dev/null || exit 1
+make_in "${elf%/*}" make -s -C "$tree/src/port/stm32f405" OUT="${elf%/*}" TRACE="$here/trace.c" >/dev/null || exit 1
 
 # drive TASK ARGUMENTS...: what it reports is in $said.
 drive() { exits 0 timeout 500 python3 "$here/drive.py" "$1" "$elf" "${@:2}"; }

@@ -39,6 +39,26 @@ test_only_what_is_missing_is_installed() {
     same 2 "$(wc -l <"$folder/calls")" "calls of apt-get: update and install"
 }
 
+# npm takes its time, and knows no folder in which another one is at work.
+test_packages_of_node_are_installed_by_one_at_a_time() {
+    local at
+    mkdir "$folder/bin" "$folder/source"
+    printf '#!/bin/sh\necho begin >>"%s"; sleep 0.5; mkdir "$3/module"; echo end >>"%s"\n' "$folder/calls" "$folder/calls" \
+        >"$folder/bin/npm"
+    printf '#!/bin/sh\ntest -d "$(dirname "$NODE_PATH")/module"\n' >"$folder/bin/node"
+    chmod +x "$folder"/bin/*
+    touch "$folder"/source/package{,-lock}.json
+    for at in 1 2 3; do
+        PATH=$folder/bin:$PATH start "one$at" bash -c '. "$1/setup.sh"; setup_node_packages "$2/source" "$2/packages" module' \
+            one "$tools" "$folder"
+    done
+    for at in "${processes[@]}"; do
+        status_of "$at"
+        same 0 "$status" "exit status"
+    done
+    same "begin end" "$(xargs <"$folder/calls")" "what npm did"
+}
+
 test_running_does_not_need_what_only_tests_need() {
     stand_ins socat 0 debian
     exits 0 set_up run

@@ -11,7 +11,7 @@ firmware() {
         skip_all "$tool not found: apt-get install $packages"
     done
     firmware=${BUILD:-/tmp}/firmware_$port
-    make -s -C "$tree/src/port/$port" OUT="$firmware" >/dev/null || exit 1
+    make_in "$firmware" make -s -C "$tree/src/port/$port" OUT="$firmware" >/dev/null || exit 1
 }
 
 # board QEMU...: power up a board; its line is $line, its monitor $folder/monitor.
