@@ -37,7 +37,7 @@ test_a_signal_during_the_start_leaves_no_files() {
     local signal
     mkdir "$folder/many"
     for signal in HUP TERM INT; do
-        start many "$RKM04" serve --lines 256 --link "$folder/many/bus%l" --control "$folder/many/control"
+        start many "$RKM04" serve --lines 200 --link "$folder/many/bus%l" --control "$folder/many/control"
         soon "the first file is there" test -e "$folder/many/bus0.lock"
         kill -$signal "$started"
         status_of "$started"
