@@ -27,6 +27,9 @@ def run_in_place(path: str, arguments: List[str]) -> NoReturn:
     os.execv(path, arguments)
 
 
+CONNECT_S = 30.0
+"""s of real time for an emulator that does not accept."""
+
 quote = shlex.quote
 """A word as a shell takes it."""
 
@@ -39,6 +42,7 @@ def command_with(name: str, value: str, command: str) -> str:
 def connect_socket(path: str) -> socket.socket:
     """A Unix socket. A path of one has at most 107 bytes: a longer one is reached through its folder."""
     made, folder = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM), -1
+    made.settimeout(CONNECT_S)
     try:
         if len(os.fsencode(path)) > 107:
             folder = os.open(os.path.dirname(path), os.O_PATH)

@@ -11,6 +11,7 @@ import stat
 import subprocess
 import tempfile
 import threading
+import time as real_time
 from types import TracebackType
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Union
 
@@ -21,11 +22,18 @@ from ._programs import find_program
 from ._remote_host import PATIENCE, TCP, RemoteHost, TcpHost
 from ._time import Time, to_us
 
-class ControlSocket(Transport):
-    """JSON-RPC, one object a line. path: of the socket, or of the control file of a TCP port."""
+LASTING = frozenset({"advance", "wait", "restore", "cnc.exchange"})
+"""Methods that take as long as there is to do."""
 
-    def __init__(self, path: str, link: Optional[str]) -> None:
+
+class ControlSocket(Transport):
+    """JSON-RPC, one object a line. path: of the socket, or of the control file of a TCP port. timeout: see connect()."""
+
+    def __init__(self, path: str, link: Optional[str], timeout: Optional[float] = None) -> None:
+        if timeout is not None and not timeout > 0:
+            raise ValueError(f"timeout: expected s of real time above 0, or None, found {timeout!r}")
         self._path = path
+        self._timeout = timeout
         self._link = link
         self._next = 0
         self._rest = b""
@@ -37,7 +45,11 @@ class ControlSocket(Transport):
         except OSError as error:
             raise Error(f"expected the control socket of a running rkm04 serve at {path}, found: {error.strerror or error}") \
                 from None
-        self.framing: str = self.call("units", {}).get("framing", "hdlc")
+        try:
+            self.framing: str = self.call("units", {}).get("framing", "hdlc")
+        except BaseException:
+            self._socket.close()
+            raise
 
     def _enter(self, path: str) -> socket.socket:
         """The TCP port of a control file, with its token shown."""
@@ -46,7 +58,7 @@ class ControlSocket(Transport):
         host, _, port = parts[0][len("tcp:"):].rpartition(":") if len(parts) == 2 else ("", "", "")
         if not parts or not parts[0].startswith("tcp:") or not port.isdecimal():
             raise Error(f"expected the control socket of a running rkm04 serve at {path}, found another file")
-        self._socket = socket.create_connection((host.strip("[]"), int(port)))
+        self._socket = socket.create_connection((host.strip("[]"), int(port)), PATIENCE)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         try:
             self.call("authenticate", {"token": parts[1]})
@@ -55,8 +67,9 @@ class ControlSocket(Transport):
             raise
         return self._socket
 
-    def _line(self) -> Dict[str, Any]:
+    def _line(self, end: Optional[float]) -> Dict[str, Any]:
         while b"\n" not in self._rest:
+            self._socket.settimeout(None if end is None else max(0.001, end - real_time.monotonic()))
             part = self._socket.recv(65536)
             if not part:
                 raise Error(f"expected an answer from {self._path}, found that rkm04 serve has ended")
@@ -65,18 +78,30 @@ class ControlSocket(Transport):
         answer: Dict[str, Any] = json.loads(line)
         return answer
 
+    def _send(self, line: bytes, limit: Optional[float]) -> None:
+        self._socket.settimeout(limit)
+        try:
+            self._socket.sendall(line)
+        except socket.timeout:
+            self._socket.close()  # only a part of the request may have gone
+            raise
+
     def call(self, method: str, params: Dict[str, Any]) -> Dict[str, Any]:
         self._next += 1
         request = {"jsonrpc": "2.0", "id": self._next, "method": method, "params": params}
+        limit = self._timeout if self._timeout is not None or method in LASTING else PATIENCE
+        end = None if limit is None else real_time.monotonic() + limit
         try:
-            self._socket.sendall(json.dumps(request).encode() + b"\n")
+            self._send(json.dumps(request).encode() + b"\n", limit)
             while True:
-                answer = self._line()
+                answer = self._line(end)
                 if answer.get("id") == self._next:
                     break
                 self._take(answer)
             while method == "shutdown" and "result" in answer and self._socket.recv(65536):
                 pass  # it has ended when the connection has
+        except socket.timeout:
+            raise Error(f"expected an answer from {self._path} to {method} within {limit:g} s of real time, found none") from None
         except OSError as error:
             raise Error(f"expected an answer from {self._path}, found: {error.strerror or error}") from None
         if "error" in answer:
@@ -188,17 +213,19 @@ class RemoteBus(Bus):
             process.end()
 
 
-def connect(path: "Union[str, os.PathLike[str]]", link: "Union[None, str, os.PathLike[str]]" = None) -> RemoteBus:
+def connect(path: "Union[str, os.PathLike[str]]", link: "Union[None, str, os.PathLike[str]]" = None,
+            timeout: Optional[float] = None) -> RemoteBus:
     """The bus of a running `rkm04 serve`, by the path of its control socket or control file.
 
     link: the link to its pty, for send(), exchange() and host, or "socket://HOST:PORT", its TCP port; if left out, the path
-    without ".control" if that is there.
+    without ".control" if that is there. timeout: s of real time that a request may take before Error is raised; if left out,
+    30 s, and no limit for advance(), wait(), restore() and the exchange of cells of a CNC872.
     """
     path = os.fspath(path)
     if link is None and path.endswith(".control") and os.path.exists(path[:-len(".control")]):
         link = path[:-len(".control")]
     link = None if link is None else os.fspath(link)
-    return RemoteBus(ControlSocket(path, link), link)
+    return RemoteBus(ControlSocket(path, link, timeout), link)
 
 
 class Process:
@@ -258,7 +285,8 @@ class Process:
 def serve(units: Union[int, str] = 1, *, clock: str = "real", device: str = "rkm04", framing: Optional[str] = None,
           plant: "Union[None, str, os.PathLike[str]]" = None, seed: Optional[int] = None,
           readings: Optional[Mapping[str, Any]] = None, version_text: Optional[str] = None, turnaround: Optional[Time] = None,
-          record: "Union[None, str, os.PathLike[str]]" = None, arguments: Sequence[str] = ()) -> RemoteBus:
+          record: "Union[None, str, os.PathLike[str]]" = None, arguments: Sequence[str] = (),
+          timeout: Optional[float] = None) -> RemoteBus:
     """Start `rkm04 serve` on a free link, on Windows at a free TCP port, and wait until it is ready. It ends with the `with`
     block, or with close().
 
@@ -267,7 +295,7 @@ def serve(units: Union[int, str] = 1, *, clock: str = "real", device: str = "rkm
             assert bus.unit(2).motor(1).position == 500
 
     clock: "real", "xN" (N times as fast), "max", "stepped". plant, record: paths of files. arguments: more options of
-    `rkm04 serve`. The rest: as for Bus. Raises Error with what rkm04 has said if it does not start.
+    `rkm04 serve`. timeout: as for connect(). The rest: as for Bus. Raises Error with what rkm04 has said if it does not start.
     """
     options = ["--tcp", "127.0.0.1:0", "--rfc2217", "127.0.0.1:0", "--node", str(units), "--clock", clock, "--device", device]
     given = {"--framing": framing, "--plant": plant, "--seed": seed, "--version-text": version_text, "--record": record,
@@ -280,7 +308,7 @@ def serve(units: Union[int, str] = 1, *, clock: str = "real", device: str = "rkm
     process = Process([*options, *arguments])
     try:
         link = process.link or f"{TCP}{process.ready['tcp']}"
-        return RemoteBus(ControlSocket(process.ready["control"], link), link, process)
+        return RemoteBus(ControlSocket(process.ready["control"], link, timeout), link, process)
     except BaseException:
         process.end()
         raise

@@ -15,9 +15,11 @@ Time = Union[int, str, "timedelta"]
 
 EXPECTED = 'expected a whole number of us, a text as in "250ms", or a timedelta'
 
+LONGEST = 10 ** 15  # us
+
 
 def to_us(time: Time) -> int:
-    """The time in us. Raises ValueError for a negative time or a text that is none, TypeError for anything else."""
+    """The time in us. Raises ValueError for a time out of its range or a text that is none, TypeError for anything else."""
     if isinstance(time, str):
         return _sim.time(time)
     if isinstance(time, bool):
@@ -28,6 +30,6 @@ def to_us(time: Time) -> int:
         us = (time.days * 86400 + time.seconds) * 1_000_000 + time.microseconds
     else:
         raise TypeError(f"{EXPECTED}, found {time!r}")
-    if us < 0:
-        raise ValueError(f"expected a time of 0 us or more, found {us} us")
+    if not 0 <= us <= LONGEST:
+        raise ValueError(f"expected a time from 0 to 10^15 us (10^9 s), found {us} us")
     return us

@@ -55,6 +55,14 @@ def test_advance_refuses_what_is_no_time(bus, time):
     assert bus.now == 0
 
 
+@pytest.mark.parametrize("time", [10 ** 17, 10 ** 30, -1, timedelta(days=99999)])
+def test_times_that_are_too_long_are_refused_with_the_range(bus, time):
+    for refused in [lambda: bus.advance(time), lambda: bus.wait({"idle": True}, limit=time)]:
+        with pytest.raises(ValueError, match=r"from 0 to 10\^15 us \(10\^9 s\)"):
+            refused()
+    assert bus.now == 0
+
+
 def test_inputs_and_outputs(bus):
     bus.di[3] = 1
     bus.di[8] = True

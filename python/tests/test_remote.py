@@ -5,6 +5,7 @@ import importlib.util
 import os
 import pathlib
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -202,6 +203,39 @@ def test_an_emulator_that_was_asked_to_end_has_ended(tmp_path):
         assert process.stdout.readline().startswith(b"READY ")
         rkm04.connect(tmp_path / "control").call("shutdown")
         assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="Windows stops no process")
+def test_an_emulator_that_is_stopped_is_waited_for_within_the_timeout(stoppable):
+    control, process = stoppable
+    none = pytest.raises(rkm04.Error, match=r"within 0.3 s of real time, found none")
+    with rkm04.connect(control, timeout=0.3) as bus:
+        process.send_signal(signal.SIGSTOP)
+        for request in [lambda: bus.call("advance", ticks=1_000_000), lambda: bus.now,
+                        lambda: rkm04.connect(control, timeout=0.3)]:
+            with none:
+                request()
+        process.send_signal(signal.SIGCONT)
+        assert bus.advance("1s") == 2_000_000  # late answers are not taken for those of later requests
+        process.send_signal(signal.SIGSTOP)
+        with none:
+            bus.plant.set("\n" * 900_000)
+        process.send_signal(signal.SIGCONT)
+        with pytest.raises(rkm04.Error, match="expected an answer"):
+            bus.advance("1s")
+
+
+@pytest.fixture
+def stoppable():
+    with rkm04.serve(clock="stepped") as bus:
+        yield bus._process.ready["control"], bus._process.process
+        bus._process.process.send_signal(signal.SIGCONT)
+
+
+@pytest.mark.parametrize("timeout", [0, -1.0, float("nan")])
+def test_a_timeout_that_is_none_is_refused(timeout):
+    with pytest.raises(ValueError, match="timeout: expected s of real time above 0"):
+        rkm04.serve(timeout=timeout)
 
 
 def test_it_ends_with_the_block():

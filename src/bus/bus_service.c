@@ -7,7 +7,8 @@
 
 #include "command/command.h"
 
-#define LOGGED_MAX 200u /* clients that come and go, in the log */
+#define LOGGED_MAX 200u             /* clients that come and go, in the log */
+#define ANSWERS_MAX (SERVICE_OUT_MAX / 4u) /* bytes; then the client has to read before more of what it has sent is executed */
 
 struct one {
     struct bus_services *all;
@@ -68,12 +69,16 @@ static unsigned on_open(void *context, const char *peer)
     return client;
 }
 
-static void on_bytes(void *context, unsigned client, const uint8_t *bytes, size_t length)
+static size_t on_bytes(void *context, unsigned client, const uint8_t *bytes, size_t length)
 {
     struct one *one = context;
     char hex[2u * SERVICE_IN + 1u];
     *put_hex(hex, bytes, length) = '\0';
-    json_decref(call(one->all, "service.bytes", json_pack("{s:i, s:s}", "client", (int)client, "hex", hex)));
+    json_t *result = call(one->all, "service.bytes",
+                          json_pack("{s:i, s:s, s:i}", "client", (int)client, "hex", hex, "room", (int)ANSWERS_MAX));
+    const size_t taken = result ? (size_t)json_integer_value(json_object_get(result, "taken")) : length;
+    json_decref(result);
+    return taken;
 }
 
 static void on_closed(void *context, unsigned client, const char *why)

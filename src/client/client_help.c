@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "client_help.h"
-#include "text/text.h"
 
 #include <stdio.h>
 #include <string.h>
+
+#include "client_port.h"
+#include "text/text.h"
 
 #define UNIT_OPTIONS "  -p PORT, -n NODE, --timeout=MS, --framing=NAME, --json"
 #define MOTOR_OPTIONS "  -m MOTOR\n" UNIT_OPTIONS
@@ -12,11 +14,11 @@
 static const struct help {
     const char *name, *usage, *text, *options, *examples;
 } commands[] = {
-    {"version", "version", "The unit's version text.", UNIT_OPTIONS, "  rkmctl -p /dev/ttyUSB0 version\n"},
+    {"version", "version", "The unit's version text.", UNIT_OPTIONS, "  rkmctl -p " CLIENT_PORT_EXAMPLE " version\n"},
     {"set", "set TEXT",
      "Send a program text in one message; the unit begins to execute it. If it\n"
      "refuses the text, its flag and the place are shown.",
-     "  --allow-overflow\n" MOTOR_OPTIONS, "  rkmctl -m 2 set '\\ S100 V1000 A2000 F5000 R'\n"},
+     "  --allow-overflow\n" MOTOR_OPTIONS, "  rkmctl -m 2 set \"\\ S100 V1000 A2000 F5000 R\"\n"},
     {"send", "send FILE",
      "Check a program file and send it, in several messages if it is long; - is\n"
      "standard input.",
@@ -45,7 +47,8 @@ static const struct help {
      "  parameters get|put FILE    the parameters likewise\n"
      "  store [AXES]               keep program and parameters in flash likewise",
      "  -p PORT, --face=NAME, -n NODE, --baud=RATE\n  -c PATH, -u UNIT, --timeout=MS, --json",
-     "  rkmctl -p /dev/ttyUSB0 pmc move x=1000 y=-5\n  rkmctl -p /dev/ttyUSB0 --face modbus pmc program put drill.pmc\n"},
+     "  rkmctl -p " CLIENT_PORT_EXAMPLE " pmc move x=1000 y=-5\n"
+     "  rkmctl -p " CLIENT_PORT_EXAMPLE " --face modbus pmc program put drill.pmc\n"},
     {"state", "state", "Everything about the unit, or about all units.", "  -u UNIT\n" EMULATOR_OPTIONS,
      "  rkmctl state --json\n"},
     {"watch", "watch", "The front panel of the units, live.", "  --once\n" EMULATOR_OPTIONS, "  rkmctl watch\n"},
@@ -54,9 +57,9 @@ static const struct help {
      "Wait until the condition holds; exit status 3 if it does not within --limit of\n"
      "virtual time. `rkmctl --help' lists the conditions.",
      "  --limit=TIME, --advance, -u UNIT\n" EMULATOR_OPTIONS,
-     "  rkmctl wait 'm1.position>=5000' --limit 10s\n  rkmctl wait --advance idle\n"},
+     "  rkmctl wait \"m1.position>=5000\" --limit 10s\n  rkmctl wait --advance idle\n"},
     {"advance", "advance TIME|CONDITION", "Advance a stepped clock by a time, or until a condition holds.",
-     "  --limit=TIME, -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl advance 250ms\n  rkmctl advance 'm1.idle' --limit 1min\n"},
+     "  --limit=TIME, -u UNIT\n" EMULATOR_OPTIONS, "  rkmctl advance 250ms\n  rkmctl advance m1.idle --limit 60s\n"},
     {"events", "events [KIND...] [motor=N] [cell=NAME...] [count=N]",
      "Print events, a line each; exit status 3 if there are fewer than count within\n"
      "--limit. docs/CONTROL.md describes the kinds.",
@@ -107,7 +110,7 @@ static const struct help {
      "begins with a small letter is a command, any other is program text for the\n"
      "present motor; `node N' and `motor M' choose. With -f FILE the commands of a\n"
      "file.",
-     "  -f FILE and those of all commands", "  rkmctl -p /dev/ttyUSB0 shell\n  rkmctl shell -f check.txt\n"},
+     "  -f FILE and those of all commands", "  rkmctl -p " CLIENT_PORT_EXAMPLE " shell\n  rkmctl shell -f check.txt\n"},
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])

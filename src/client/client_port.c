@@ -77,7 +77,8 @@ static bool make_raw(int fd)
 static bool set_up_terminal(int fd, const char *path, unsigned timeout_ms)
 {
     if (!isatty(fd)) {
-        client_report("%s is not a serial device: expected one like /dev/ttyUSB0, a pseudo terminal, or tcp:HOST:PORT", path);
+        client_report("%s is not a serial device: expected one like " CLIENT_PORT_EXAMPLE ", a pseudo terminal, or tcp:HOST:PORT",
+                      path);
         return false;
     }
     if (!lock_terminal(fd, timeout_ms)) {

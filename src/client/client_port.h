@@ -6,6 +6,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* A port in help texts; on Windows another one. */
+#ifndef CLIENT_PORT_EXAMPLE
+#define CLIENT_PORT_EXAMPLE "/dev/ttyUSB0"
+#endif
+
 /* Ticks of 1 us on a monotonic clock. */
 uint64_t client_now(void);
 

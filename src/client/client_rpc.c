@@ -18,6 +18,8 @@
 #define LINE_MAX_BYTES (64u << 20) /* longest object believed to be an answer */
 #define ROOM_FIRST 65536u
 #define ENTRY_MS 10000 /* for the answer to the token */
+#define SEND_MS 10000  /* for a request to be taken */
+#define NOTE_MS 5000   /* then a person at the terminal is informed */
 
 /* ---- The default ------------------------------------------------------------------------------------------------------ */
 
@@ -145,23 +147,67 @@ void client_rpc_close(struct client_rpc *rpc)
     rpc->begin = rpc->length = rpc->room = 0;
 }
 
-static bool write_all(struct client_rpc *rpc, const char *bytes, size_t length)
+/* ---- Patience --------------------------------------------------------------------------------------------------------- */
+
+/* How long something is waited for: times of client_now(). */
+struct patience {
+    uint64_t end, note; /* UINT64_MAX: none */
+};
+
+/* timeout_ms: CLIENT_RPC_FOREVER: no limit. */
+static struct patience begin_patience(int timeout_ms)
+{
+    const uint64_t now = client_now();
+    return (struct patience){timeout_ms < 0 ? UINT64_MAX : now + (uint64_t)timeout_ms * 1000u, UINT64_MAX};
+}
+
+/* The same for one request; if a person watches, with a note. */
+static struct patience begin_request(const struct client_rpc *rpc, int timeout_ms)
+{
+    struct patience patience = begin_patience(timeout_ms);
+    if (!rpc->quiet && isatty(STDERR_FILENO))
+        patience.note = client_now() + NOTE_MS * 1000u;
+    return patience;
+}
+
+/* How long to wait next, in ms; 0: the time is over. */
+static int next_wait(const struct client_rpc *rpc, struct patience *patience)
+{
+    const uint64_t now = client_now();
+    if (now >= patience->note && now < patience->end) {
+        warnx("no answer from %s yet; Ctrl-C ends the wait, --timeout MS limits it", rpc->path);
+        patience->note = UINT64_MAX;
+    }
+    const uint64_t end = patience->note < patience->end ? patience->note : patience->end;
+    if (end == UINT64_MAX)
+        return CLIENT_RPC_FOREVER;
+    return now < end ? (int)((end - now + 999u) / 1000u) : 0;
+}
+
+/* ---- What goes -------------------------------------------------------------------------------------------------------- */
+
+/* Returns CLIENT_RPC_RESULT if all has gone. */
+static enum client_rpc_outcome write_all(struct client_rpc *rpc, const char *bytes, size_t length, struct patience *patience)
 {
     while (length > 0) {
         ssize_t done = client_socket_write(rpc->fd, bytes, length);
-        if (done < 0 && errno == EINTR)
-            continue;
-        if (done < 0) {
+        if (done >= 0) {
+            bytes += done;
+            length -= (size_t)done;
+        } else if (errno == EAGAIN) {
+            const int left = next_wait(rpc, patience);
+            if (left == 0)
+                return CLIENT_RPC_NOTHING;
+            client_socket_wait_room(rpc->fd, left);
+        } else if (errno != EINTR) {
             report(rpc, "lost the connection to the emulator at %s: %s", rpc->path, strerror(errno));
-            return false;
+            return CLIENT_RPC_LOST;
         }
-        bytes += done;
-        length -= (size_t)done;
     }
-    return true;
+    return CLIENT_RPC_RESULT;
 }
 
-bool client_rpc_send(struct client_rpc *rpc, const char *method, json_t *params)
+static enum client_rpc_outcome send_request(struct client_rpc *rpc, const char *method, json_t *params, struct patience *patience)
 {
     json_t *request = json_pack("{s:s, s:I, s:s, s:o*}", "jsonrpc", "2.0", "id", ++rpc->id, "method", method, "params", params);
     char *text = request != NULL ? json_dumps(request, JSON_COMPACT) : NULL;
@@ -170,10 +216,19 @@ bool client_rpc_send(struct client_rpc *rpc, const char *method, json_t *params)
         text[length] = '\n'; /* in place of the end */
     else
         report(rpc, "%s", strerror(ENOMEM));
-    bool sent = text != NULL && write_all(rpc, text, length + 1);
+    enum client_rpc_outcome outcome = text != NULL ? write_all(rpc, text, length + 1, patience) : CLIENT_RPC_LOST;
     free(text);
     json_decref(request);
-    return sent;
+    return outcome;
+}
+
+bool client_rpc_send(struct client_rpc *rpc, const char *method, json_t *params)
+{
+    struct patience patience = begin_request(rpc, SEND_MS);
+    enum client_rpc_outcome outcome = send_request(rpc, method, params, &patience);
+    if (outcome == CLIENT_RPC_NOTHING)
+        report(rpc, "the emulator at %s takes no requests", rpc->path);
+    return outcome == CLIENT_RPC_RESULT;
 }
 
 /* ---- What comes ------------------------------------------------------------------------------------------------------- */
@@ -219,7 +274,7 @@ static enum client_rpc_outcome read_bytes(struct client_rpc *rpc, int timeout_ms
         return CLIENT_RPC_LOST;
     }
     ssize_t length = client_socket_read(rpc->fd, rpc->buffer + rpc->length, rpc->room - rpc->length);
-    if (length < 0 && errno == EINTR)
+    if (length < 0 && (errno == EINTR || errno == EAGAIN))
         return CLIENT_RPC_NOTHING;
     if (length <= 0) {
         report(rpc, "the emulator at %s has ended the connection", rpc->path);
@@ -267,10 +322,9 @@ static bool handle_line(struct client_rpc *rpc, const char *line, enum client_rp
     return ours;
 }
 
-/* Take what comes up to `timeout_ms`: until the answer is there or, with `any`, an event. */
-static enum client_rpc_outcome receive_until(struct client_rpc *rpc, int timeout_ms, json_t **json, bool any)
+/* Take what comes: until the answer is there or, with `any`, an event. */
+static enum client_rpc_outcome receive_until(struct client_rpc *rpc, struct patience *patience, json_t **json, bool any)
 {
-    uint64_t end = client_now() + (uint64_t)(timeout_ms < 0 ? 0 : timeout_ms) * 1000u;
     *json = NULL;
     for (;;) {
         enum client_rpc_outcome outcome = CLIENT_RPC_NOTHING;
@@ -281,8 +335,7 @@ static enum client_rpc_outcome receive_until(struct client_rpc *rpc, int timeout
         }
         if (event && any)
             return CLIENT_RPC_RESULT;
-        uint64_t now = client_now();
-        int left = timeout_ms < 0 ? CLIENT_RPC_FOREVER : now < end ? (int)((end - now + 999u) / 1000u) : 0;
+        const int left = next_wait(rpc, patience);
         outcome = read_bytes(rpc, left);
         if (outcome == CLIENT_RPC_LOST || (outcome == CLIENT_RPC_NOTHING && left == 0))
             return outcome;
@@ -291,19 +344,23 @@ static enum client_rpc_outcome receive_until(struct client_rpc *rpc, int timeout
 
 enum client_rpc_outcome client_rpc_receive(struct client_rpc *rpc, int timeout_ms, json_t **json)
 {
-    return receive_until(rpc, timeout_ms, json, false);
+    struct patience patience = begin_patience(timeout_ms);
+    return receive_until(rpc, &patience, json, false);
 }
 
 enum client_rpc_outcome client_rpc_listen(struct client_rpc *rpc, int timeout_ms, json_t **json)
 {
-    return receive_until(rpc, timeout_ms, json, true);
+    struct patience patience = begin_patience(timeout_ms);
+    return receive_until(rpc, &patience, json, true);
 }
 
 enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms,
                                         json_t **json)
 {
+    struct patience patience = begin_request(rpc, timeout_ms);
     *json = NULL;
-    return client_rpc_send(rpc, method, params) ? client_rpc_receive(rpc, timeout_ms, json) : CLIENT_RPC_LOST;
+    enum client_rpc_outcome outcome = send_request(rpc, method, params, &patience);
+    return outcome == CLIENT_RPC_RESULT ? receive_until(rpc, &patience, json, false) : outcome;
 }
 
 bool client_rpc_ends(struct client_rpc *rpc, int timeout_ms)

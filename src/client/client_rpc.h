@@ -34,18 +34,20 @@ enum client_rpc_outcome {
  * `rkm04 serve` makes by default. Returns false if the name is too long (reported). */
 bool client_rpc_path(const char *path, char found[PATH_MAX]);
 
-/* Connect. *rpc must be zero. Failures are reported with advice. client_rpc_close() is due if it returns true. */
+/* Connect; an emulator that does not answer is given 10 s. *rpc must be zero. Failures are reported with advice.
+ * client_rpc_close() is due if it returns true. */
 bool client_rpc_open(struct client_rpc *rpc, const char *path);
 void client_rpc_close(struct client_rpc *rpc);
 
-/* Send a request; takes the reference to `params` (an object; NULL: none). Returns false if the emulator has gone (reported). */
+/* Send a request; takes the reference to `params` (an object; NULL: none). Returns false if the emulator has gone, or takes no
+ * request within 10 s (reported). */
 bool client_rpc_send(struct client_rpc *rpc, const char *method, json_t *params);
 
 /* Wait up to `timeout_ms` for the answer to the last request; events that come before it are handed to `notified`. *json is a new
  * reference to the result or error, NULL with the other outcomes. */
 enum client_rpc_outcome client_rpc_receive(struct client_rpc *rpc, int timeout_ms, json_t **json);
 
-/* Both. */
+/* Both, within `timeout_ms`. After 5 s without an answer a person at the terminal is informed. */
 enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *method, json_t *params, int timeout_ms,
                                         json_t **json);
 

@@ -17,6 +17,8 @@
 #include "options/options.h"
 #include "text/text.h"
 
+#define CONNECT_S 10
+
 bool client_socket_folder(unsigned number, char folder[PATH_MAX])
 {
     const char *runtime = getenv("XDG_RUNTIME_DIR"), *temporary = getenv("TMPDIR");
@@ -30,10 +32,13 @@ bool client_socket_folder(unsigned number, char folder[PATH_MAX])
 
 static int connect_to(int family, const void *address, socklen_t size)
 {
+    const struct timeval patience = {.tv_sec = CONNECT_S};
     int fd = socket(family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (fd >= 0)
+        setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
     if (fd < 0 || connect(fd, address, size) == 0)
         return fd;
-    int error = errno;
+    int error = errno == EAGAIN || errno == EINPROGRESS ? ETIMEDOUT : errno;
     close(fd);
     errno = error;
     return -1;
@@ -96,6 +101,12 @@ bool client_socket_wait(int fd, int timeout_ms)
     return poll(&ready, 1, timeout_ms) > 0;
 }
 
+void client_socket_wait_room(int fd, int timeout_ms)
+{
+    struct pollfd ready = {.fd = fd, .events = POLLOUT};
+    (void)poll(&ready, 1, timeout_ms);
+}
+
 ssize_t client_socket_read(int fd, char *bytes, size_t room)
 {
     return read(fd, bytes, room);
@@ -103,7 +114,7 @@ ssize_t client_socket_read(int fd, char *bytes, size_t room)
 
 ssize_t client_socket_write(int fd, const char *bytes, size_t length)
 {
-    return send(fd, bytes, length, MSG_NOSIGNAL);
+    return send(fd, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 void client_socket_close(int fd)

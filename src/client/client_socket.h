@@ -11,7 +11,8 @@
 /* The folders of default links, from 0 on. Returns false if there are no more of them. */
 bool client_socket_folder(unsigned number, char folder[PATH_MAX]);
 
-/* Connect to the Unix socket `path`, or to `address`, 127.0.0.1:PORT or [::1]:PORT. Return a descriptor; -1: errno says why. */
+/* Connect to the Unix socket `path`, or to `address`, 127.0.0.1:PORT or [::1]:PORT, within 10 s. Return a descriptor; -1: errno
+ * says why. */
 int client_socket_open(const char *path);
 int client_socket_open_tcp(const char *address);
 
@@ -24,7 +25,10 @@ bool client_socket_is_foreign_file(int fd);
 /* Wait for bytes, up to `timeout_ms` (-1: without limit). Returns false if none have come. */
 bool client_socket_wait(int fd, int timeout_ms);
 
-/* As read() and send(): no signal if the other end has gone. */
+/* Wait for room to write to, as long. */
+void client_socket_wait_room(int fd, int timeout_ms);
+
+/* As read() and send(): no signal if the other end has gone. Writing does not wait: errno is EAGAIN if there is no room. */
 ssize_t client_socket_read(int fd, char *bytes, size_t room);
 ssize_t client_socket_write(int fd, const char *bytes, size_t length);
 void client_socket_close(int fd);

@@ -216,7 +216,8 @@ bool param_time(const json_t *params, const char *name, uint64_t missing, uint64
     }
     if (json_is_string(value) && !time_value_read(json_string_value(value), json_string_length(value), ticks, &wrong))
         return true;
-    refuse(refusal, REFUSED_PARAMS, "%s: expected a time: a whole number of us, or as in \"250us\", \"1500ms\", \"2.5s\"", name);
+    refuse(refusal, REFUSED_PARAMS, "%s: expected a time from " TIME_VALUE_RANGE ": a whole number of us, or as in "
+           "\"250us\", \"1500ms\", \"2.5s\"", name);
     return false;
 }
 

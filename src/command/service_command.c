@@ -105,10 +105,11 @@ static json_t *command_open(struct sim *sim, const json_t *params, struct refusa
 
 static json_t *command_bytes(struct sim *sim, const json_t *params, struct refusal *refusal)
 {
-    static const char *const names[] = {"client", "hex", "text", NULL};
-    int64_t number;
-    size_t length;
-    if (!params_known(params, names, refusal) || !param_integer(params, "client", 1, DEVICE_CLIENTS_MAX, &number, refusal))
+    static const char *const names[] = {"client", "hex", "text", "room", NULL};
+    int64_t number, room;
+    size_t length, taken = 0;
+    if (!params_known(params, names, refusal) || !param_integer(params, "client", 1, DEVICE_CLIENTS_MAX, &number, refusal) ||
+        !param_integer_or(params, "room", 1, SIM_SERVICE_ROOM_MAX, INT64_MAX, &room, refusal))
         return NULL;
     if (!sim_service_is_open(sim, (unsigned)number))
         return refuse(refusal, REFUSED_STATE, "client: there is no client %d: open it with service.open", (int)number);
@@ -117,8 +118,10 @@ static json_t *command_bytes(struct sim *sim, const json_t *params, struct refus
         return NULL;
     struct sim_service_sent *sent = calloc(1, sizeof *sent);
     if (sent)
-        sim_service_receive(sim, (unsigned)number, bytes, length, sent);
+        taken = sim_service_receive(sim, (unsigned)number, bytes, length, (size_t)room, sent);
     json_t *result = sent ? result_json(sim, (unsigned)number, sent) : NULL;
+    if (room <= SIM_SERVICE_ROOM_MAX)
+        json_object_set_new(result, "taken", json_integer((json_int_t)taken));
     free(bytes);
     free(sent);
     return result ? result : refuse(refusal, REFUSED_MEMORY, "out of memory");

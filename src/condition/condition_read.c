@@ -99,7 +99,7 @@ static bool read_whole(const json_t *json, const struct term *term, int64_t *val
 /* A number, or an object of relations with numbers: a term each. */
 static bool read_number(struct reader *r, struct term *group, struct term term, const char *key, const json_t *json)
 {
-    const char *what = term.kind == TERM_TIME ? "a time as in \"2.5s\" or in us" : "a whole number";
+    const char *what = term.kind == TERM_TIME ? "a time from " TIME_VALUE_RANGE " as in \"2.5s\", or in us" : "a whole number";
     const char *name;
     json_t *bound;
     if (!json_is_object(json)) {

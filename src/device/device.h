@@ -526,6 +526,9 @@ void device_arguments_add(struct device_arguments *arguments, const char *name, 
 /* Free the texts. Units and configs must not be used any more. */
 void device_arguments_free(struct device_arguments *arguments);
 
+/* --backup FILE is for kinds whose flash is a backup memory: a usage error for others. has_flash: there is --flash, too. */
+void device_arguments_check_backup(const struct device_kind *kind, bool has_flash, const struct argp_state *state);
+
 /* The kind that is meant where none is named: the RKM04. Its settings as they lie in a config; `node` is that of the config. */
 extern const struct device_kind rkm04_device;
 extern const struct device_kind cib_device;

@@ -250,3 +250,10 @@ void device_arguments_free(struct device_arguments *arguments)
         free(arguments->text[at]);
     arguments->count = 0;
 }
+
+void device_arguments_check_backup(const struct device_kind *kind, bool has_flash, const struct argp_state *state)
+{
+    if (!kind->flash_name || strcmp(kind->flash_name, "backup") != 0)
+        argp_error(state, "--backup: the device %s has no backup memory%s", kind->name,
+                   has_flash && kind->flash_blocks > 0 ? ": expected --flash" : "");
+}

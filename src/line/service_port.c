@@ -22,11 +22,13 @@ struct service_connection {
     uv_write_t write;
     size_t length, under_way; /* bytes in `out`; of these, those given to the system */
     uint8_t *out;        /* NULL: nothing waits */
+    size_t at, end;      /* what was read and not taken: in[at..end) */
     uint8_t in[SERVICE_IN];
     char peer[NET_NAME_SIZE];
 };
 
 static void set_reading(struct service_connection *connection);
+static void go_on_reading(struct service_connection *connection);
 
 /* ---- The end of a connection ---------------------------------------------------------------------------------------- */
 
@@ -104,7 +106,7 @@ static void on_written(uv_write_t *write, int status)
     else if (connection->leaving)
         close_connection(connection);
     else
-        set_reading(connection);
+        go_on_reading(connection);
 }
 
 static void write_out(struct service_connection *connection)
@@ -185,6 +187,27 @@ static void set_all_reading(struct service_port *port)
         set_reading(connection);
 }
 
+/* May it be asked for more, in this round and turn? A client that does not read what it is sent is not. */
+static bool is_next(const struct service_connection *connection)
+{
+    return !connection->closing && !connection->leaving && connection->client > 0 && connection->length == 0 &&
+           !connection->was_read && !connection->port->is_over;
+}
+
+/* Hand in what was read. What is not taken waits until the client has got its answers. */
+static void hand_in(struct service_connection *connection)
+{
+    struct service_port *port = connection->port;
+    port->reads++;
+    connection->was_read = true;
+    set_reading(connection);
+    connection->at += port->calls->bytes(port->context, connection->client, connection->in + connection->at,
+                                         connection->end - connection->at);
+    port->is_over = uv_hrtime() >= port->stint_end;
+    if (port->is_over)
+        set_all_reading(port);
+}
+
 /* A turn of the loop begins. When each client that has sent something has been read, a new round begins. */
 static void on_turn(uv_idle_t *turn)
 {
@@ -197,37 +220,48 @@ static void on_turn(uv_idle_t *turn)
     port->reads = 0;
     port->is_over = false;
     port->stint_end = uv_hrtime() + SERVICE_STINT;
+    for (struct service_connection *connection = port->first; connection; connection = connection->next)
+        if (connection->at < connection->end && is_next(connection))
+            hand_in(connection);
+    if (port->reads > 0)
+        uv_idle_start(turn, on_turn);
     set_all_reading(port);
+}
+
+static void begin_turn(struct service_port *port)
+{
+    if (uv_is_active((uv_handle_t *)&port->turn))
+        return;
+    uv_idle_start(&port->turn, on_turn);
+    port->stint_end = uv_hrtime() + SERVICE_STINT;
+}
+
+/* It has got its answers. */
+static void go_on_reading(struct service_connection *connection)
+{
+    if (connection->at < connection->end)
+        begin_turn(connection->port);
+    set_reading(connection);
 }
 
 static void on_read(uv_stream_t *stream, ssize_t length, const uv_buf_t *buffer)
 {
     struct service_connection *connection = stream->data;
-    struct service_port *port = connection->port;
     (void)buffer;
     if (length < 0)
         lose_client(connection, NULL);
     if (length <= 0)
         return;
-    if (!uv_is_active((uv_handle_t *)&port->turn)) {
-        uv_idle_start(&port->turn, on_turn);
-        port->stint_end = uv_hrtime() + SERVICE_STINT;
-    }
-    port->reads++;
-    connection->was_read = true;
-    set_reading(connection);
-    port->calls->bytes(port->context, connection->client, connection->in, (size_t)length);
-    port->is_over = uv_hrtime() >= port->stint_end;
-    if (port->is_over)
-        set_all_reading(port);
+    begin_turn(connection->port);
+    connection->at = 0;
+    connection->end = (size_t)length;
+    hand_in(connection);
 }
 
-/* A client that does not read what it is sent is not read either. However many clients send however much, each is read once in a
- * round, and a turn of the loop has an end. */
+/* However many clients send however much, each is read once in a round, and a turn of the loop has an end. */
 static void set_reading(struct service_connection *connection)
 {
-    bool wanted = !connection->closing && !connection->leaving && connection->client > 0 && connection->length == 0 &&
-                  !connection->was_read && !connection->port->is_over;
+    bool wanted = connection->at == connection->end && is_next(connection);
     if (wanted == connection->reading)
         return;
     if (!wanted)

@@ -20,7 +20,9 @@ struct service_connection;
 struct service_port_calls {
     /* A client has come. Returns a number for it, from 1 on; 0: there are too many. service_port_greet() may be called within. */
     unsigned (*open)(void *context, const char *peer);
-    void (*bytes)(void *context, unsigned client, const uint8_t *bytes, size_t length);
+    /* Returns how many of the bytes it has taken, at least one; the others are handed in again when the client has got what it
+     * was sent. */
+    size_t (*bytes)(void *context, unsigned client, const uint8_t *bytes, size_t length);
     void (*closed)(void *context, unsigned client, const char *why); /* it has gone, or does not read */
 };
 

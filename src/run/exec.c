@@ -88,13 +88,6 @@ static bool has_own_program(const struct options *options)
     return device->has_program && device->has_program(&options->device.config);
 }
 
-static void check_backup(const struct options *options, const struct argp_state *state)
-{
-    const struct device_kind *device = options->device.kind;
-    if (options->backup && (!device->flash_name || strcmp(device->flash_name, "backup") != 0))
-        argp_error(state, "--backup: the device %s has no backup memory", device->name);
-}
-
 static error_t parse_option(int key, char *text, struct argp_state *state)
 {
     struct options *options = state->input;
@@ -126,7 +119,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case ARGP_KEY_END:
         if (exec_inputs_are_none(&options->inputs) && !has_own_program(options))
             argp_error(state, "no program given");
-        check_backup(options, state);
+        if (options->backup)
+            device_arguments_check_backup(options->device.kind, false, state);
         exec_inputs_complete(&options->inputs, options->device.kind, state);
         if (options->json && options->trace != NULL && strcmp(options->trace, "-") == 0)
             argp_error(state, "--json and --trace - cannot both use standard output");

@@ -24,9 +24,8 @@ void serve_check_flash(struct bus_options *options, struct argp_state *state)
 {
     const struct device_kind *device = options->device.kind;
     const char *given = options->backup ? "backup" : "flash";
-    if (options->backup && (!device->flash_name || strcmp(device->flash_name, given) != 0))
-        argp_error(state, "--backup: the device %s has no backup memory%s", device->name,
-                   device->flash_blocks > 0 ? ": expected --flash" : "");
+    if (options->backup)
+        device_arguments_check_backup(device, true, state);
     if (options->backup && options->flash)
         argp_error(state, "expected either --flash or --backup, which are the same");
     if (options->backup)

@@ -192,6 +192,7 @@ int sim_flash_program(struct sim_unit *unit, unsigned block, unsigned offset, co
 /* ---- Servers of the device: sim_service.c. The commands service.* call these ------------------------------------------- */
 
 #define SIM_SERVICE_SENT_MAX 65536u /* bytes that are kept for the result of a command */
+#define SIM_SERVICE_ROOM_MAX 32768u /* see sim_service_receive(): an answer more has its place, too */
 
 /* What was sent to a client within a call. */
 struct sim_service_sent {
@@ -210,8 +211,10 @@ unsigned sim_service_open(struct sim *sim, const struct device_service *service,
 /* Send what is to be sent to a client now. `sent`: NULL, or gets it, too. */
 void sim_service_start(struct sim *sim, unsigned number, struct sim_service_sent *sent);
 
-/* Bytes of a client. It may be hung up afterwards. Returns false if there is no such client. */
-bool sim_service_receive(struct sim *sim, unsigned number, const uint8_t *bytes, size_t length, struct sim_service_sent *sent);
+/* Bytes of a client. It may be hung up afterwards. After `room` bytes of answers, at most SIM_SERVICE_ROOM_MAX, nothing more is
+ * taken; SIZE_MAX: everything is. Returns how many bytes were: the others are to be handed in again, before what comes later. */
+size_t sim_service_receive(struct sim *sim, unsigned number, const uint8_t *bytes, size_t length, size_t room,
+                           struct sim_service_sent *sent);
 
 /* The client has gone, or is hung up; or all of them. */
 void sim_service_close(struct sim *sim, unsigned number);

@@ -12,6 +12,7 @@ struct sim_client {
     struct device_client *state;
     uint64_t since;  /* how many came before it */
     uint64_t next;   /* us at which send() is to be asked; DEVICE_NEVER */
+    size_t seen;     /* bytes that were reported and not taken: they come again */
     char peer[DEVICE_PEER_SIZE];
 };
 
@@ -129,23 +130,28 @@ static void pump(struct sim *sim, unsigned number, struct device_bus *bus, struc
     find_next(sim->services);
 }
 
-bool sim_service_receive(struct sim *sim, unsigned number, const uint8_t *bytes, size_t length, struct sim_service_sent *sent)
+size_t sim_service_receive(struct sim *sim, unsigned number, const uint8_t *bytes, size_t length, size_t room,
+                           struct sim_service_sent *sent)
 {
     struct sim_client *client = client_of(sim, number);
     struct device_bus bus;
+    size_t at = 0;
     if (!client)
-        return false;
+        return length;
     describe_bus(sim, client->service, &bus);
-    report(sim, number, WATCH_SERVICE_RECEIVED, bytes, length);
-    for (size_t at = 0, taken = 1; at < length && taken > 0; at += taken) {
-        taken = client->service->receive(client->state, &bus, bytes + at, length - at);
+    if (length > client->seen)
+        report(sim, number, WATCH_SERVICE_RECEIVED, bytes + client->seen, length - client->seen);
+    while (at < length && sent->length < room) {
+        size_t taken = client->service->receive(client->state, &bus, bytes + at, length - at);
         pump(sim, number, &bus, sent);
+        at += taken;
         if (taken > 0 && !is_over(client))
             continue;
         sim_service_close(sim, number);
-        break;
+        return length;
     }
-    return true;
+    client->seen = length - at;
+    return at;
 }
 
 bool sim_service_is_open(const struct sim *sim, unsigned number)

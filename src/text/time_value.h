@@ -8,6 +8,7 @@
 
 #define US_PER_SECOND 1000000u                     /* virtual time is counted in us: ticks of 1 us */
 #define TIME_VALUE_MAX UINT64_C(1000000000000000) /* ticks: 10^9 s */
+#define TIME_VALUE_RANGE "0 to 10^15 us (10^9 s)"  /* for messages */
 
 /* Read text[0..length) as a time. Exact or refused: more digits than a tick can show are an error.
  * Returns NULL and sets *ticks (0..TIME_VALUE_MAX), or returns what was expected, a phrase for "expected …", and sets

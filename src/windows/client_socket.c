@@ -28,6 +28,7 @@ static int connect_to(const char *host, const char *port)
     struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV}, *found = NULL;
     WSADATA data;
     BOOL on = TRUE;
+    u_long no_wait = 1;
     errno = EINVAL;
     if (WSAStartup(MAKEWORD(2, 2), &data) != 0 || getaddrinfo(host, port, &hints, &found) != 0)
         return -1;
@@ -38,6 +39,8 @@ static int connect_to(const char *host, const char *port)
         made = INVALID_SOCKET;
     }
     freeaddrinfo(found);
+    if (made != INVALID_SOCKET)
+        ioctlsocket(made, FIONBIO, &no_wait); /* what comes is waited for */
     if (made != INVALID_SOCKET)
         setsockopt(made, IPPROTO_TCP, TCP_NODELAY, (const char *)&on, sizeof on);
     return made != INVALID_SOCKET ? (int)made : -1;
@@ -79,16 +82,29 @@ bool client_socket_wait(int fd, int timeout_ms)
     return select(0, &sockets, NULL, NULL, timeout_ms < 0 ? NULL : &left) > 0;
 }
 
+void client_socket_wait_room(int fd, int timeout_ms)
+{
+    struct timeval left = {.tv_sec = timeout_ms / 1000, .tv_usec = timeout_ms % 1000 * 1000};
+    fd_set sockets;
+    FD_ZERO(&sockets);
+    FD_SET((SOCKET)fd, &sockets);
+    (void)select(0, NULL, &sockets, NULL, timeout_ms < 0 ? NULL : &left);
+}
+
+static ssize_t with_errno(int count)
+{
+    errno = count < 0 && WSAGetLastError() == WSAEWOULDBLOCK ? EAGAIN : ECONNRESET;
+    return count;
+}
+
 ssize_t client_socket_read(int fd, char *bytes, size_t room)
 {
-    errno = ECONNRESET;
-    return recv((SOCKET)fd, bytes, (int)room, 0);
+    return with_errno(recv((SOCKET)fd, bytes, (int)room, 0));
 }
 
 ssize_t client_socket_write(int fd, const char *bytes, size_t length)
 {
-    errno = ECONNRESET;
-    return send((SOCKET)fd, bytes, (int)length, 0);
+    return with_errno(send((SOCKET)fd, bytes, (int)length, 0));
 }
 
 void client_socket_close(int fd)

@@ -47,6 +47,18 @@ static void open_one(void)
     fake_rig_do(&rig, "service.open", "{\"service\": \"lines\", \"peer\": \"127.0.0.1:4000\"}");
 }
 
+START_TEST(requests_are_left_when_the_room_for_answers_is_used_up)
+{
+    open_one();
+    expect("service.bytes", "{\"client\": 1, \"text\": \"POS?\\nPOS?\\nIN?\\n\", \"room\": 4}", "taken", "10");
+    expect("service.bytes", "{\"client\": 1, \"text\": \"IN?\\nPOS?\\n\", \"room\": 1}", "taken", "4");
+    expect("service.bytes", "{\"client\": 1, \"text\": \"POS?\\n\", \"room\": 32768}", "text", "\"0\\r\\n\"");
+    ck_assert_str_eq(out, "1:HELLO 1\r\n1:0\r\n1:0\r\n1:0\r\n1:0\r\n");
+    fake_rig_expect_refusal(&rig, "service.bytes", "{\"client\": 1, \"text\": \"\", \"room\": 32769}",
+                            "room: expected a whole number from 1 to 32768");
+}
+END_TEST
+
 START_TEST(client_is_answered_at_once)
 {
     expect("service.open", "{\"service\": \"lines\"}", "text", "\"HELLO 1\\r\\n\"");
@@ -261,6 +273,7 @@ static Suite *fake_service_suite(void)
     TCase *all = tcase_create("all");
     tcase_add_checked_fixture(all, begin, end);
     tcase_add_test(all, client_is_answered_at_once);
+    tcase_add_test(all, requests_are_left_when_the_room_for_answers_is_used_up);
     tcase_add_test(all, server_sends_of_itself_at_its_time);
     tcase_add_test(all, clients_are_counted_and_limited);
     tcase_add_test(all, server_hangs_up);

@@ -17,8 +17,9 @@
 static uv_loop_t loop;
 static struct service_port port;
 static uint64_t now_ns;
-static unsigned opened, calls, called[CLIENTS + 1u];
-static size_t taken;
+static unsigned opened, calls, called[CLIENTS + 1u], closed;
+static size_t taken, most_taken = SIZE_MAX; /* most_taken: at once */
+static size_t answer;                  /* bytes of an answer to each call; 0: none */
 
 uint64_t __wrap_uv_hrtime(void);
 
@@ -34,14 +35,18 @@ static unsigned on_open(void *context, const char *peer)
     return ++opened;
 }
 
-static void on_bytes(void *context, unsigned client, const uint8_t *bytes, size_t length)
+static size_t on_bytes(void *context, unsigned client, const uint8_t *bytes, size_t length)
 {
+    static const uint8_t answers[SERVICE_OUT_MAX];
     (void)context;
-    (void)bytes;
+    ck_assert_uint_eq(bytes[0], answer > 0 ? (uint8_t)taken : 0);
+    length = length < most_taken ? length : most_taken;
     calls++;
     called[client]++;
     taken += length;
     now_ns += CALL_NS;
+    service_port_send(&port, client, answers, answer);
+    return length;
 }
 
 static void on_closed(void *context, unsigned client, const char *why)
@@ -49,6 +54,7 @@ static void on_closed(void *context, unsigned client, const char *why)
     (void)context;
     (void)client;
     (void)why;
+    closed++;
 }
 
 static const struct service_port_calls port_calls = {.open = on_open, .bytes = on_bytes, .closed = on_closed};
@@ -143,12 +149,42 @@ START_TEST(one_client_is_read_to_its_end_beside_others_that_rest)
 }
 END_TEST
 
+/* A packet of many short requests with long answers, far more than may wait: the client gets them all, however late it reads. */
+START_TEST(a_client_that_reads_late_gets_all_answers_and_the_rest_of_its_requests_waits)
+{
+    enum { REQUESTS = 1000 };
+    uint8_t requests[REQUESTS], bytes[4096];
+    size_t read = 0;
+    int fd;
+    for (unsigned i = 0; i < REQUESTS; i++)
+        requests[i] = (uint8_t)i;
+    most_taken = 1;
+    answer = SERVICE_OUT_MAX / 2u;
+    begin(&fd, 1);
+    ck_assert_int_eq(send(fd, requests, sizeof requests, 0), REQUESTS);
+    for (unsigned i = 0; i < 3u * REQUESTS; i++)
+        uv_run(&loop, UV_RUN_NOWAIT);
+    ck_assert_uint_lt(taken, REQUESTS); /* its socket is full */
+    ck_assert_int_ne(uv_backend_timeout(&loop), 0);
+    while (read < REQUESTS * answer) {
+        uv_run(&loop, UV_RUN_NOWAIT);
+        ssize_t length = recv(fd, bytes, sizeof bytes, MSG_DONTWAIT);
+        ck_assert_int_ne(length, 0);
+        read += length > 0 ? (size_t)length : 0;
+    }
+    ck_assert_uint_eq(taken, REQUESTS);
+    ck_assert_uint_eq(closed, 0);
+    end(&fd, 1);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("service_port");
     TCase *turns = tcase_create("turns");
     tcase_add_test(turns, a_turn_of_the_loop_ends_however_much_has_come);
     tcase_add_test(turns, each_client_is_read_in_its_turn);
+    tcase_add_test(turns, a_client_that_reads_late_gets_all_answers_and_the_rest_of_its_requests_waits);
     tcase_add_test(turns, one_client_is_read_to_its_end_beside_others_that_rest);
     suite_add_tcase(suite, turns);
     SRunner *runner = srunner_create(suite);

@@ -382,6 +382,13 @@ def test_a_notification_is_obeyed_and_not_answered(emulator):
     assert client.call("state")["di"] == 5
 
 
+def test_times_that_are_too_long_are_refused_with_the_range(emulator):
+    client = emulator.client()
+    for time in [10 ** 17, -1, "1000000001s", 1.5]:
+        assert "from 0 to 10^15 us (10^9 s)" in client.refused("advance", ticks=time).message, time
+        assert "from 0 to 10^15 us (10^9 s)" in client.refused("wait", until={"idle": True}, limit=time).message, time
+
+
 def test_with_a_clock_that_goes_time_cannot_be_advanced(emulator):
     client = emulator.client()
     client.call("clock", clock="max")

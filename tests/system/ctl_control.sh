@@ -94,9 +94,49 @@ test_time_goes_on_by_a_time_or_until_a_condition_holds() {
     exits 2 control advance 1s --limit 2s
     exits 2 control advance 'm1.position>='
     exits 2 control advance 'm1.idle' --limit soon
+    for time in 100000000000000000 99999999999999999999 1000000001s; do
+        exits 2 control advance "$time"
+        holds "$complained" "ticks: expected a time from 0 to 10^15 us (10^9 s)" "the range"
+    done
+    exits 2 control advance 't>=1000000001s'
+    holds "$complained" "t: expected a time from 0 to 10^15 us (10^9 s)" "the range of a condition"
     exits 0 control clock real
     exits 1 control advance 1s
     holds "$complained" stepped "the message says which clock it takes"
+}
+
+# A stopped process answers nothing, takes nothing when its socket is full, and its connections come to be.
+test_an_emulator_that_is_stopped_is_waited_for_within_the_limit() {
+    cd "$folder" || fail "cd"
+    emulator
+    { echo '# a large plant'; yes '# filled up' | head -c 900000; } >large.yaml
+    kill -STOP "$started"
+    for command in "advance 1s" "wait idle" "call units" "state" "plant set large.yaml" "restore file=none"; do
+        # shellcheck disable=SC2086
+        exits 3 timeout "$limit" "$RKMCTL" --timeout 300 $command
+        holds "$complained" "no answer from $RKM04_CONTROL in time" "rkmctl $command"
+    done
+    kill -CONT "$started"
+    exits 0 control state
+}
+
+# A person at a terminal learns after five seconds that there is no answer, and can end the wait.
+test_a_person_is_informed_of_a_long_wait_and_can_end_it() {
+    emulator
+    exits 0 timeout "$limit" python3 - "$RKMCTL" <<'END'
+import os, signal, subprocess, sys
+ours, theirs = os.openpty()
+waiting = subprocess.Popen([sys.argv[1], "wait", "t>=1s"], stderr=theirs, start_new_session=True)
+os.close(theirs)
+said = b""
+while b"--timeout MS limits it" not in said:
+    said += os.read(ours, 1000)
+assert b"time is stopped" in said and b"no answer from" in said, said
+waiting.send_signal(signal.SIGINT)
+assert waiting.wait() == -signal.SIGINT, waiting.returncode
+END
+    exits 3 control --timeout 6000 wait 't>=1s'
+    same "" "$(grep "no answer from .* yet" <<<"$complained")" "the note where nobody watches"
 }
 
 test_waiting_ends_when_it_has_come_true_or_the_limit_is_over() {

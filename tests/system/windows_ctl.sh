@@ -52,6 +52,18 @@ test_what_is_asked_is_answered_alike() {
     done
 }
 
+# cmd.exe has no device files, variables with $, and single quotes.
+test_examples_in_help_are_those_of_Windows() {
+    local command commands="version set send raw pmc wait advance shell"
+    cd "$folder" || fail "cd"
+    for command in "" $commands; do
+        # shellcheck disable=SC2086
+        wine_in "$prefix" "$RKMCTL_EXE" $command --help >help.txt || fail "rkmctl.exe $command --help"
+        same "" "$(grep '^  rkmctl ' help.txt | grep -e "/dev/" -e '[$]' -e "'")" "examples of rkmctl.exe $command --help"
+    done
+    holds "$(<help.txt)" "rkmctl -p COM3 shell" "the examples"
+}
+
 test_what_is_wrong_is_refused_alike() {
     emulator
     for arguments in "di 9=1" "di" "-u 7 state" "wait" "wait nonsense" "advance 5x" "fault inject nothing" "call nonsense" \

@@ -132,4 +132,8 @@ int on_exit(void (*function)(int status, void *context), void *context);
 
 #define signal windows_signal
 
+/* ---- Texts ---------------------------------------------------------------------------------------------------------- */
+
+#define CLIENT_PORT_EXAMPLE "COM3"
+
 #endif
