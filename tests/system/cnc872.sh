@@ -68,6 +68,10 @@ test_NL1_rkmctl_cnc_does_what_an_operator_and_a_plc_author_do() {
     holds "$said" '"PO_STOP":' "--json"
 }
 
+test_every_example_of_the_document_over_the_control_socket_is_so() {
+    exits 0 python3 "${0%/*}/control_examples.py" "${0%/*}/../../docs/CNC872.md" -- --device cnc872
+}
+
 test_NL1_what_rkmctl_cnc_cannot_do_is_said() {
     serve_cnc
     exits 2 "$RKMCTL" -c "$folder/control" cnc get NO_CELL

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """control_examples.py: executes the examples of docs/CONTROL.md and compares the answers.
 
-    RKM04=… RKMCTL=… control_examples.py CONTROL.md [HEADING | --write]
+    RKM04=… RKMCTL=… control_examples.py CONTROL.md [HEADING | --write] [-- OPTIONS]
 
-Each section of the document meets a fresh unit with a stepped clock; `$ rkm04 serve OPTIONS` as its first example says with what
-options. In its blocks `-->` is sent, `<--` has to come, `$` is run.
+Each section of the document meets a fresh unit with a stepped clock and the OPTIONS of rkm04 serve; `$ rkm04 serve OPTIONS` as its
+first example has others. In its blocks `-->` is sent, `<--` has to come, `$` is run.
 A line that is indented goes on with the one before. HEADING: that section alone. --write: put what came into the document, for
 those who change an answer; look at the difference then."""
 import json
@@ -76,9 +76,9 @@ class Session:
         self.folder.cleanup()
 
 
-def run_section(heading, examples, lines, write):
+def run_section(heading, examples, lines, write, options):
     """Returns what is wrong; with `write`, the lines are changed instead."""
-    serve, options = "rkm04 serve ", []
+    serve = "rkm04 serve "
     if examples[0][0] == "$" and examples[0][1].startswith(serve):
         options = shlex.split(examples.pop(0)[1][len(serve):])
     session, wrong = Session(options), []
@@ -104,13 +104,14 @@ def run_section(heading, examples, lines, write):
 
 
 def main():
-    path, choice = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else None
+    cut = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
+    path, choice, options = sys.argv[1], sys.argv[2] if cut > 2 else None, sys.argv[cut + 1:]
     with open(path, encoding="utf-8") as file:
         text = file.read()
     lines, failed, count = text.split("\n"), 0, 0
     for heading, examples in statements(text):
         if choice in (None, "--write", heading):
-            wrong = run_section(heading, examples, lines, choice == "--write")
+            wrong = run_section(heading, examples, lines, choice == "--write", options)
             count += len(examples)
             failed += len(wrong)
             print("\n".join(["FAILED " + entry for entry in wrong]) or f"ok {heading}")

@@ -102,7 +102,7 @@ class Shell:
     def serve(self, options):
         """Start an emulator in place of the last one; a port in the text becomes one that is free."""
         self.stop()
-        options = re.sub(r"(--tcp|--rfc2217) \d+", r"\1 0", options.split("  #")[0])
+        options = re.sub(r"(--tcp |--rfc2217 |--service \S+=127.0.0.1:)\d+", r"\g<1>0", options.split("  #")[0])
         self.emulator = subprocess.Popen(["bash", "-c", "exec rkm04 serve" + options], cwd=self.folder.name, text=True,
                                          env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         ready = self.emulator.stdout.readline()
