@@ -3,8 +3,8 @@
 
     RKM04=… RKMCTL=… control_examples.py CONTROL.md [HEADING | --write] [-- OPTIONS]
 
-Each section of the document meets a fresh unit with a stepped clock and the OPTIONS of rkm04 serve; `$ rkm04 serve OPTIONS` as its
-first example has others. In its blocks `-->` is sent, `<--` has to come, `$` is run.
+Each section of the document meets a fresh unit with a stepped clock and the OPTIONS of rkm04 serve; `$ rkm04 serve OPTIONS` as
+its first example has others. In its blocks `-->` is sent, `<--` has to come, `$` is run.
 A line that is indented goes on with the one before. HEADING: that section alone. --write: put what came into the document, for
 those who change an answer; look at the difference then."""
 import json

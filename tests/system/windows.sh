@@ -164,13 +164,14 @@ test_the_zip_has_the_program_documents_and_a_prompt() {
     same "$("$RKMCTL" --version)" "$(wine_in "$prefix" cmd /c rkm04-window.cmd --version 2>/dev/null | tr -d '\r')" "the window"
 }
 
-# The commands down to the first motion and behind it, as the document in the zip shows them: what follows three blanks is a remark.
+# The commands down to the first motion and behind it, as the document shows them: what follows three blanks is a remark.
 test_the_first_commands_of_the_document_work() {
     begin
     ln -s "$examples" examples
     {
         printf '@echo off\r\n'
-        sed -n '/^Unpack the zip/,/^What the programs print/{/^    /{s/^    //;s/   .*//;s/$/\r/;p;s/.*/if errorlevel 1 exit 1\r/p}}' "$examples/../docs/WINDOWS.md"
+        sed -n '/^Unpack the zip/,/^What the programs print/s/^    \(.*\)/\1/p' "$examples/../docs/WINDOWS.md" |
+            sed 's/   .*//; s/$/\r/; p; s/.*/if errorlevel 1 exit 1\r/'
     } >first.cmd
     same 7 "$(grep -c ^rkm04 first.cmd)" "commands of docs/WINDOWS.md"
     WINEPATH=$(dirname "$RKM04_EXE") wine_in "$prefix" cmd /c first.cmd >first.out 2>first.err || fail "$(<first.out)"
