@@ -9,6 +9,7 @@
 #include "text/text.h"
 
 #define CELLS_MAX 1000 /* of a list */
+#define LISTING_LINES 500
 
 /* ---- Cells -------------------------------------------------------------------------------------------------------------- */
 
@@ -119,6 +120,58 @@ static enum exit_status work_panel(struct client_job *job)
     return call_members(job, "cnc.panel", NULL, "NAME=VALUE..., as in `cnc panel mode=manual feed=50'");
 }
 
+/* ---- PLC program -------------------------------------------------------------------------------------------------------- */
+
+/* Does a section or mechanism wait in this line? */
+static bool waits_in(const json_t *result, json_int_t line)
+{
+    size_t i;
+    json_t *wait;
+    json_array_foreach(json_object_get(result, "waits"), i, wait)
+        if (json_integer_value(json_object_get(wait, "line")) == line)
+            return true;
+    return false;
+}
+
+/* "    12 >            0  LDR VENT_I": line, where it waits, the value of the cell, the text. */
+static void print_listing(const json_t *result)
+{
+    size_t i;
+    json_t *line, *call;
+    const char *name;
+    const json_t *halted = json_object_get(result, "halted");
+    printf("T %" JSON_INTEGER_FORMAT "  RLO %d  DR %" JSON_INTEGER_FORMAT "  DR_REAL %g  BX %d\n",
+           json_integer_value(json_object_get(result, "t")), (int)json_integer_value(json_object_get(result, "rlo")),
+           json_integer_value(json_object_get(result, "dr")), json_real_value(json_object_get(result, "dr_real")),
+           (int)json_integer_value(json_object_get(result, "bx")));
+    json_object_foreach(json_object_get(result, "calls"), name, call)
+        printf("%s: %" JSON_INTEGER_FORMAT " instructions, at most %" JSON_INTEGER_FORMAT "\n", name,
+               json_integer_value(json_object_get(call, "last")), json_integer_value(json_object_get(call, "most")));
+    json_array_foreach(json_object_get(result, "waits"), i, line)
+        printf("%s waits in line %" JSON_INTEGER_FORMAT "\n", json_string_value(json_object_get(line, "name")),
+               json_integer_value(json_object_get(line, "line")));
+    if (json_is_integer(halted))
+        printf("halted in line %" JSON_INTEGER_FORMAT "\n", json_integer_value(halted));
+    json_array_foreach(json_object_get(result, "listing"), i, line) {
+        const json_t *value = json_object_get(line, "value");
+        char *shown = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9)) : NULL;
+        const json_int_t number = json_integer_value(json_object_get(line, "line"));
+        printf("%6" JSON_INTEGER_FORMAT " %c %12s  %s\n", number, waits_in(result, number) ? '>' : ' ', shown ? shown : "",
+               json_string_value(json_object_get(line, "text")));
+        free(shown);
+    }
+}
+
+static enum exit_status show_plc(struct client_job *job)
+{
+    uint64_t first = 1, lines = LISTING_LINES;
+    if (job->count > 3 || (job->count > 1 && !number_read(job->words[1], 1, INT32_MAX, &first)) ||
+        (job->count > 2 && !number_read(job->words[2], 0, LISTING_LINES, &lines)))
+        return client_usage("cnc plc: expected the first line and how many, at most %d, as in `cnc plc 20 30'", LISTING_LINES);
+    return client_job_show(job, "cnc.plc", json_pack("{s:I, s:I}", "first", (json_int_t)first, "lines", (json_int_t)lines),
+                           print_listing);
+}
+
 /* ---- Texts -------------------------------------------------------------------------------------------------------------- */
 
 /* What the end of a file's name says that it is: the parameters of cnc.load. */
@@ -177,9 +230,11 @@ enum exit_status client_control_cnc(struct client_job *job)
         const char *name;
         client_job_function *function;
     } parts[] = {{"get", get_cells}, {"set", set_cells}, {"cells", list_cells}, {"start", press}, {"stop", press},
-                 {"reset", press},   {"jog", jog},       {"home", home},        {"panel", work_panel}, {"load", load}};
+                 {"reset", press},   {"jog", jog},       {"home", home},        {"panel", work_panel}, {"load", load},
+                 {"plc", show_plc}};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         if (strcmp(job->words[0], parts[i].name) == 0)
             return parts[i].function(job);
-    return client_usage("cnc: expected get, set, cells, start, stop, reset, jog, home, panel or load, found '%s'", job->words[0]);
+    return client_usage("cnc: expected get, set, cells, start, stop, reset, jog, home, panel, load or plc, found '%s'",
+                        job->words[0]);
 }

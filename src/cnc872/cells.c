@@ -62,16 +62,17 @@ static char lower(char letter)
     return letter >= 'A' && letter <= 'Z' ? (char)(letter - 'A' + 'a') : letter;
 }
 
-static bool same_letters(const char *a, const char *b, size_t length)
+/* Does `name` begin with these letters? */
+static bool same_letters(const char *name, const char *text, size_t length)
 {
-    while (length > 0 && lower(*a) == lower(*b))
-        a++, b++, length--;
+    while (length > 0 && *name != '\0' && lower(*name) == lower(*text))
+        name++, text++, length--;
     return length == 0;
 }
 
 bool cnc_same_name(const char *name, const char *text, size_t length)
 {
-    return strlen(name) == length && same_letters(name, text, length);
+    return same_letters(name, text, length) && name[length] == '\0';
 }
 
 int cnc_find_axis(const char *text, size_t length)
@@ -104,9 +105,10 @@ bool cnc_name_matches(const struct cnc_row *row, const char *text, size_t length
         return cnc_same_name(row->name, text, length);
     const char *mark = strchr(row->name, row->numbering == CNC_BY_AXIS ? 'x' : 'n');
     size_t before = (size_t)(mark - row->name);
+    if (length <= before || !same_letters(row->name, text, before))
+        return false;
     size_t after = strlen(mark + 1);
-    if (length <= before + after || !same_letters(row->name, text, before) ||
-        !same_letters(mark + 1, text + length - after, after))
+    if (length <= before + after || !same_letters(mark + 1, text + length - after, after))
         return false;
     size_t middle = length - before - after;
     int number = row->numbering == CNC_BY_AXIS ? cnc_find_axis(text + before, middle) : read_index(text + before, middle);

@@ -58,6 +58,10 @@ struct cnc_plc {
     uint16_t no_license; /* bits: licences that are not valid, as in struct cnc_config */
     bool rlo;
     bool is_halted; /* after a fault nothing of it runs */
+    /* For who looks at it. */
+    uint16_t waits[CNC_PLC_PLACES]; /* instruction at which the last call has ended, from 1; 0: it does not wait */
+    uint16_t halted_at;             /* instruction */
+    uint32_t done[CNC_PLC_SECTIONS], most[CNC_PLC_SECTIONS]; /* instructions of the last call, and of the longest one */
 };
 
 enum cnc_plc_event {
@@ -87,6 +91,9 @@ void cnc_begin_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, s
  * After a fault STOP_EMERGENCY_REQ is 1. */
 bool cnc_pass_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, struct cnc_cells *cells,
                   enum cnc_plc_section section, const struct cnc_plc_surroundings *surroundings, void *context);
+
+/* The cell that an instruction names; NULL: it names none. */
+const struct cnc_operand *cnc_plc_cell(const struct cnc_instruction *instruction);
 
 /* The next call of the section begins at its beginning (NB7). */
 void cnc_restart_section(struct cnc_plc *plc, const struct cnc_plc_program *program, enum cnc_plc_section section);

@@ -16,6 +16,7 @@ struct run {
     void *context;
     unsigned part; /* section or mechanism that runs */
     unsigned at;   /* next instruction */
+    unsigned waiting; /* the present one, from 1 */
     bool is_over, has_ended; /* the call; the section with it */
 };
 
@@ -222,6 +223,7 @@ static void work_bit(struct run *run, const struct cnc_instruction *instruction)
 /* The part that runs waits; its next call begins at its place. */
 static void wait_here(struct run *run)
 {
+    run->plc->waits[run->part] = (uint16_t)run->waiting;
     if (run->part < CNC_PLC_SECTIONS) {
         run->is_over = true;
         return;
@@ -239,6 +241,7 @@ static void enter_mechanism(struct run *run, const struct cnc_operand *operand)
         run->at = run->plc->place[part];
     } else {
         run->plc->place[part] = run->program->parts[part].begin;
+        run->plc->waits[part] = 0;
         run->at = run->program->parts[part].end + 1u;
     }
 }
@@ -246,6 +249,7 @@ static void enter_mechanism(struct run *run, const struct cnc_operand *operand)
 static void end_part(struct run *run, const struct cnc_instruction *instruction)
 {
     run->plc->place[run->part] = run->program->parts[run->part].begin;
+    run->plc->waits[run->part] = 0;
     if (instruction->code == CODE_END) {
         run->is_over = run->has_ended = true;
         return;
@@ -309,6 +313,7 @@ static void walk(struct run *run, const struct cnc_instruction *instruction)
 static void halt(struct run *run)
 {
     run->plc->is_halted = true;
+    run->plc->halted_at = (uint16_t)run->at;
     cnc_put_bit(run->cells, CNC_BIT_STOP_EMERGENCY_REQ, true);
     report(run, CNC_PLC_FAULT, 0, &run->program->code[run->at]);
 }
@@ -316,14 +321,16 @@ static void halt(struct run *run)
 bool cnc_pass_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, struct cnc_cells *cells,
                   enum cnc_plc_section section, const struct cnc_plc_surroundings *surroundings, void *context)
 {
-    struct run run = {plc, program, cells, surroundings, context, section, plc->place[section], false, false};
+    struct run run = {plc, program, cells, surroundings, context, section, plc->place[section], 0, false, false};
+    uint32_t left = CNC_PLC_CALL_MAX;
 
     if (!program->parts[section].is_there)
         return true;
     if (plc->is_halted)
         return false;
-    for (uint32_t left = CNC_PLC_CALL_MAX; !run.is_over && left > 0; left--) {
+    for (; !run.is_over && left > 0; left--) {
         const struct cnc_instruction *instruction = &program->code[run.at++];
+        run.waiting = run.at;
         if (instruction->code <= CODE_LICENCE)
             work_bit(&run, instruction);
         else if (instruction->code <= CODE_SPINDLE_AXIS)
@@ -331,6 +338,9 @@ bool cnc_pass_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, st
         else
             walk(&run, instruction);
     }
+    plc->done[section] = CNC_PLC_CALL_MAX - left;
+    if (plc->done[section] > plc->most[section])
+        plc->most[section] = plc->done[section];
     if (!run.is_over)
         halt(&run);
     return run.has_ended;
@@ -339,6 +349,32 @@ bool cnc_pass_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, st
 void cnc_restart_section(struct cnc_plc *plc, const struct cnc_plc_program *program, enum cnc_plc_section section)
 {
     plc->place[section] = program->parts[section].begin;
+    plc->waits[section] = 0;
+}
+
+const struct cnc_operand *cnc_plc_cell(const struct cnc_instruction *instruction)
+{
+    switch ((enum cnc_plc_code)instruction->code) {
+    case CODE_CA:
+    case CODE_LICENCE:
+    case CODE_ABS:
+    case CODE_RR:
+    case CODE_ESET:
+    case CODE_NOTHING:
+    case CODE_SPINDLE_AXIS:
+    case CODE_JUM:
+    case CODE_JL0:
+    case CODE_JL1:
+    case CODE_EX:
+    case CODE_EX0:
+    case CODE_EX1:
+    case CODE_TIME:
+    case CODE_END_MECHANISM:
+    case CODE_END:
+        return NULL;
+    default:
+        return instruction->operand.kind == CNC_OPERAND_CONSTANT ? NULL : &instruction->operand;
+    }
 }
 
 void cnc_begin_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, struct cnc_cells *cells)

@@ -38,18 +38,18 @@ static int64_t number_at(const struct cnc *cnc, const struct cnc_operand *operan
 }
 
 /* JSON has no infinite numbers, and none that are no numbers: null. */
-static json_t *real_json(double real)
+json_t *cnc_real_json(double real)
 {
     json_t *json = json_real(real);
     return json ? json : json_null();
 }
 
-static json_t *value_of(const struct cnc *cnc, const struct cnc_operand *operand)
+json_t *cnc_cell_json(const struct cnc *cnc, const struct cnc_operand *operand)
 {
     if (operand->kind == CNC_OPERAND_NUMBER && operand->type == CNC_REAL)
-        return real_json(cnc_read_real(&cnc->cells, operand->place));
+        return cnc_real_json(cnc_read_real(&cnc->cells, operand->place));
     if (operand->kind == CNC_OPERAND_QUEUE && operand->type == CNC_REAL)
-        return real_json(cnc_queue_real(cnc, operand->block, operand->place, operand->index));
+        return cnc_real_json(cnc_queue_real(cnc, operand->block, operand->place, operand->index));
     return json_integer(number_at(cnc, operand));
 }
 
@@ -69,7 +69,7 @@ json_t *cnc_get_cells(const struct cnc_device *device, const json_t *cells, stru
             json_decref(values);
             return name ? NULL : cnc_refuse(refusal, false, "cells: expected names of cells");
         }
-        json_object_set_new(values, name, value_of(&device->cnc, &operand));
+        json_object_set_new(values, name, cnc_cell_json(&device->cnc, &operand));
     }
     return values;
 }

@@ -118,6 +118,14 @@ bool cnc_set_cells(struct cnc_device *device, const json_t *cells, struct device
  * `fault`, valid until the next call; "" if none is near, or the fault is another. */
 const char *cnc_nearest_cell(const struct cnc_names *names, const char *name, const struct cnc_text_fault *fault);
 
+/* The value of a cell as JSON: bits are 0 or 1, REAL has a point, or is null. */
+json_t *cnc_cell_json(const struct cnc *cnc, const struct cnc_operand *operand);
+json_t *cnc_real_json(double real);
+
+/* A whole number from `low` to `high`. False: it is none, and refused. */
+bool cnc_read_number_param(const char *name, const json_t *value, int64_t low, int64_t high, int64_t *number,
+                           struct device_refusal *refusal);
+
 /* {search, section, limit} -> {cells: [{name, type, access, section}], more}: the cells whose name has this part; NULL:
  * refused. */
 json_t *cnc_find_names(const struct cnc_device *device, const json_t *params, struct device_refusal *refusal);
@@ -139,6 +147,9 @@ bool cnc_load_program(struct cnc_device *device, const struct cnc_text *program,
 
 /* The method cnc.load: an NC program, a PLC program, switches, as texts; all of them or none. */
 json_t *cnc_load_texts(struct device_unit *unit, const json_t *params, struct device_refusal *refusal);
+
+/* The method cnc.plc: the PLC program that runs, its text with the values of its cells. In cnc872_plc.c. */
+json_t *cnc_show_plc(struct device_unit *unit, const json_t *params, struct device_refusal *refusal);
 
 /* What a cnc with these texts begins with. `backup`: CNC_BACKUP_SIZE bytes. */
 struct cnc_setup cnc_setup_of(struct cnc_device *device, const struct cnc_own *own, const uint8_t *backup);

@@ -72,8 +72,8 @@ struct panel_request {
     uint8_t critical;
 };
 
-static bool read_number(const char *name, const json_t *value, int64_t low, int64_t high, int64_t *number,
-                        struct device_refusal *refusal)
+bool cnc_read_number_param(const char *name, const json_t *value, int64_t low, int64_t high, int64_t *number,
+                           struct device_refusal *refusal)
 {
     *number = json_integer_value(value);
     if (json_is_integer(value) && *number >= low && *number <= high)
@@ -123,7 +123,7 @@ static bool read_keys(const json_t *value, struct cnc_panel *panel, struct devic
             at++;
         if (at == 4)
             return CNC_REFUSE(refusal, false, "keys: `%.20s' is unknown: expected P1, P1_2, P2, P2_2", name);
-        if (!read_number(name, key, 0, UINT16_MAX, &number, refusal))
+        if (!cnc_read_number_param(name, key, 0, UINT16_MAX, &number, refusal))
             return false;
         panel->key[at] = (uint16_t)number;
     }
@@ -158,7 +158,7 @@ static bool read_pot(const char *name, const json_t *value, struct panel_request
     int64_t number;
     const bool is_pot = strcmp(name, "rtm") != 0 && strcmp(name, "select") != 0;
     const int64_t most = is_pot ? CNC_PERCENT_MAX : *name == 'r' ? UINT8_MAX : CNC_NC_BLOCKS_MAX - 1;
-    if (!read_number(name, value, 0, most, &number, refusal))
+    if (!cnc_read_number_param(name, value, 0, most, &number, refusal))
         return false;
     if (strcmp(name, "feed") == 0)
         request->panel.feed = (uint16_t)number;
@@ -259,6 +259,7 @@ const struct device_method cnc_methods[] = {
     {"cnc.cells", call_cells, false, NAMES("search", "section", "limit")},
     {"cnc.panel", call_panel, true, NULL}, /* it reports more about its own */
     {"cnc.load", cnc_load_texts, true, NAMES("text", "plc", "machine", "name", "plc_name", "machine_name", "config")},
+    {"cnc.plc", cnc_show_plc, false, NAMES("first", "lines")},
     {"cnc.state", call_state, false, (const char *const[]){NULL}},
     {NULL, NULL, false, NULL},
 };

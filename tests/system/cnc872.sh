@@ -90,7 +90,7 @@ test_NL1_what_rkmctl_cnc_cannot_do_is_said() {
     exits 2 "$RKMCTL" -c "$folder/control" cnc jog +
     exits 2 "$RKMCTL" -c "$folder/control" cnc home
     exits 2 "$RKMCTL" -c "$folder/control" cnc begin
-    holds "$complained" "expected get, set, cells, start, stop, reset, jog, home, panel or load, found 'begin'" "an unknown word"
+    holds "$complained" "cells, start, stop, reset, jog, home, panel, load or plc, found 'begin'" "an unknown word"
     exits 1 "$RKMCTL" -c "$folder/control" cnc load "$folder/none.nc"
     holds "$complained" "cannot read $folder/none.nc" "a missing file"
     exits 2 "$RKMCTL" -c "$folder/control" cnc home Q
@@ -127,6 +127,25 @@ test_rkmctl_loads_plc_programs_and_switches() {
     holds "$complained" "start it with --config $example/mill.xml" "a configuration"
     exits 2 "$RKMCTL" -c "$folder/control" cnc load
     holds "$complained" "cnc load: expected FILE..." "no file"
+}
+
+test_rkmctl_lists_the_plc_program_that_runs() {
+    printf 'DATA\nGO BIT 0\nDATA_END\nMODULE_BLOCK_INIT\n LDR GO\n EX0\nMODULE_BLOCK_INIT_END\n' >"$folder/a.plc"
+    printf 'G1 X3 F1000\n' >"$folder/a.nc"
+    serve_cnc --plc "$folder/a.plc" --nc "$folder/a.nc"
+    cnc start
+    exits 0 "$RKMCTL" -c "$folder/control" advance 5ms
+    cnc plc 4 3
+    same "T 4  RLO 0  DR 1  DR_REAL 0  BX 0
+MODULE_BLOCK_INIT: 2 instructions, at most 2
+MODULE_BLOCK_INIT waits in line 6
+     4                 MODULE_BLOCK_INIT
+     5              0   LDR GO
+     6 >                EX0" "$said" "the listing"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc plc 0
+    holds "$complained" "cnc plc: expected the first line" "a wrong line"
+    exits 2 "$RKMCTL" -c "$folder/control" cnc plc 1 501
+    exits 2 "$RKMCTL" -c "$folder/control" cnc plc 1 2 3
 }
 
 # A PLC program goes on for ever; what it was started for does not.
