@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The block machine of the CNC872, without PLC program, from the text of its specification alone (NT2, NB1 to NB8)."""
 from cnc872_manual import Manual
+from cnc872_reference import References
 from cnc872_section import Section
+from cnc872_technology import Technology
 
 U = 65536
 IDLE, INIT, MOVE, DELAY, DONE = range(5)
@@ -12,17 +14,20 @@ BITS = ("STOPPI STOP_REQ STOP_EMERGENCY_REQ START_DISABLE PO_F PO_POL PO_STOP SF
 
 
 class Block:
-    """g: 0, 1, 33 or None; targets in u by axis; feed in mm/min, or mm/rev if `turns`; delay in ms or None; m: function of
-    group 1 or None; override: 48, 49 or None; spindle: 3, 5 or None."""
+    """g: 0, 1, 33 or None; targets in u by axis; feed in mm/min, or mm/rev if `turns`; delay in ms or None; functions: those
+    of group M; t, h: or None. Of the spindle what is in force: speed and limit in rev/min, cut_speed in m/min, is_cut with G96;
+    has_speed: S is in this block."""
 
-    def __init__(self, g, targets, feed, delay=None, m=None, continuous=False, override=None, turns=False, spindle=None):
-        self.override, self.turns, self.spindle = override, turns or g == 33, spindle
-        self.g, self.targets, self.feed, self.m, self.continuous = g if targets else None, targets, feed, m, continuous
+    def __init__(self, g, targets, feed, delay=None, continuous=False, turns=False, functions=(), t=None, h=None, spindle=None):
+        self.turns, self.functions, self.t, self.h = turns or g == 33, functions, t, h
+        self.m = next((m for m in functions if m in (0, 1, 2, 30)), None)
+        self.g, self.targets, self.feed, self.continuous = g if targets else None, targets, feed, continuous
         self.has_delay, self.delay = delay is not None, delay or 0
+        self.speed, self.cut_speed, self.limit, self.is_cut, self.has_speed = spindle
 
 
 class Machine:
-    def __init__(self, parabolic, axes, program):
+    def __init__(self, parabolic, axes, program, gears):
         self.parabolic, self.axes, self.program, self.turn = parabolic, axes, program, 0
         self.cells = dict.fromkeys(BITS, 0)
         self.cells.update(FEED_OVR_MULTIPLIER=1000, BZH09=0, LIMIT_FEED=0, LIMIT_FEED_G00=0, TIME_DIST=0, STATUS_RESTART=0,
@@ -34,8 +39,7 @@ class Machine:
                                f"MP{axis}": 1})
         self.cells.update({f"REFPOINT_DIST[{i}]": 0 for i in range(len(axes))})
         self.requested, self.block_start, self.stop_place = set(), dict.fromkeys(axes, 0), None
-        self.spins, self.cells["SIM_SPEED_PT"], self.cells["ACT_SPEED_PM"] = False, 0, 0
-        self.override_cancelled, self.manual = False, Manual(self)
+        self.manual, self.technology, self.references = Manual(self), Technology(self, gears), References(self)
         self.position, self.actual = dict.fromkeys(axes, 0), dict.fromkeys(axes, 0)
         self.pot, self.block_by_block, self.m01 = 100, False, False
         self.phase, self.block, self.next, self.section, self.delay = IDLE, None, 0, None, 0
@@ -65,15 +69,22 @@ class Machine:
     def begin_phase(self, phase):
         self.phase, self.passed, self.outside = phase, False, False
 
+    def show_start(self, **modes):
+        """A block, a reference (REFPI) or a central annulment (CAPI) begins."""
+        self.cells.update(PO_F=1, SF_BLOCKFINISHED=0, CAPI=0, REFPI=0)
+        self.cells.update(modes)
+        self.technology.threads = False
+
     def publish(self):
         cells, block = self.cells, self.program[self.next]
+        if not self.section and not self.technology.fits(block):
+            cells["SF_STOP"] = 1
+            return
         self.block, self.next = self.next, self.next + 1
         self.begin_phase(INIT)
-        cells.update(PO_F=1, CAPI=0, SF_BLOCKFINISHED=0)
-        if block.override:
-            self.override_cancelled = block.override == 48
-        if block.spindle:
-            self.spins = block.spindle == 3
+        self.show_start()
+        self.technology.threads = block.g == 33
+        self.technology.publish(block)
         self.delay = block.delay
         if self.section and self.block > self.section.segments[0].index:
             self.section.now += 1
@@ -97,7 +108,8 @@ class Machine:
     def end_block(self):
         cells, index, section = self.cells, self.block, self.section
         cells.update(PO_F=0, STATUS_RESTART=0, BLOCK_RESTART=0, SF_BLOCKFINISHED=1)
-        self.phase, self.block = IDLE, None
+        self.phase, self.block, self.references.runs = IDLE, None, False
+        self.technology.end()
         if index is None:
             return
         if section and section.now + 1 < len(section.segments):
@@ -141,6 +153,7 @@ class Machine:
         cells.update(STOP_REQ=0, STOP_EMERGENCY_REQ=0)
         if stop or emergency:
             self.manual.stop(emergency)
+            self.references.stop(emergency)
         if self.block is None or not (stop or emergency):
             return
         if emergency:
@@ -168,7 +181,9 @@ class Machine:
         return True
 
     def advance_block(self):
-        if self.phase == INIT and self.passed:
+        if self.phase == INIT and self.passed and self.references.runs:
+            self.phase = MOVE
+        elif self.phase == INIT and self.passed:
             if not self.reached:
                 self.requested -= set(self.section.segments[self.section.now].way)
                 if not self.section.goes and self.section.is_left():
@@ -190,10 +205,12 @@ class Machine:
             self.end_block()
 
     def run_annulment(self):
-        if self.annulment == 1 and not self.path_moves() and not self.manual.moving:
+        if self.annulment == 1 and not self.path_moves() and not self.manual.moving and not self.references.moving():
             self.annulment = 2
-            self.cells.update(CAPI=1, PO_F=1, PO_STOP=0, BLOCK_RESTART=0, STATUS_RESTART=0, BZH13=0, G23ACT=0, TIME_DIST=0,
-                              PRODLEVA=0, SF_BLOCKFINISHED=0)
+            self.show_start(CAPI=1)
+            self.cells.update(PO_STOP=0, BLOCK_RESTART=0, STATUS_RESTART=0, BZH13=0, G23ACT=0, TIME_DIST=0, PRODLEVA=0)
+            self.technology.end()
+            self.references.drop()
             self.requested = set()
             if self.phase not in (INIT, DONE) or self.passed:
                 self.begin_phase(INIT)
@@ -226,6 +243,7 @@ class Machine:
                     self.cells[f"SM_PO{axis}PI"] = int(way < 0)
         if not (section and section.goes):
             self.manual.move()
+            self.references.move()
         for axis, values in self.axes.items():
             error = self.position[axis] - self.actual[axis]
             if self.cells[f"VAZBA_{axis}"]:
@@ -233,7 +251,7 @@ class Machine:
 
     def override(self):
         """The two factors of the feed in per mille (NF1)."""
-        if self.override_cancelled:
+        if self.technology.override_cancelled:
             return 1000, 1000
         return self.cells["BZH09"] if self.cells["FEED_OVR"] else self.pot * 10, self.cells["FEED_OVR_MULTIPLIER"]
 
@@ -263,6 +281,7 @@ class Machine:
         self.run_pass()
         self.take_stop()
         self.take_positions()
+        self.references.take()
         if not self.finish_start():
             if not self.stopped:
                 self.advance_block()
@@ -280,25 +299,28 @@ class Machine:
         """HOMING_REQ (NH1)."""
         cells = self.cells
         for i, axis in enumerate(self.axes):
-            moves = (self.phase == MOVE and not cells["PO_STOP"]) or axis in self.manual.moving
+            moves = self.phase == MOVE and not cells["PO_STOP"]
+            moves = moves or axis in self.manual.moving or axis in self.references.moving()
             moves = moves or (self.section and self.section.goes)
             if cells["HOMING_REQ"] >> i & 1 and not moves:
-                place = cells[f"REFPOINT_DIST[{i}]"]
-                self.actual[axis] += place - self.position[axis]
-                self.position[axis] = self.block_start[axis] = place
                 cells["HOMING_REQ"] &= ~(1 << i)
-                cells["HOMING"] |= 1 << i
+                self.set_position(axis, self.axes[axis]["null_point"] * 65536000 + cells[f"REFPOINT_DIST[{i}]"])
+
+    def set_position(self, axis, place):
+        self.actual[axis] += place - self.position[axis]
+        self.position[axis] = self.block_start[axis] = place
+        self.cells["HOMING"] |= 1 << list(self.axes).index(axis)
 
     def show(self):
         """Step 5: status cells (NE2, NE3, NB5, NB6, NA5)."""
-        cells, moves = self.cells, self.v > 0 or self.path_moves() or bool(self.manual.moving)
+        cells, moves = self.cells, self.v > 0 or self.path_moves() or bool(self.manual.moving or self.references.moving())
         changed = self.stop_place is not None and self.stop_place != self.position
         cells.update(INPOS=int(not moves and self.is_near(self.axes)), INPOS_STOP=int(not changed),
                      SF_STOPPOSCHANGED=int(changed and cells["PO_STOP"]),
                      SF_RUN=int(moves or (self.phase != IDLE and not cells["PO_STOP"])),
                      SF_LS=int(any(cells[f"KH{axis}{sign}"] for axis in self.axes for sign in "01")))
-        cells["ACT_SPEED_PM"] = cells["SIM_SPEED_PT"] * 1000 // 6 if self.spins else 0
+        self.technology.show()
         for axis in self.axes:
-            cells[f"PO_OS{axis}PI"] = int(axis in self.requested or self.manual.moves(axis))
+            cells[f"PO_OS{axis}PI"] = int(axis in self.requested or self.manual.moves(axis) or axis in self.references.moving())
             cells[f"MP{axis}"] = int(cells[f"MP{axis}PI"] and not cells[f"KH{axis}0"] and not cells[f"KH{axis}1"] and
                                      not cells["BZH13"])

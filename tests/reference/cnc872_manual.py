@@ -37,7 +37,8 @@ class Manual:
     def move(self):
         """Step 4 of a T in which no path goes."""
         machine, cells = self.machine, self.machine.cells
-        active = cells["EN_AUTMAN"] and cells["AUTMAN_REQ"] and (machine.phase == 0 or cells["PO_STOP"])
+        free = not machine.references.runs and (machine.phase == 0 or cells["PO_STOP"])
+        active = cells["EN_AUTMAN"] and cells["AUTMAN_REQ"] and free
         cells["ACK_AUTMAN"] = int(bool(active or self.moving))
         for axis in machine.axes:
             request = cells[f"EXM_{axis}0"] - cells[f"EXM_{axis}1"] if cells["REQ_EXT_CONT_AUTMAN"] else 0

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* cnc_subject.c: a CNC872 that does what cnc872.py says. A line of input is a command:
  *
- *     config XML | nc LINE | power                    a machine, a line of its NC program, power-up
- *     start | stop | reset | pot N | rtm N | m01 N | single N | bit NAME N | cell NAME N
+ *     config XML | nc LINE | power | show NAME        a machine, a line of its NC program, power-up, a cell to be printed
+ *     start | stop | reset | pot N | spindle N | rtm N | m01 N | single N | bit NAME N | cell NAME N
  *     tick                                            one T
  *     end
  *
- * Output of a T: X Y Z, speed, phase, block (-1: none), the cells of `names` and `numbers` below. */
+ * Output of a T: X Y Z, speed, phase, block (-1: none), the cells of `show`. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,21 +17,26 @@
 
 static char xml[4000], nc[4000];
 
+#define SHOWN_MAX 128u
+static struct cnc_operand shown[SHOWN_MAX];
+static unsigned shown_count;
+
+static void show(const char *name)
+{
+    struct cnc_text_fault fault;
+    ck_assert_uint_lt(shown_count, SHOWN_MAX);
+    ck_assert(cnc_parse_operand(name, strlen(name), NULL, &shown[shown_count++], &fault));
+}
+
 static void print_turn(void)
 {
-    static const char *const names[] = {"PO_F", "PO_POL", "PO_STOP", "SF_STOP", "G23ACT", "BLOCK_RESTART", "CAPI", "INPOS",
-                                        "PO_OSXPI", "PO_OSYPI", "PO_OSZPI", "SM_POXPI", "SM_POYPI", "SM_POZPI", "MPX", "MPY",
-                                        "ACK_AUTMAN", "SF_STOPPOSCHANGED", "INPOS_STOP", "SF_LS", "PRODLEVA", "SF_RUN",
-                                        "SF_BLOCKFINISHED"};
     for (unsigned i = 0; i < 3; i++)
         printf("%" PRId64 " ", cnc.axis[i].position);
     printf("%" PRId64 " %u %" PRId64, cnc.move.v, cnc.machine.phase,
            cnc.machine.block == CNC_NO_BLOCK ? -1 : (int64_t)cnc.machine.block);
-    for (unsigned i = 0; i < sizeof names / sizeof *names; i++)
-        printf(" %d", bit(names[i]));
-    static const char *const numbers[] = {"STATUS_RESTART", "TIME_DIST", "HOMING", "HOMING_REQ", "ACT_SPEED_PM"};
-    for (unsigned i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        printf(" %" PRId64, cell(numbers[i], 0));
+    for (const struct cnc_operand *one = shown; one < shown + shown_count; one++)
+        printf(" %" PRId64, one->kind == CNC_OPERAND_BIT ? (int64_t)cnc_bit(&cnc.cells, one->place)
+                                                        : cnc_read_number(&cnc.cells, one->place, (enum cnc_type)one->type));
     putchar('\n');
 }
 
@@ -45,6 +50,10 @@ static void obey(const char *what, const char *name, long long value)
         cnc_reset(&cnc);
     else if (strcmp(what, "pot") == 0)
         cnc.panel.feed = (uint16_t)atoi(name);
+    else if (strcmp(what, "spindle") == 0)
+        cnc.panel.spindle = (uint16_t)atoi(name);
+    else if (strcmp(what, "show") == 0)
+        show(name);
     else if (strcmp(what, "rtm") == 0)
         cnc_set_critical(&cnc, (uint8_t)atoi(name));
     else if (strcmp(what, "m01") == 0)
