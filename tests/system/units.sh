@@ -125,19 +125,17 @@ test_two_units_with_the_same_address_answer_at_once_and_spoil_it() {
     kill "$started"
     status_of "$started"
     serve bus --node 5,5 --clock x20 --flash "$folder/unit%n.flash"
+    exits 0 "$RKMCTL" -c "$folder/bus.control" -u 5 wait m1.position=111
+    exits 0 "$RKMCTL" -c "$folder/bus.control" -u 5-2 wait m1.position=22222
     exec 3<>"$folder/bus"
-    soon "the two positions collide" collide
+    say_bytes 3 "$(frame 05 00 04 31)"
+    # The answer is received as the AND of both: 111 is blanks (20) where 22222 has 2 (32), so 20; 1 (31) AND 2 (32) is 0 (30).
+    holds "$(hear_bytes 3 18)" 7e000504310a20202020202020303030 "the two positions collide"
     exec 3>&-
     exits 3 ctl bus -n 5 -m 1 --timeout 500 position
     kill "$started"
     status_of "$started"
     ! grep -q 'collisions 0,' "$folder/bus.err" || fail "no collision counted: $(tail -n 1 "$folder/bus.err")"
-}
-
-# The answer is received as the AND of both: 111 is blanks (20) where 22222 has 2 (32), so 20; 1 (31) AND 2 (32) is 0 (30).
-collide() {
-    say_bytes 3 "$(frame 05 00 04 31)"
-    [[ $(hear_bytes 3 18) == 7e000504310a"2020202020"2020303030* ]]
 }
 
 test_a_request_into_an_answer_spoils_both() {
