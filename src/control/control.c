@@ -82,7 +82,7 @@ static void on_check(uv_timer_t *handle)
     for (struct control_client *client = control->clients, *next; client; client = next) {
         next = client->next;
         if (client->connection.leaving && connection_is_gone(&client->connection))
-            connection_close(&client->connection);
+            connection_forsake(&client->connection);
         else
             more = more || client->connection.leaving;
     }

@@ -67,7 +67,7 @@ static void mark_failed(struct connection *connection)
 
 void connection_send(struct connection *connection, const char *text, size_t length)
 {
-    if (connection->closing || connection->failed)
+    if (connection->closing || connection->failed || connection->gone)
         return;
     if (!reserve(&connection->out, length)) {
         mark_failed(connection);
@@ -79,7 +79,7 @@ void connection_send(struct connection *connection, const char *text, size_t len
 
 char *connection_begin_event(struct connection *connection, size_t room, uint64_t tick)
 {
-    if (connection->closing || connection->failed)
+    if (connection->closing || connection->failed || connection->gone)
         return NULL;
     if (connection->lost > 0 || connection_unread(connection) + room > CONNECTION_EVENTS_MAX ||
         !reserve(&connection->out, room)) {
@@ -114,7 +114,7 @@ static void on_written(uv_write_t *write, int status)
     connection->wire.at = connection->wire.length;
     release_if_empty(&connection->wire);
     if (status < 0)
-        mark_failed(connection);
+        connection_forsake(connection);
     if (!connection->closing)
         connection_flush(connection);
 }
@@ -129,7 +129,7 @@ static void write_out(struct connection *connection)
         uv_buf_t rest = uv_buf_init(connection->wire.byte + connection->wire.at, (unsigned)unread_length(&connection->wire));
         int written = uv_try_write(&connection->end.stream, &rest, 1);
         if (written < 0 && written != UV_EAGAIN) {
-            mark_failed(connection);
+            connection_forsake(connection);
             return;
         }
         connection->wire.at += written > 0 ? (size_t)written : 0;
@@ -151,6 +151,8 @@ static bool is_done(const struct connection *connection)
     if (!connection->leaving || connection_unread(connection) > 0)
         return false;
     bool is_served = unread_length(&connection->in) == 0;
+    if (connection->gone)
+        return is_served || connection->blocked || calls->is_held(connection);
     return connection->is_tcp ? is_served || calls->is_held(connection) : is_served && !calls->is_expecting(connection);
 }
 
@@ -195,7 +197,7 @@ static void end_input(struct connection *connection)
     connection->leaving = true;
     uv_read_stop(&connection->end.stream);
     if (connection_is_gone(connection)) {
-        connection_close(connection);
+        connection_forsake(connection);
         return;
     }
     connection->calls->leaving(connection);
@@ -217,7 +219,7 @@ static void on_read(uv_stream_t *stream, ssize_t length, const uv_buf_t *buffer)
     struct connection *connection = stream->data;
     (void)buffer;
     if (length < 0 && (length != UV_EOF || connection->turned_away || connection->stranger)) {
-        connection_close(connection);
+        connection_forsake(connection);
     } else if (length < 0) {
         end_input(connection);
     } else if (connection->turned_away) {
@@ -362,6 +364,23 @@ void connection_turn_away(struct connection *connection)
     connection->in.at = connection->in.length = connection->scanned = 0;
     if (uv_shutdown(&connection->shutdown, &connection->end.stream, NULL) != 0)
         connection_close(connection);
+}
+
+void connection_forsake(struct connection *connection)
+{
+    if (connection->closing || connection->gone)
+        return;
+    if (connection->stranger || connection->turned_away) {
+        connection_close(connection);
+        return;
+    }
+    connection->gone = connection->leaving = true;
+    connection->reading = false;
+    uv_read_stop(&connection->end.stream);
+    connection->out.at = connection->out.length;
+    if (!connection->writing)
+        connection->wire.at = connection->wire.length;
+    connection->calls->more(connection);
 }
 
 bool connection_is_gone(const struct connection *connection)

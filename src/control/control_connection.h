@@ -62,6 +62,7 @@ struct connection {
     bool turned_away;
     size_t ignored;  /* bytes since then */
     bool leaving;    /* it sends no more; it may still read */
+    bool gone;       /* it reads no more either: what it has sent is still done, what is sent to it is dropped */
     bool closing;
     bool failed;     /* it is to be closed at the next turn */
     bool reading, writing;
@@ -107,6 +108,9 @@ void connection_flush(struct connection *connection);
 
 /* Returns whether the client has closed both directions (not just its sending side). */
 bool connection_is_gone(const struct connection *connection);
+
+/* The client has gone: do what it has sent, up to what it would have to wait for, and close the connection. */
+void connection_forsake(struct connection *connection);
 
 /* Close the connection. closed() is called when the loop has closed its handle. */
 void connection_close(struct connection *connection);

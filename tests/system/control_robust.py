@@ -8,6 +8,7 @@ import json
 import os
 import re
 import resource
+import signal
 import socket
 import subprocess
 import sys
@@ -61,6 +62,11 @@ class Emulator:
         """Seconds of processor time."""
         with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
             return sum(map(int, file.read().rsplit(")")[-1].split()[11:13])) / os.sysconf("SC_CLK_TCK")
+
+    def state(self):
+        """Of the process, a letter."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
+            return file.read().rsplit(")")[-1].split()[0]
 
     def files(self):
         return len(os.listdir(f"/proc/{self.process.pid}/fd"))
@@ -190,6 +196,27 @@ def test_a_client_that_leaves_in_the_middle_does_no_harm(emulator):
     emulator.program(1, "F9 R")
     good.call("advance", ticks="1s")
     assert good.call("state")["motors"][0]["position"] == 9
+
+
+def test_what_a_client_sends_before_it_goes_is_done(emulator):
+    """However late the emulator reads it."""
+    other = emulator.client()
+    other.call("units")
+    files = emulator.files()
+    emulator.program(1, "G+")
+    gone = Client(emulator.path)
+    gone.call("units")
+    emulator.process.send_signal(signal.SIGSTOP)
+    soon("it stands", lambda: emulator.state() == "T")
+    gone.send(b'{"jsonrpc":"2.0","id":1,"method":"state"}\n' * 50 +
+              b'{"jsonrpc":"2.0","method":"di.set","params":{"mask":5}}\n{"jsonrpc":"2.0","id":1,"method":"wait","params":'
+              b'{"until":{"position":9,"motor":1}}}\n{"jsonrpc":"2.0","method":"di.set","params":{"mask":7}}\n'
+              b'{"jsonrpc":"2.0","id":1,"method":"advance","params":{"ticks":"1000000s"}}\n'
+              b'{"jsonrpc":"2.0","method":"di.set","params":{"mask":9}}\n')
+    gone.close()
+    emulator.process.send_signal(signal.SIGCONT)
+    soon("it is gone", lambda: emulator.files() == files)
+    assert other.call("state")["di"] == 7
 
 
 def test_one_that_only_ends_its_sending_gets_its_answers(emulator):

@@ -90,7 +90,8 @@ test_the_options_go_together_or_say_why_not() {
 }
 
 # Of the clients that behave badly those for which the kind of connection matters.
-wanted='one_too_many|leaves_in_the_middle|who_does_not_read|however_slow|an_advance_ends|files_begun|killed_emulator|megabytes'
+wanted='one_too_many|before_it_goes|leaves_in_the_middle|who_does_not_read|however_slow|an_advance_ends|files_begun'
+wanted+='|killed_emulator|megabytes'
 run_python() { CONTROL=tcp:0 python3 "$here/$1.py" "$2" >"$folder/robust" 2>&1 || fail "$(<"$folder/robust")"; }
 for name in $(sed -n 's/^def \(test_[a-z_]*\).*/\1/p' "$here/control_door.py"); do
     eval "$name() { run_python control_door $name; }"
