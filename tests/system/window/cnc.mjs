@@ -3,7 +3,7 @@
 import { execFile, execFileSync, spawn } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import assert from "node:assert/strict";
-import { changeLanguage, checkAccess, folder, openPage, openPanel, pictures, roundTrip, shows } from "./page.mjs";
+import { changeLanguage, checkAccess, folder, openPage, openPanel, pictures, roundTrip, shows, stopUnits } from "./page.mjs";
 
 const quoted = (text) => JSON.stringify(text);
 const reads = (page, row, column, text) => shows(page, `.axes tbody tr:nth-child(${row}) td:nth-child(${column})`,
@@ -118,9 +118,8 @@ export const cases = {
     await reads(page, 3, 2, "idle");
     await page.mouse.up();
     await hold(page, "X+", 1); // Stop all
-    await page.keyboard.press("F8");
+    await stopUnits(page);
     await reads(page, 1, 2, "idle");
-    await shows(page, "#status", "element.textContent.includes('Stop sent to units: 1')");
     await page.mouse.up();
     await hold(page, "X+", 1); // another window has the focus
     await page.evaluate(() => dispatchEvent(new Event("blur")));
@@ -386,8 +385,7 @@ export const cases = {
       await shows(page, "#inside", "!element.hidden");
       await shows(page, ".device .lamp", "element.textContent === 'WAIT'");
       assert.equal(await page.inputValue(".program textarea"), "G0 X1\n");
-      await page.press("body", "F8");
-      await shows(page, "#status", "element.textContent.includes('Stop sent to units: 1')");
+      await stopUnits(page);
     } finally {
       again.kill();
     }
