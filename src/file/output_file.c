@@ -299,8 +299,13 @@ bool output_file_empty(FILE *file)
 
 int output_file_close(FILE *file)
 {
+    const bool has_failed = ferror(file) != 0;
     output_file_release(fileno(file));
-    return fclose(file);
+    if (fclose(file) != 0)
+        return EOF;
+    if (has_failed)
+        errno = EIO;
+    return has_failed ? EOF : 0;
 }
 
 /* ---- Replace -------------------------------------------------------------------------------------------------------- */

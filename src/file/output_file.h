@@ -32,7 +32,7 @@ void output_files_undo(void);
 /* Drop what is in a file opened with OUTPUT_KEEP. Returns false if it did not work; errno says why. */
 bool output_file_empty(FILE *file);
 
-/* Close it. Returns 0 or EOF as fclose(). */
+/* Close it. Returns 0, or EOF if anything could not be written; errno says why, EIO if that was before. */
 int output_file_close(FILE *file);
 
 /* Replace the regular file `path`, or make it: what `write` writes takes its place in one step, and only if `write` returned true

@@ -10,7 +10,9 @@ static void forget_results(struct document *document)
 {
     analysis_clear(&document->analysis);
     free(document->marks);
+    free(document->machine);
     document->marks = NULL;
+    document->machine = NULL;
     document->has_changed = true;
 }
 
@@ -124,6 +126,7 @@ void document_free(struct document *document)
 {
     analysis_clear(&document->analysis);
     free(document->marks);
+    free(document->machine);
     free(document->text);
     free(document->uri);
     free(document);

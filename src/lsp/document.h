@@ -23,6 +23,8 @@ struct document {
     size_t length, room;
     bool is_unknown;  /* too long, or an edit was not understood: until the editor sends the whole text */
     bool has_changed; /* since the diagnostics were last reported */
+    bool is_stale;    /* its diagnostics are: the configuration beside it has changed */
+    struct cnc_config *machine; /* what a configuration says, once it was checked without an error; NULL: not known */
     struct analysis analysis;
     struct document_position *marks; /* of every 256th byte; NULL: not known */
 };

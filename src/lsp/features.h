@@ -25,6 +25,6 @@ json_t *lsp_complete(struct session *session, const json_t *params, struct sessi
 
 /* report.c: send the diagnostics of a document; of one that is closed, none. */
 void lsp_report(struct session *session, struct document *document);
-void lsp_report_none(struct session *session, const char *uri);
+void lsp_report_none(struct session *session, const struct document *document);
 
 #endif

@@ -94,9 +94,10 @@ static void serve(struct lsp_server *server, struct frame_reader *frames)
         if (got > 0 && !frame_add(frames, bytes, (size_t)got))
             fputs("rkm04 lsp: out of memory\n", stderr);
         else if (got > 0 && handle_messages(server, frames)) {
-            if (!has_input())
-                lsp_report_changes(server);
-            if (fflush(stdout) == 0)
+            bool is_written = fflush(stdout) == 0;
+            while (is_written && !has_input() && lsp_report_change(server))
+                is_written = fflush(stdout) == 0;
+            if (is_written)
                 continue;
         }
         return;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* report.c: what is wrong with a document, as the editor shows it. */
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -68,23 +69,33 @@ static bool check_text(const struct document *document, struct cnc_config *machi
     return check_cnc(&source, machine, found);
 }
 
-/* A text of a CNC872; an NC program with the configuration that is open beside it, if that has no errors. */
-static bool check_cnc_document(const struct session *session, const struct document *document, struct diagnostics *found)
+/* What a configuration says is kept for the NC programs beside it. */
+static void keep_machine(struct document *document, const struct cnc_config *machine)
 {
-    struct cnc_config machine;
-    cnc_config_clear(&machine);
-    for (size_t i = 0; i < session->count; i++) {
-        struct diagnostics of_machine;
-        if (!is_machine_of(session->documents[i], document) || session->documents[i]->is_unknown)
-            continue;
-        if (!check_text(session->documents[i], &machine, &of_machine) || of_machine.errors > 0)
-            cnc_config_clear(&machine);
-        diagnostics_free(&of_machine);
-    }
-    return check_text(document, &machine, found);
+    free(document->machine);
+    document->machine = malloc(sizeof *machine);
+    if (document->machine != NULL)
+        *document->machine = *machine;
 }
 
-static bool check_document(const struct session *session, const struct document *document, struct diagnostics *found)
+/* A text of a CNC872; an NC program with the configuration that is open beside it, if that has no errors. */
+static bool check_cnc_document(const struct session *session, struct document *document, struct diagnostics *found)
+{
+    const struct document *beside = NULL;
+    struct cnc_config machine;
+    for (size_t i = 0; i < session->count; i++)
+        if (is_machine_of(session->documents[i], document) && !session->documents[i]->is_unknown)
+            beside = session->documents[i];
+    cnc_config_clear(&machine);
+    if (beside != NULL && beside->machine != NULL)
+        machine = *beside->machine;
+    const bool ok = check_text(document, &machine, found);
+    if (ok && found->errors == 0 && has_end(document->uri, ".xml"))
+        keep_machine(document, &machine);
+    return ok;
+}
+
+static bool check_document(const struct session *session, struct document *document, struct diagnostics *found)
 {
     const struct check_options options = {.off = session->options.off};
     const struct program_source source = document_source(document);
@@ -94,11 +105,11 @@ static bool check_document(const struct session *session, const struct document 
 }
 
 /* The NC programs of a configuration may be wrong or right now. */
-static void report_programs(struct session *session, const struct document *machine)
+static void mark_programs(struct session *session, const struct document *machine)
 {
     for (size_t i = 0; i < session->count; i++)
         if (is_machine_of(machine, session->documents[i]))
-            lsp_report(session, session->documents[i]);
+            session->documents[i]->is_stale = true;
 }
 
 void lsp_report(struct session *session, struct document *document)
@@ -115,12 +126,14 @@ void lsp_report(struct session *session, struct document *document)
             json_array_append_new(list, diagnostic_json(document, &found.list[i]));
         diagnostics_free(&found);
     }
-    document->has_changed = false;
+    if (document->has_changed)
+        mark_programs(session, document);
+    document->has_changed = document->is_stale = false;
     send(session, document->uri, &version, list);
-    report_programs(session, document);
 }
 
-void lsp_report_none(struct session *session, const char *uri)
+void lsp_report_none(struct session *session, const struct document *document)
 {
-    send(session, uri, NULL, json_array());
+    send(session, document->uri, NULL, json_array());
+    mark_programs(session, document);
 }

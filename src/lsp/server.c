@@ -123,7 +123,7 @@ static void close_document(struct session *session, const json_t *params)
         i++;
     if (uri == NULL || i == session->count)
         return;
-    lsp_report_none(session, uri);
+    lsp_report_none(session, session->documents[i]);
     document_free(session->documents[i]);
     session->documents[i] = session->documents[--session->count];
 }
@@ -295,9 +295,29 @@ void lsp_receive_too_long(struct lsp_server *server)
     forget_documents(server);
 }
 
+/* Texts that were edited come first. NULL: none. */
+static struct document *find_unreported(const struct session *session)
+{
+    struct document *stale = NULL;
+    for (size_t i = session->count; i-- > 0;) {
+        if (session->documents[i]->has_changed)
+            return session->documents[i];
+        if (session->documents[i]->is_stale)
+            stale = session->documents[i];
+    }
+    return stale;
+}
+
+bool lsp_report_change(struct lsp_server *server)
+{
+    struct document *document = find_unreported(&server->session);
+    if (document != NULL)
+        lsp_report(&server->session, document);
+    return document != NULL;
+}
+
 void lsp_report_changes(struct lsp_server *server)
 {
-    for (size_t i = 0; i < server->session.count; i++)
-        if (server->session.documents[i]->has_changed)
-            lsp_report(&server->session, server->session.documents[i]);
+    while (lsp_report_change(server))
+        ;
 }

@@ -21,8 +21,12 @@ void lsp_receive(struct lsp_server *server, const char *text, size_t length);
 /* A message was skipped because it was too long: it may have been an edit of any document. */
 void lsp_receive_too_long(struct lsp_server *server);
 
-/* Send the diagnostics of documents that have changed. To be called when no message is left: then a fast typist is not reported
- * on letter by letter. */
+/* Send the diagnostics of one document that has changed, or whose configuration has; those that were edited come first. Returns
+ * false if there is none. To be called while no message waits: then a fast typist is not reported on letter by letter, and no
+ * message waits for more than one check. */
+bool lsp_report_change(struct lsp_server *server);
+
+/* Of all of them. */
 void lsp_report_changes(struct lsp_server *server);
 
 #endif

@@ -5,13 +5,13 @@
 #include <string.h>
 #include <strings.h>
 
+enum text_kind { TEXT_CONFIG, TEXT_NC, TEXT_PLC, TEXT_KINDS };
+
 struct checking {
     const struct program_source *source;
     struct diagnostics *found;
-    const char *name; /* of its errors */
+    enum text_kind kind;
 };
-
-enum text_kind { TEXT_CONFIG, TEXT_NC, TEXT_PLC, TEXT_KINDS };
 
 static const struct {
     const char *end, *name;
@@ -32,6 +32,21 @@ bool check_cnc_takes(const char *name)
     return kind_of(name) != TEXT_KINDS;
 }
 
+/* Bytes of the word that begins at `text`: an address of an NC program with its number, a word of a PLC program, a name or a
+ * value of a configuration; 0 at the end of a line. */
+static size_t word_length(enum text_kind kind, const char *text, size_t rest)
+{
+    static const char *const ends[] = {[TEXT_CONFIG] = " \t\r\n<>=\"'/", [TEXT_PLC] = " \t\r\n;,"};
+    size_t length = rest > 0 && strchr("\r\n", text[0]) == NULL;
+    if (kind == TEXT_CONFIG && length > 0 && length < rest && text[0] == '<')
+        length += text[1] == '/';
+    while (length > 0 && length < rest && text[length] != '\0' &&
+           (kind == TEXT_NC ? strchr("0123456789.+-=", text[length]) != NULL || ((unsigned char)text[length] & 0xC0) == 0x80
+                            : strchr(ends[kind], text[length]) == NULL))
+        length++;
+    return length;
+}
+
 static void take_error(void *context, const struct cnc_text_error *error)
 {
     const struct checking *checking = context;
@@ -40,7 +55,10 @@ static void take_error(void *context, const struct cnc_text_error *error)
         at = next + 1;
     const size_t column = error->column - 1;
     const size_t offset = (size_t)(at - text) + (column < (size_t)(end - at) ? column : (size_t)(end - at));
-    const struct diagnostic one = {.offset = offset, .severity = DIAGNOSTIC_ERROR, .name = checking->name};
+    const struct diagnostic one = {.offset = offset,
+                                   .length = word_length(checking->kind, text + offset, (size_t)(end - text) - offset),
+                                   .severity = DIAGNOSTIC_ERROR,
+                                   .name = kinds[checking->kind].name};
     diagnostics_add(checking->found, &one, NULL, "%s", error->text);
 }
 
@@ -79,7 +97,7 @@ static bool check_plc(const struct program_source *source, struct checking *chec
 bool check_cnc(const struct program_source *source, struct cnc_config *machine, struct diagnostics *found)
 {
     const enum text_kind kind = kind_of(source->name);
-    struct checking checking = {source, found, kinds[kind == TEXT_KINDS ? TEXT_CONFIG : kind].name};
+    struct checking checking = {source, found, kind == TEXT_KINDS ? TEXT_CONFIG : kind};
     bool ok = true;
     *found = (struct diagnostics){0};
     if (kind == TEXT_PLC)

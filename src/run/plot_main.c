@@ -335,14 +335,22 @@ static bool fill_curves(struct options *options, struct plot_curves *curves)
     return is_right;
 }
 
+/* Has everything been written? Otherwise errno says why. */
+static bool is_written(FILE *file)
+{
+    errno = EIO;
+    return fflush(file) == 0 && !ferror(file);
+}
+
 static bool write_png(FILE *out, const struct plot_curves *curves, const struct plot_view *view, const struct options *options)
 {
     FILE *svg = tmpfile();
     const char *why = strerror(errno);
     if (svg != NULL) {
         plot_draw_svg(svg, curves, view);
+        why = is_written(svg) ? NULL : strerror(errno);
         rewind(svg);
-        why = plot_rasterize(svg, out, options->scale);
+        why = why == NULL ? plot_rasterize(svg, out, options->scale) : why;
         fclose(svg);
     }
     return why == NULL || is_wrong("cannot make the PNG", why);
@@ -377,13 +385,16 @@ static bool write_picture(FILE *out, const struct plot_curves *curves, const str
     }
 }
 
-static void copy_file(FILE *out, FILE *in)
+/* Returns false, and errno says why, if it did not work. */
+static bool copy_file(FILE *out, FILE *in)
 {
     char bytes[BUFSIZ];
     size_t length;
     rewind(in);
-    while ((length = fread(bytes, 1, sizeof bytes, in)) > 0 && fwrite(bytes, 1, length, out) == length) {
-    }
+    while ((length = fread(bytes, 1, sizeof bytes, in)) > 0)
+        if (fwrite(bytes, 1, length, out) != length)
+            return false;
+    return is_written(out) && !ferror(in);
 }
 
 static bool write_to_file(const struct plot_curves *curves, const struct options *options, FILE *picture)
@@ -393,11 +404,13 @@ static bool write_to_file(const struct plot_curves *curves, const struct options
         return is_wrong("", strerror(errno));
     if (!write_picture(picture, curves, options))
         return false;
+    if (!is_written(picture))
+        return is_wrong("a temporary file", strerror(errno));
     FILE *out = output_file_open(options->output, &forms[options->form].kind, options->output_flags | OUTPUT_MAY_WAIT, &why);
     bool is_right = out != NULL;
-    if (is_right)
-        copy_file(out, picture);
-    if (out != NULL && output_file_close(out) != 0)
+    if (is_right && !copy_file(out, picture))
+        is_right = is_wrong(options->output, strerror(errno));
+    if (out != NULL && output_file_close(out) != 0 && is_right)
         is_right = is_wrong(options->output, strerror(errno));
     if (out == NULL)
         fprintf(stderr, COMMAND ": cannot write %s: %s\n", options->output, why != NULL ? why : strerror(ENOMEM));
@@ -410,7 +423,7 @@ static bool write_output(const struct plot_curves *curves, const struct options 
     if ((double)options->from >= fmax(curves->end, 1))
         return is_wrong("--from", "expected a time before the end of what is drawn");
     if (options->output == NULL)
-        return write_picture(stdout, curves, options) && (fflush(stdout) == 0 || is_wrong("standard output", strerror(errno)));
+        return write_picture(stdout, curves, options) && (is_written(stdout) || is_wrong("standard output", strerror(errno)));
     FILE *picture = tmpfile(); /* what is at the place already is overwritten by a whole picture only */
     bool is_right = write_to_file(curves, options, picture);
     if (picture != NULL)

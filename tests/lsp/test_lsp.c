@@ -512,7 +512,7 @@ static const char *put_file(const char *method, const char *uri, const char *tex
 START_TEST(texts_of_a_cnc_have_the_errors_of_check)
 {
     initialize();
-    holds(put_file("didOpen", "file:///m/a.nc", "G1 X1 F100\\nG1 Q1"), RANGE(1, 3, 3));
+    holds(put_file("didOpen", "file:///m/a.nc", "G1 X1 F100\\nG1 Q1"), RANGE(1, 3, 5));
     holds(answer, "\"code\":\"nc-error\"");
     holds(put_file("didOpen", "file:///m/a.plc", "MODULE_MAIN\\n TIM 3\\nMODULE_MAIN_END"), "\"code\":\"plc-error\"");
     holds(put_file("didChange", "file:///m/a.plc", "MODULE_MAIN\\nMODULE_MAIN_END"), "\"diagnostics\":[]");
@@ -532,6 +532,18 @@ START_TEST(an_nc_program_has_the_axes_of_the_configuration_beside_it)
     holds(put_file("didOpen", "file:///m/a.xml", "<ChannelConfig><Axis Name=\\\"4\\\"/></ChannelConfig>"), "m/a.nc");
     holds(answer, "\"diagnostics\":[]");
     holds(put_file("didChange", "file:///m/a.xml", "<ChannelConfig><Axis Name=\\\"X\\\"/></ChannelConfig>"), "nc-error");
+}
+END_TEST
+
+START_TEST(an_error_of_a_cnc_underlines_its_word)
+{
+    initialize();
+    holds(put_file("didOpen", "file:///m/a.nc", "G1 X1A4=5.5Y2 F1"), RANGE(0, 5, 11));
+    holds(put_file("didChange", "file:///m/a.nc", "G1 X1 \xC5\x99 F1"), RANGE(0, 6, 7));
+    holds(put_file("didOpen", "file:///m/a.plc", "MODULE_MAIN\\n TIMER_3,5 X\\nMODULE_MAIN_END"), RANGE(1, 1, 8));
+    holds(put_file("didOpen", "file:///n/b.xml", "<ChannelConfig><Axes/></ChannelConfig>"), RANGE(0, 15, 20));
+    holds(put_file("didChange", "file:///n/b.xml", "<ChannelConfig><Axis Name=\\\"Quite\\\"/></ChannelConfig>"),
+          RANGE(0, 27, 32));
 }
 END_TEST
 
@@ -563,7 +575,8 @@ int main(void)
                                     a_text_that_is_too_long_is_not_checked, a_document_too_many_is_not_checked, NULL});
     add_case(suite, "cnc",
              (const TTest *const[]){texts_of_a_cnc_have_the_errors_of_check,
-                                    an_nc_program_has_the_axes_of_the_configuration_beside_it, NULL});
+                                    an_nc_program_has_the_axes_of_the_configuration_beside_it,
+                                    an_error_of_a_cnc_underlines_its_word, NULL});
     add_case(suite, "frames",
              (const TTest *const[]){frames_come_in_any_pieces, a_frame_too_long_is_skipped, what_is_no_frame_ends_the_stream,
                                     NULL});

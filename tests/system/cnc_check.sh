@@ -23,10 +23,10 @@ test_errors_have_their_line_and_column() {
     exits 1 "$RKM04" check bad.plc
     same "bad.plc:4:8: error: there is no cell \`STOPPY' [plc-error]
     LDR  STOPPY ;
-         ^
+         ^~~~~~
 bad.plc:5:2: error: unknown instruction \`TIM' [plc-error]
    TIM 3
-   ^" "$said" "bad.plc"
+   ^~~" "$said" "bad.plc"
     exits 1 "$RKM04" check part.nc
     holds "$said" "part.nc:1:8: error: " "an axis that X, Y, Z do not have"
     printf 'G1 Y1 F100\n' >y.nc

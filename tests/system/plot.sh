@@ -89,6 +89,15 @@ test_forms_are_chosen_by_the_name() {
     holds "$complained" "expected a name that ends with .svg, .png, .html or .csv" "another ending"
 }
 
+test_a_picture_for_which_there_is_no_room_is_a_failure() {
+    program a 'S100 V5000 A5000 F10000 R'
+    for form in svg png html csv; do
+        ln -s /dev/full "$folder/full.$form"
+        exits 1 "$RKM04" plot --force -o "$folder/full.$form" "$folder/a.rks"
+        holds "$complained" "No space left on device" "the reason for .$form"
+    done
+}
+
 test_without_rsvg_convert_a_png_is_refused_and_the_way_out_named() {
     program a 'F10 R'
     exits 1 env PATH=/nowhere "$RKM04" plot -o "$folder/a.png" "$folder/a.rks"
