@@ -197,10 +197,8 @@ void cnc_section_build(struct cnc_section *section, const struct cnc_config *con
     for (uint32_t block = first; block < program->block_count && section->count < CNC_SEGMENTS_MAX; block++) {
         struct cnc_segment *next = &section->segment[section->count];
         const bool moves = cnc_segment_build(next, config, program, block, from);
-        if (!moves || (block > first && !goes_on(config, &program->blocks[block - 1], next - 1, next))) {
-            memset(next, 0, sizeof *next);
+        if (!moves || (block > first && !goes_on(config, &program->blocks[block - 1], next - 1, next)))
             break;
-        }
         section->length += next->length;
         next->border = section->length;
         section->axes |= next->axes;

@@ -57,6 +57,23 @@ START_TEST(NM9_limit_switches_of_every_axis)
 }
 END_TEST
 
+START_TEST(NB6_switches_of_axes_that_are_not_there)
+{
+    rig_begin_with("<ChannelConfig><Axis Name=\"X\"/></ChannelConfig>", "G1 X1 F1000");
+    set_bit("KHY0", true);
+    set_bit("KH161", true);
+    set_bit("ZPZ0", true);
+    set_cell("SLS_REFER", 0, 0xFFFF);
+    set_cell("HOMING", 0, 0xFFFF);
+    run_to(96);
+    ck_assert(!bit("SF_LS") && !bit("SF_SLS") && bit("MPX"));
+    ck_assert_int_eq(at(96).x, MM);
+    set_bit("KHX1", true);
+    run_to(97);
+    ck_assert(bit("SF_LS") && !bit("MPX"));
+}
+END_TEST
+
 START_TEST(NH4_software_limits_of_another_axis)
 {
     rig_begin_with("<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"Y\" SlsMinus=\"0\" SlsPlus=\"5\"/></ChannelConfig>",
@@ -122,6 +139,24 @@ START_TEST(NM6_a_way_of_one_unit)
     ck_assert_int_eq(at(300).y, MM);
     ck_assert_int_eq(at(300).z, -MM);
     ck_assert_int_eq(at(300).x, MM);
+}
+END_TEST
+
+/* Parabolic ramps spread one unit over 50 T's: the axis is under way until it has been moved. */
+START_TEST(NB5_INPOS_until_the_last_unit_is_moved)
+{
+    rig_power("<ChannelConfig AccelerationType=\"1\"/>", "G1 X0 F1000");
+    set_cell("REFPOINT_DIST", 0, -1);
+    set_cell("HOMING_REQ", 0, 1);
+    start_in(2);
+    run_to(2);
+    while (at(cnc.turn).x < 0) {
+        run_to(cnc.turn + 1);
+        ck_assert_int_eq(bit("INPOS"), at(cnc.turn).x == 0 && at(cnc.turn).v == 0);
+    }
+    ck_assert_uint_eq(cnc.turn, 52);
+    run_to(53);
+    ck_assert(bit("INPOS"));
 }
 END_TEST
 
@@ -246,101 +281,6 @@ START_TEST(NQ2_Cont_by_where_the_chosen_block_begins)
     stand_at(1, 1 * MM);
     stand_at(0, 1 * MM); /* where the block before it begins */
     ck_assert_int_eq(cnc_queue_number(&cnc, 1, CNC_QUEUE_Cont, 0), 1);
-}
-END_TEST
-
-/* ---- Sections ----------------------------------------------------------------------------------------------------------- */
-
-START_TEST(NM8_a_section_of_fifteen_blocks)
-{
-    rig_begin("G23 G1 X1 F1000\nX2\nX3\nX4\nX5\nX6\nX7\nX8\nX9\nX10\nX11\nX12\nX13\nX14\nX15\nX16\nX17");
-    run_to(20);
-    ck_assert_double_gt(cnc_queue_real(&cnc, 14, CNC_QUEUE_FeedCriterial, 0), 999);
-    ck_assert_double_eq(cnc_queue_real(&cnc, 15, CNC_QUEUE_FeedCriterial, 0), 0);
-    const uint64_t end = 20 + (uint64_t)cell("TIME_DIST", 0);
-    run_to(end);
-    ck_assert_int_eq(at(end).x, 15 * MM);
-    ck_assert_int_lt(at(end - 1).x, 15 * MM);
-    run_to(2000);
-    ck_assert_int_eq(at(2000).x, 17 * MM);
-    ck_assert(bit("SF_STOP"));
-}
-END_TEST
-
-START_TEST(NM8_TIME_DIST_stands_in_a_hold)
-{
-    rig_begin("G23 G1 X10 F1000\nX20");
-    run_to(100);
-    set_bit("MPXPI", false);
-    run_to(101);
-    const int64_t time = cell("TIME_DIST", 0);
-    ck_assert_int_gt(time, 1000);
-    run_to(200);
-    ck_assert_int_eq(cell("TIME_DIST", 0), time);
-    ck_assert(bit("G23ACT"));
-    set_bit("MPXPI", true);
-    run_to(201);
-    const uint64_t end = 201 + (uint64_t)cell("TIME_DIST", 0);
-    run_to(end);
-    ck_assert_int_eq(at(end).x, 20 * MM);
-}
-END_TEST
-
-/* A hold that stops at once changes neither acceleration nor target: TIME_DIST is worked out anew behind it all the same. */
-START_TEST(NM8_TIME_DIST_behind_a_hold_that_stops_at_once)
-{
-    for (unsigned critical = 0; critical < 2; critical++) {
-        rig_begin_with(critical ? NULL : "<ChannelConfig AccelerationType=\"1\"><Axis Name=\"X\"/></ChannelConfig>",
-                       "G23 G1 X10 F1000\nX20");
-        run_to(100);
-        set_bit("MPXPI", critical);
-        cnc_set_critical(&cnc, critical ? 7 : 0);
-        run_to(200);
-        ck_assert(at(200).v == 0 && bit("G23ACT"));
-        set_bit("MPXPI", true);
-        cnc_set_critical(&cnc, 0);
-        run_to(201);
-        const uint64_t end = 201 + (uint64_t)cell("TIME_DIST", 0);
-        run_to(end);
-        ck_assert_int_eq(at(end).x, 20 * MM);
-        ck_assert_int_lt(at(end - 1).x, 20 * MM);
-    }
-}
-END_TEST
-
-START_TEST(NM8_G23ACT_from_the_first_T_also_in_a_hold)
-{
-    rig_begin_with("<ChannelConfig AccelerationType=\"1\"><Axis Name=\"X\"/></ChannelConfig>", "G23 G1 X10 F1000\nX20");
-    set_bit("MPXPI", false);
-    run_to(2);
-    ck_assert(bit("G23ACT"));
-    set_bit("MPXPI", true);
-    run_to(3);
-    run_to(3 + (uint64_t)cell("TIME_DIST", 0));
-    ck_assert_int_eq(cnc.axis[0].position, 20 * MM);
-}
-END_TEST
-
-/* The same angle as in cnc_block, exactly 984 807 / 1 000 000, between ways whose products have all their digits. */
-START_TEST(NM8_the_angle_in_all_its_digits)
-{
-    rig_begin_with("<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"Y\"/><Axis Name=\"Z\"/><Axis Name=\"4\"/><Axis Name=\"5\"/>"
-                   "</ChannelConfig>", "G23 G1 X1 F100\nX2");
-    static const int64_t b[] = {984807, 173651, 709, 13, 10};
-    for (int64_t more = -1; more <= 1; more++) {
-        int64_t values[16] = {16777213}; /* of X in the first block, then of the second one */
-        for (unsigned i = 0; i < 5; i++)
-            values[1 + i] = b[i] * 16777259 + (i == 0 ? 16777213 + more : 0);
-        struct cnc_nc_block blocks[] = {program.blocks[0], program.blocks[1]};
-        blocks[0].values = 0;
-        blocks[1].values = 1;
-        blocks[1].axes = 0x1F;
-        const struct cnc_nc_program own = {.blocks = blocks, .values = values, .block_count = 2, .value_count = 6};
-        const int64_t place[CNC_AXES] = {0};
-        struct cnc_section section;
-        cnc_section_build(&section, &config, &own, 0, place, false);
-        ck_assert_uint_eq(section.count, more >= 0 ? 2 : 1);
-    }
 }
 END_TEST
 
@@ -521,9 +461,11 @@ static Suite *clauses_suite(void)
     TCase *clauses = tcase_create("clauses");
     tcase_add_test(clauses, NE1_axes_not_in_the_block_do_not_matter);
     tcase_add_test(clauses, NM9_limit_switches_of_every_axis);
+    tcase_add_test(clauses, NB6_switches_of_axes_that_are_not_there);
     tcase_add_test(clauses, NH4_software_limits_of_another_axis);
     tcase_add_test(clauses, NS2_eighths_of_a_micrometre_below_0);
     tcase_add_test(clauses, NM6_a_way_of_one_unit);
+    tcase_add_test(clauses, NB5_INPOS_until_the_last_unit_is_moved);
     tcase_add_test(clauses, NJ4_switches_go_by_the_actual_position);
     tcase_add_test(clauses, NB6_switches_of_the_panel_are_shown_one_by_one);
     tcase_add_test(clauses, NS5_the_event_of_a_critical_error);
@@ -531,11 +473,6 @@ static Suite *clauses_suite(void)
     tcase_add_test(clauses, NB7_a_restart_in_a_closing_pass_that_waits);
     tcase_add_test(clauses, NQ2_a_choice_counts_once);
     tcase_add_test(clauses, NQ2_Cont_by_where_the_chosen_block_begins);
-    tcase_add_test(clauses, NM8_a_section_of_fifteen_blocks);
-    tcase_add_test(clauses, NM8_TIME_DIST_stands_in_a_hold);
-    tcase_add_test(clauses, NM8_TIME_DIST_behind_a_hold_that_stops_at_once);
-    tcase_add_test(clauses, NM8_G23ACT_from_the_first_T_also_in_a_hold);
-    tcase_add_test(clauses, NM8_the_angle_in_all_its_digits);
     tcase_add_test(clauses, NF4_the_slowest_spindle_there_is);
     tcase_add_test(clauses, NH4_software_limits_count_in_POS5);
     tcase_add_test(clauses, NF1_the_smallest_feed_with_the_greatest_overrides);
