@@ -64,6 +64,7 @@ struct cnc_device {
     int64_t last[CNC_AXES];          /* commanded positions after the last T, u of POS0 */
     int32_t shown[CNC_AXES];         /* um of POS5 that were reported last */
     uint32_t backup;                 /* number of the image of the backup memory that counts */
+    uint32_t loads;                  /* PLC programs and switches that have been loaded since power-up */
     uint16_t moving;                 /* axes whose motion has been reported as begun */
     bool is_critical;                /* BZH13 has been reported */
     uint8_t refused;                 /* why a START was, enum cnc_result; CNC_RESULTS: a block was; CNC_OK: none */

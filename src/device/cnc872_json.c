@@ -155,11 +155,12 @@ json_t *cnc_json_describe(const struct device_unit *unit, uint64_t t_us)
     put(state, "node", json_integer(1));
     for (unsigned which = 0; which < CNC_DISPLAYS; which++)
         json_array_append_new(displays, display_json(&cnc->display[which]));
-    put(state, "cnc", json_pack("{s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:o}", "block",
+    put(state, "cnc", json_pack("{s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:o}", "block",
                                 block_json(cnc), "axes", axes_json(cnc), "stops", stops_json(cnc), "panel", panel_json(cnc),
                                 "spindle", spindle_json(cnc), "speed", (json_int_t)cnc->move.v, "critical",
                                 (json_int_t)number_of(cnc, CNC_CELL_BZH13), "plc_error",
                                 (json_int_t)number_of(cnc, CNC_CELL_PLC_ERROR), "plc_pass",
-                                (json_int_t)number_of(cnc, CNC_CELL_PLC_PASS), "displays", displays));
+                                (json_int_t)number_of(cnc, CNC_CELL_PLC_PASS), "plc_loads", (json_int_t)cnc_in(unit)->loads,
+                                "displays", displays));
     return state;
 }

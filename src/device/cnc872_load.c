@@ -89,6 +89,7 @@ static bool restart(struct cnc_device *device, const struct cnc_own *own, struct
         if (own->text[loadable[at].kind] != device->own.text[loadable[at].kind])
             device->loaded[loadable[at].kind] = own->text[loadable[at].kind];
     device->own = *own;
+    device->loads++;
     cnc_note(device, "restarted with another PLC program or other switches");
     return true;
 }

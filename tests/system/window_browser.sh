@@ -75,6 +75,26 @@ PLC
     show_cnc cncplc --plc "$folder/show.plc"
 }
 test_cells_of_a_CNC872_are_found_shown_and_set() { show_cnc cnccells; }
+test_a_PLC_program_is_listed_with_its_values_edited_and_loaded() {
+    export RKMCTL
+    cat >"$folder/wait.plc" <<'PLC'
+DATA
+COUNT DW 0
+GO BIT 0
+DATA_END
+MODULE_MAIN
+  LOD COUNT
+  AD CNST.1
+  STO COUNT
+MECH_BEGIN WAIT
+  LDR GO
+  EX0
+MECH_END WAIT
+MODULE_MAIN_END
+PLC
+    sed 's/WAIT/OTHER/' "$folder/wait.plc" >"$folder/other.plc"
+    show_cnc cncedit --plc "$folder/wait.plc" --clock stepped
+}
 test_a_bit_that_is_1_for_one_T_is_seen() {
     export RKMCTL
     cat >"$folder/blip.plc" <<'PLC'

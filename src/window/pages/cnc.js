@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The panel of a CNC872 (docs/CNC872.md): keys and switches of its operator, axes, block, stops, spindle, PLC program, displays,
-// the path of two axes, curves, the NC program, cells. All of it by the methods cnc.… of the control socket.
+// the path of two axes, curves, the NC program, cells, the PLC program. All of it by the methods cnc.… of the control socket.
 import { word } from "./words.js";
 import { Cells } from "./cells.js";
 import { CncKeys } from "./cnc_keys.js";
 import { CncPath } from "./cnc_path.js";
+import { CncPlc } from "./cnc_plc.js";
 import { CncText } from "./cnc_text.js";
 import { Curves } from "./curves.js";
 import { group, make, makeScrolled, write } from "./make.js";
@@ -48,7 +49,9 @@ export class CncPanel {
     this.keys = new CncKeys(unit, (params, isQuiet) => this.call("cnc.panel", params, isQuiet));
     this.path = new CncPath();
     this.curves = new Curves(["cnc-feed-curve", "cnc-position-curve"]);
-    this.text = new CncText((text, name) => this.call("cnc.load", { text, name }));
+    this.text = new CncText((text, name) => this.call("cnc.load", { text, name }),
+      { name: "program.nc", title: "cnc-program", loaded: "cnc-loaded", part: "program" });
+    this.plc = new CncPlc(unit, (plc, plc_name) => this.call("cnc.load", { plc, plc_name }));
     this.cells = new Cells(unit, (cells) => this.call("cnc.set", { cells }));
     this.begin();
   }
@@ -57,6 +60,7 @@ export class CncPanel {
   begin() {
     this.text.loaded = null;
     this.cells.begin();
+    this.plc.begin();
   }
 
   // All of it anew, in the present language.
@@ -71,13 +75,13 @@ export class CncPanel {
     this.displays = Array.from({ length: DISPLAYS }, (_, at) =>
       make("pre", { class: "display", "aria-label": `${word("cnc-display")} ${at + 1}`, role: "group", tabindex: "0" }));
     const displays = this.displays.map((display, at) => group(`${word("cnc-display")} ${at + 1}`, [display]));
-    for (const part of [this.keys, this.path, this.curves, this.text, this.cells])
+    for (const part of [this.keys, this.path, this.curves, this.text, this.cells, this.plc])
       part.build();
     const state = make("section", {}, makeScrolled(table), make("dl", { class: "more lines" }, ...list), this.cells.lamps,
       make("div", { class: "row" }, ...displays));
     this.element.replaceChildren(this.keys.element, this.result,
       make("div", { class: "columns" }, state, this.path.element), this.curves.element,
-      make("div", { class: "columns" }, this.cells.element, this.text.element));
+      make("div", { class: "columns" }, this.cells.element, this.text.element), this.plc.element);
   }
 
   async call(method, params, isQuiet) {
@@ -112,8 +116,9 @@ export class CncPanel {
   show({ t_us, cnc, powered }) {
     if (!this.body)
       this.build();
-    if (powered && this.powered === false)
-      this.begin(); // without power it has no cells
+    if (powered && (this.powered === false || (this.loads !== undefined && this.loads !== cnc.plc_loads)))
+      this.begin(); // without power it has no cells; another PLC program has others
+    this.loads = cnc.plc_loads;
     this.powered = powered;
     if (this.names?.join() !== namesOf(cnc.axes).join())
       this.showAxes(cnc.axes);

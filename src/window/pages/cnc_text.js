@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The NC program of a CNC872: a text, a file chosen or dropped, loaded by cnc.load. What is wrong is shown at its place.
+// A program of a CNC872: a text, a file chosen or dropped, loaded by cnc.load. What is wrong is shown at its place.
 import { word } from "./words.js";
 import { saveText } from "./editor.js";
 import { make, write } from "./make.js";
@@ -7,24 +7,26 @@ import { make, write } from "./make.js";
 const BYTES_MAX = 250000; // of a text, so that rkmctl window takes the message
 
 export class CncText {
-  // load(text, name): cnc.load.
-  constructor(load) {
+  // load(text, name): cnc.load. kind: name of a new file, words of the title and of what has been loaded, class of the element.
+  constructor(load, { name, title, loaded, part }) {
     this.load = load;
-    this.element = make("section", { class: "program" });
+    this.titleWord = title;
+    this.loadedWord = loaded;
+    this.element = make("section", { class: part });
     this.text = "";
-    this.name = "program.nc";
+    this.name = name;
     this.loaded = null; // lines of what has been loaded from here
   }
 
   build() {
-    this.area = make("textarea", { class: "plain", spellcheck: "false", "aria-label": word("cnc-program") });
+    this.area = make("textarea", { class: "plain", spellcheck: "false", "aria-label": word(this.titleWord) });
     this.area.value = this.text;
     this.area.oninput = () => { this.text = this.area.value; };
     const file = make("input", { type: "file", hidden: "", tabindex: "-1", "aria-hidden": "true" });
     file.onchange = () => { this.take(file.files[0]); file.value = ""; };
     this.result = make("p", { class: "note", role: "status" });
     this.place = make("button", { hidden: "" }, word("cnc-place"));
-    this.title = make("h3", {}, `${word("cnc-program")} ${this.name}`);
+    this.title = make("h3", {}, `${word(this.titleWord)} ${this.name}`);
     const button = (text, act) => make("button", { onclick: act }, text);
     this.element.replaceChildren(this.title, make("div", { class: "row" }, button(word("open"), () => file.click()),
       button(word("save"), () => saveText(this.text, this.name)), button(word("cnc-load"), () => this.send()), file),
@@ -44,8 +46,13 @@ export class CncText {
       return;
     }
     this.name = file.name;
-    write(this.title, `${word("cnc-program")} ${this.name}`);
+    write(this.title, `${word(this.titleWord)} ${this.name}`);
     this.area.value = this.text = await file.text();
+    this.tell("", false);
+  }
+
+  setText(text) {
+    this.area.value = this.text = text;
     this.tell("", false);
   }
 
@@ -64,7 +71,7 @@ export class CncText {
     const answer = await this.load(text, this.name);
     if (!answer.error) {
       this.loaded = text.split("\n");
-      this.tell(word("cnc-loaded", this.name, answer.blocks), false);
+      this.tell(word(this.loadedWord, this.name, answer.instructions ?? answer.blocks), false);
       return;
     }
     this.tell(answer.error, true);

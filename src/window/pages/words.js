@@ -85,7 +85,10 @@ const words = {
     "cnc-shown": "Axes", "cnc-more": "Choice of a block, keys of the hand-wheel panels, critical error",
     "cnc-select-block": "Block", "cnc-technology": "with M, S, T, H", "cnc-select": "Select block",
     "cnc-critical": "Critical error", "cnc-clear-critical": "Clear", "cnc-keys": "Keys", "cnc-key": "Key",
-    "cnc-keep": "keep pressed",
+    "cnc-keep": "keep pressed", "cnc-plc-loaded": "{0}: {1} instructions are loaded.", "cnc-plc-take": "Edit what runs",
+    "cnc-plc-more": "Text of the PLC program, with values", "cnc-plc-calls": "{0}: {1} instructions, at most {2}",
+    "cnc-plc-waits": "{0} waits in line {1}", "cnc-plc-halted": "halted in line {0}",
+    "cnc-plc-long": "The first {0} lines are shown.",
   },
   cs: {
     service: "Servis", panel: "Panel", stop: "Zastavit vše", language: "Jazyk", theme: "Barvy", "theme-auto": "podle systému",
@@ -173,6 +176,10 @@ const words = {
     "cnc-more": "Volba bloku, tlačítka panýlků točítka, kritická chyba", "cnc-select-block": "Blok",
     "cnc-technology": "s M, S, T, H", "cnc-select": "Zvolit blok", "cnc-critical": "Kritická chyba",
     "cnc-clear-critical": "Zrušit", "cnc-keys": "Tlačítka", "cnc-key": "Tlačítko", "cnc-keep": "držet stisknuté",
+    "cnc-plc-loaded": "{0}: zavedeno instrukcí {1}.", "cnc-plc-take": "Upravit běžící",
+    "cnc-plc-more": "Text PLC programu s hodnotami", "cnc-plc-calls": "{0}: instrukcí {1}, nejvíce {2}",
+    "cnc-plc-waits": "{0} čeká na řádku {1}", "cnc-plc-halted": "zastaven na řádku {0}",
+    "cnc-plc-long": "Je vidět prvních {0} řádků.",
   },
 };
 

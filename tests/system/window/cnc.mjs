@@ -331,6 +331,58 @@ export const cases = {
     await blip();
   },
 
+  // The text of the PLC program: listed with values and where it waits, edited, refused with its place, loaded by whomever.
+  async cncedit(page) {
+    const control = (...words) => execFileSync(process.env.RKMCTL, ["-c", folder + "/bus.control", ...words]);
+    const listed = (line, shown) => shows(page, `.listing.plc > div:nth-child(${line})`,
+      `[...element.children].map((one) => one.textContent).join('|') === ${quoted(shown)}`);
+    const lamps = (name) => shows(page, ".device .lamp:only-of-type", `element.textContent === ${quoted(name)}`);
+    await lamps("WAIT");
+    await page.locator("details.plc summary").click();
+    await listed(6, "6|0|  LOD COUNT");
+    await listed(13, "13||MODULE_MAIN_END");
+    control("cnc", "set", "WAIT=1");
+    control("advance", "7ms");
+    await listed(6, "6|6|  LOD COUNT");
+    await shows(page, ".listing.plc [aria-current=step]", "element.textContent === '11  EX0'");
+    await shows(page, ".plc p.note",
+      "element.textContent.endsWith('MODULE_MAIN: 7 instructions, at most 7\\nWAIT waits in line 11')");
+    await checkAccess(page, "PLC program");
+    // Edited: a mistake is shown at its place, and changes nothing.
+    await button(page, "Edit what runs").click();
+    const area = page.locator(".plc-program textarea");
+    assert.equal(await area.inputValue(), readFileSync(folder + "/wait.plc", "utf8").trimEnd());
+    await area.fill((await area.inputValue()).replace("EX0", "EXO").replace(/WAIT/g, "PAUSE"));
+    const load = page.locator(".plc-program").getByRole("button", { name: "Load", exact: true });
+    await load.click();
+    await shows(page, ".plc-program p.wrong", "element.textContent.includes('program.plc:11:3: error: ')");
+    await page.locator(".plc-program").getByRole("button", { name: "Show the place" }).click();
+    assert.equal(await area.evaluate((one) => one.value.slice(one.selectionStart, one.selectionEnd)), "E");
+    await lamps("WAIT");
+    await area.fill((await area.inputValue()).replace("EXO", "EX0"));
+    await load.click();
+    await shows(page, ".plc-program p.note", "element.textContent === 'program.plc: 8 instructions are loaded.'");
+    await lamps("PAUSE");
+    await listed(9, "9|0|MECH_BEGIN PAUSE");
+    await listed(6, "6|0|  LOD COUNT");
+    // By another client; the cells of the table are those of the new program.
+    await add(page, "COUNT PAUSE");
+    await value(page, "PAUSE", "0");
+    control("cnc", "load", folder + "/other.plc");
+    await lamps("OTHER");
+    await listed(9, "9|0|MECH_BEGIN OTHER");
+    await shows(page, "table.cells tr", "element.firstChild.textContent === 'PAUSE' && /no cell/.test(element.textContent)");
+    control("advance", "3ms");
+    await value(page, "COUNT", "3");
+    for (const [width, height] of [[390, 844], [1280, 800]]) {
+      await page.setViewportSize({ width, height });
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      assert.ok(wide <= 0, `at ${width} pixels it is ${wide} pixels too wide`);
+      await page.locator("details.plc").scrollIntoViewIfNeeded();
+      await page.screenshot({ path: `${pictures || folder}/window-cnc872-plc-${width}.png` });
+    }
+  },
+
   // What another client changes is seen soon, although nothing moves and no event comes. The middle one of nine counts, less the
   // time that any answer takes: the machine may be busy.
   async cncnews(page) {
