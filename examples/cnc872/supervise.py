@@ -3,9 +3,13 @@
 """Supervise the mill over the control socket, a round trip a cycle: feed down to 50 % while X is between 15 and 25 mm.
 
     rkm04 serve --device cnc872 --config mill.xml --plc mill.plc --nc part.nc --clock stepped --control ./mill.control
-    python3 supervise.py ./mill.control"""
+    python3 supervise.py ./mill.control
+
+On Windows, and with --control tcp:PORT, ./mill.control is a file with address and token (--control-file ./mill.control)."""
 import json
+import os
 import socket
+import stat
 import sys
 
 MM = 65536000  # u
@@ -13,10 +17,19 @@ MM = 65536000  # u
 
 class Cnc:
     def __init__(self, path):
-        self.socket = socket.socket(socket.AF_UNIX)
-        self.socket.connect(path)
+        token = None
+        if stat.S_ISSOCK(os.stat(path).st_mode):
+            self.socket = socket.socket(socket.AF_UNIX)
+            self.socket.connect(path)
+        else:
+            with open(path, encoding="ascii") as file:
+                address, token = file.read().split()  # "tcp:127.0.0.1:40123 5596f4..."
+            host, port = address.removeprefix("tcp:").rsplit(":", 1)
+            self.socket = socket.create_connection((host.strip("[]"), int(port)))
         self.lines = self.socket.makefile("rw")
         self.number = 0
+        if token:
+            self.call("authenticate", token=token)
 
     def call(self, method, **params):
         self.number += 1

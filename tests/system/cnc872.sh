@@ -19,8 +19,14 @@ call() {
 }
 
 test_NL1_the_mill_is_supervised_from_python() {
-    serve_cnc --config "$example/mill.xml" --plc "$example/mill.plc" --nc "$example/part.nc"
+    local mill=(--config "$example/mill.xml" --plc "$example/mill.plc" --nc "$example/part.nc") over_the_socket
+    serve_cnc "${mill[@]}"
     exits 0 python3 "$example/supervise.py" "$folder/control"
+    over_the_socket=$said
+    start tcp "$RKM04" serve --device cnc872 --clock stepped --control tcp:0 --control-file "$folder/file" "${mill[@]}"
+    soon "the other one is ready" ready tcp
+    exits 0 python3 "$example/supervise.py" "$folder/file"
+    same "$over_the_socket" "$said" "what it prints with a control file"
     same "T 3234: X 15.005 mm, feed 50 %
 T 5229: X 25.003 mm, feed 100 %
 T 7300: X 24.995 mm, feed 50 %
