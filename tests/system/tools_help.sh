@@ -26,4 +26,11 @@ test_every_tool_refuses_an_option_that_it_does_not_have() {
     done
 }
 
+test_a_Python_that_cannot_build_a_wheel_is_answered_with_one_that_can() {
+    printf '#!/bin/sh\nexit 1\n' >"$folder/python"
+    chmod +x "$folder/python"
+    exits 1 "$tools/python-wheel" "$folder/dist" "$folder/python"
+    holds "$complained" "tools/python-env build/python-env makes one that has: then tools/python-wheel $folder/dist" "the message"
+}
+
 run_cases "$@"
