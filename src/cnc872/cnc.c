@@ -177,6 +177,7 @@ const char *cnc_result_text(enum cnc_result result)
         [CNC_OK] = "done",
         [CNC_NO_PROGRAM] = "no NC program is loaded",
         [CNC_UNDER_WAY] = "a block is under way",
+        [CNC_IN_REFERENCE] = "a reference is under way: PO_F is 1 until it has ended",
         [CNC_MANUAL] = "manual moves are active",
         [CNC_CRITICAL] = "there is a critical error (BZH13)",
         [CNC_NO_REFERENCE] = "an axis of the program needs a reference",

@@ -51,6 +51,7 @@ enum cnc_result {
     CNC_OK,
     CNC_NO_PROGRAM,   /* no NC program is loaded */
     CNC_UNDER_WAY,    /* a block is under way, or a stop still decelerates */
+    CNC_IN_REFERENCE, /* a reference is under way, its DONE pass with it */
     CNC_MANUAL,       /* manual moves are active */
     CNC_CRITICAL,     /* BZH13 is not 0 */
     CNC_NO_REFERENCE, /* an axis of the program needs a reference */

@@ -175,7 +175,9 @@ static bool read_name(struct reader *reader, bool in_queue, struct target *targe
         const struct cnc_row *row = in_queue ? cnc_find_row(cnc_queue_rows, CNC_QUEUE_FIELDS, text, letters, &index)
                                              : cnc_find_row(cnc_rows, cnc_row_count, text, letters, &index);
         if (!row)
-            return refuse(reader, in_queue ? "a block has no field" : "there is no cell", reader->at, letters);
+            return refuse(reader, in_queue                          ? "a block has no field"
+                                  : text[0] >= '0' && text[0] <= '9' ? "expected a cell, or a number as CNST.5"
+                                                                     : "there is no cell", reader->at, letters);
         unsigned size = (unsigned)row->count * cnc_type_size[row->type];
         *target = (struct target){row->place, size, row->count, row->type, row->fields, 0};
         reader->operand->writable = row->writable;

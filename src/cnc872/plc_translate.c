@@ -76,7 +76,9 @@ static struct cnc_symbol *declare(struct translator *translator, unsigned scope,
     bool is_room = found && found->line > 0;
     if (is_room && found->line == line && !(scope == 0 && is_taken(name)))
         return &program->names.symbols[found - program->names.symbols];
-    cnc_plc_wrong(translator, is_room ? "this name is there twice" : "there is no room for one more name", name);
+    cnc_plc_wrong(translator, !is_room              ? "there is no room for one more name"
+                              : found->line == line ? "the system or the language has this name"
+                                                    : "this name is there twice", name);
     return NULL;
 }
 
@@ -111,9 +113,13 @@ static void declare_data(struct translator *translator)
         enum cnc_symbol_kind kind;
         enum cnc_type type;
         int64_t greatest;
-    } kinds[] = {{"DB", CNC_SYMBOL_VARIABLE, CNC_BYTE, UINT8_MAX},  {"DW", CNC_SYMBOL_VARIABLE, CNC_WORD, UINT16_MAX},
-                 {"DD", CNC_SYMBOL_VARIABLE, CNC_DWRD, UINT32_MAX}, {"DQ", CNC_SYMBOL_VARIABLE, CNC_QWRD, INT64_MAX},
-                 {"BIT", CNC_SYMBOL_BIT, CNC_BIT, 1},               {"EQU", CNC_SYMBOL_CONSTANT, CNC_QWRD, INT64_MAX}};
+        const char *expected;
+    } kinds[] = {{"DB", CNC_SYMBOL_VARIABLE, CNC_BYTE, UINT8_MAX, "expected one number from 0 to 255"},
+                 {"DW", CNC_SYMBOL_VARIABLE, CNC_WORD, UINT16_MAX, "expected one number from 0 to 65535"},
+                 {"DD", CNC_SYMBOL_VARIABLE, CNC_DWRD, UINT32_MAX, "expected one number from 0 to 4294967295"},
+                 {"DQ", CNC_SYMBOL_VARIABLE, CNC_QWRD, INT64_MAX, "expected one number from 0 on"},
+                 {"BIT", CNC_SYMBOL_BIT, CNC_BIT, 1, "expected 0 or 1"},
+                 {"EQU", CNC_SYMBOL_CONSTANT, CNC_QWRD, INT64_MAX, "expected one number from 0 on"}};
     const struct cnc_plc_line *line = &translator->line;
     struct cnc_word rest = line->arguments > 0 ? line->argument[0] : (struct cnc_word){line->name.text + line->name.length, 0};
     size_t kind = 0, letters = 0;
@@ -124,7 +130,9 @@ static void declare_data(struct translator *translator)
     while (kind < sizeof kinds / sizeof *kinds && !cnc_same_name(kinds[kind].name, rest.text, letters))
         kind++;
     if (line->label.length > 0 || kind == sizeof kinds / sizeof *kinds) {
-        cnc_plc_wrong(translator, "expected NAME DB, DW, DD, DQ, BIT or EQU and a value", line->name);
+        const struct cnc_word word = {rest.text, letters};
+        const bool is_name = line->label.length == 0 && letters > 0;
+        cnc_plc_wrong(translator, "expected NAME DB, DW, DD, DQ, BIT or EQU and a value", is_name ? word : line->name);
         return;
     }
     struct cnc_symbol *symbol = declare(translator, 0, line->name, kinds[kind].kind, kinds[kind].type);
@@ -132,7 +140,7 @@ static void declare_data(struct translator *translator)
         letters++;
     rest = (struct cnc_word){rest.text + letters, rest.length - letters};
     if (line->arguments != 1 || !cnc_plc_value(translator, rest, &value) || value > kinds[kind].greatest)
-        cnc_plc_wrong(translator, "expected one number that fits", rest);
+        cnc_plc_wrong(translator, kinds[kind].expected, rest);
     else if (symbol)
         symbol->value = value;
 }

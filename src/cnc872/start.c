@@ -12,7 +12,7 @@ enum cnc_result cnc_start_refusal(const struct cnc *cnc)
     if (cnc->program == NULL || cnc->program->block_count == 0)
         return CNC_NO_PROGRAM;
     if (machine->annulment != CNC_ANNULMENT_NONE || (machine->phase != CNC_IDLE && !cnc_is_set(cnc, CNC_BIT_PO_STOP)))
-        return CNC_UNDER_WAY;
+        return cnc->machine.is_reference ? CNC_IN_REFERENCE : CNC_UNDER_WAY;
     if (cnc_is_set(cnc, CNC_BIT_ACK_AUTMAN))
         return CNC_MANUAL;
     if (cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) != 0)

@@ -74,6 +74,12 @@ void no_warn_option_read(uint64_t *off, const char *text, struct argp_state *sta
     }
 }
 
+static bool is_yaml(const char *name)
+{
+    const char *end = strrchr(name, '.');
+    return end != NULL && (strcmp(end, ".yaml") == 0 || strcmp(end, ".yml") == 0);
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state)
 {
     struct options *options = state->input;
@@ -106,6 +112,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         readings_option_read(&options->check.readings, &options->named, text, state);
         return 0;
     case ARGP_KEY_ARG:
+        if (is_yaml(text))
+            argp_error(state, "%s: expected a program; `rkm04 test' runs scenarios, and plants and switches are checked by the "
+                              "commands that take them", text);
         tool_files_add(&options->files, text, state);
         return 0;
     case ARGP_KEY_END:

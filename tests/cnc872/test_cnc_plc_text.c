@@ -56,7 +56,7 @@ START_TEST(wrong_operands_are_named)
     check_line("FL 1,PO_F", "6: this bit may only be read `PO_F'");
     check_line("FL1 1,R", "7: expected a bit; this is a number `R'");
     check_line("FL 2,B", "4: expected 0 or 1 `2'");
-    check_line("FL B,1", "4: expected 0 or 1 `B'\n2:6: there is no cell `1'");
+    check_line("FL B,1", "4: expected 0 or 1 `B'\n2:6: expected a cell, or a number as CNST.5 `1'");
     check_line("ORB REAL.R", "5: expected a whole number; this is REAL `REAL.R'");
     check_line("XORB BLK[0].H", "6: expected a whole number; this is REAL `BLK[0].H'");
     check_line("ABS REAL", "5: expected BYTE, WORD, DWRD or QWRD `REAL'");
@@ -134,11 +134,16 @@ START_TEST(sections_are_closed_in_order)
     check_errors("MODULE_INIT 1\nMODULE_INIT_END", "1:1: expected nothing behind `MODULE_INIT'\n");
     check_errors("DATA\nA BIT 0\nMODULE_INIT\nMODULE_INIT_END", "3:1: expected DATA_END before `MODULE_INIT'\n");
     check_errors("DATA\nA BIT 0\n", "1:1: expected DATA_END to close DATA\n");
-    check_errors("DATA\nA DB", "2:5: expected one number that fits\n1:1: expected DATA_END to close DATA\n");
+    check_errors("DATA\nA DB", "2:5: expected one number from 0 to 255\n1:1: expected DATA_END to close DATA\n");
     check_errors("DATA\nA", "2:1: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `A'\n"
                             "1:1: expected DATA_END to close DATA\n");
     check_errors("DATA\nDATA\nSTOP\nDATA_END", "2:1: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `DATA'\n"
                                                   "3:1: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `STOP'\n");
+    check_errors("DATA\nA BITS 0\nB TIM\nDATA_END", "2:3: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `BITS'\n"
+                                                      "3:3: expected NAME DB, DW, DD, DQ, BIT or EQU and a value `TIM'\n");
+    check_errors("DATA\nA BIT 2\nB DW 65536\nC DD -1\nDATA_END",
+                 "2:7: expected 0 or 1 `2'\n3:6: expected one number from 0 to 65535 `65536'\n"
+                 "4:6: expected one number from 0 to 4294967295 `-1'\n");
     check_errors("DATA\nDATA_END\nDATA_END", "3:1: unknown instruction `DATA_END'\n");
     check_errors("PROC_BEGIN\nPROC_END _ON_EVENT", "1:1: expected a name behind `PROC_BEGIN'\n");
     check_errors("PROC_BEGIN _ON_START\nPROC_END _ON_EVENT", "1:12: expected _ON_EVENT; there is no procedure `_ON_START'\n");
@@ -176,10 +181,14 @@ START_TEST(names_are_there_once)
     check_errors("DATA\nA BIT 0\na DB 1\nDATA_END", "3:1: this name is there twice `a'\n");
     check_errors("DATA\nSTOPPI BIT 0\nMP4PI DB 0\nSYST_TIME_INFO DB 1\nBLOCK_IDLE EQU 1\nWORD DB 0\n"
                  "BX DB 0\nBLK DB 0\nCNST DB 0\nDATA_END",
-                 "2:1: this name is there twice `STOPPI'\n3:1: this name is there twice `MP4PI'\n"
-                 "4:1: this name is there twice `SYST_TIME_INFO'\n5:1: this name is there twice `BLOCK_IDLE'\n"
-                 "6:1: this name is there twice `WORD'\n7:1: this name is there twice `BX'\n"
-                 "8:1: this name is there twice `BLK'\n9:1: this name is there twice `CNST'\n");
+                 "2:1: the system or the language has this name `STOPPI'\n"
+                 "3:1: the system or the language has this name `MP4PI'\n"
+                 "4:1: the system or the language has this name `SYST_TIME_INFO'\n"
+                 "5:1: the system or the language has this name `BLOCK_IDLE'\n"
+                 "6:1: the system or the language has this name `WORD'\n"
+                 "7:1: the system or the language has this name `BX'\n"
+                 "8:1: the system or the language has this name `BLK'\n"
+                 "9:1: the system or the language has this name `CNST'\n");
     check_errors("MODULE_INIT\nL: CA\nL:\nMODULE_INIT_END", "3:1: this name is there twice `L'\n");
     check_errors("DATA\nA BIT 0\nDATA_END\nMODULE_MAIN\nMECH_BEGIN A\nMECH_END A\nMODULE_MAIN_END",
                  "5:12: this name is there twice `A'\n6:10: expected the name of the mechanism that is open `A'\n");
@@ -194,13 +203,13 @@ START_TEST(data_has_a_name_a_kind_and_a_number)
     static const struct {
         const char *line, *error;
     } cases[] = {
-        {"A", "1: %s `A'"},          {"A DT 1", "1: %s `A'"},      {"A: DB 1", "4: %s `DB'"},
-        {"A DB", "5: expected one number that fits"},          {"A DB 256", "6: expected one number that fits `256'"},
-        {"A DW 65536", "6: expected one number that fits `65536'"},
-        {"A DD 100000000h", "6: expected one number that fits `100000000h'"},
-        {"A DQ 8000000000000000h", "6: expected one number that fits `8000000000000000h'"},
-        {"A BIT 2", "7: expected one number that fits `2'"},   {"A DB X", "6: expected one number that fits `X'"},
-        {"A DB 1,2", "6: expected one number that fits `1'"},  {"A DB 1 2", "6: expected one number that fits `1 2'"},
+        {"A", "1: %s `A'"},          {"A DT 1", "3: %s `DT'"},      {"A: DB 1", "4: %s `DB'"},
+        {"A DB", "5: expected one number from 0 to 255"},          {"A DB 256", "6: expected one number from 0 to 255 `256'"},
+        {"A DW 65536", "6: expected one number from 0 to 65535 `65536'"},
+        {"A DD 100000000h", "6: expected one number from 0 to 4294967295 `100000000h'"},
+        {"A DQ 8000000000000000h", "6: expected one number from 0 on `8000000000000000h'"},
+        {"A BIT 2", "7: expected 0 or 1 `2'"},   {"A DB X", "6: expected one number from 0 to 255 `X'"},
+        {"A DB 1,2", "6: expected one number from 0 to 255 `1'"},  {"A DB 1 2", "6: expected one number from 0 to 255 `1 2'"},
         {"1A DB 1", "1: expected a name of at most 31 letters, digits and _ ? @ `1A'"},
         {"A- DB 1", "1: expected a name of at most 31 letters, digits and _ ? @ `A-'"},
         {"A2345678901234567890123456789012 DB 1",

@@ -424,7 +424,7 @@ START_TEST(nh3_key_home)
 {
     rig_power("<ChannelConfig><Axis Name=\"X\"/><Axis Name=\"Y\" RefMethod=\"1\"/>"
               "<Axis Name=\"Z\" RefMethod=\"2\"/></ChannelConfig>",
-              NULL);
+              "G0 X1");
     ck_assert_int_eq(cnc_home(&cnc, 3), CNC_NO_AXIS);
     ck_assert_int_eq(cnc_home(&cnc, 16), CNC_NO_AXIS);
     ck_assert_int_eq(cnc_home(&cnc, 1), CNC_OK);
@@ -437,6 +437,7 @@ START_TEST(nh3_key_home)
     ck_assert(bit("HOMING_SINGLE"));
     run_to(100);
     ck_assert(bit("HOMING_SINGLE") && bit("REFPI"));
+    ck_assert_str_eq(cnc_result_text(cnc_start(&cnc)), "a reference is under way: PO_F is 1 until it has ended");
     set_bit("KRX", true);
     run_to(500);
     ck_assert(!bit("HOMING_SINGLE"));

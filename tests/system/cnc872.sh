@@ -119,7 +119,7 @@ test_rkmctl_loads_plc_programs_and_switches() {
     printf 'G1 X3 F1000\n' >"$folder/a.nc"
     serve_cnc
     exits 2 "$RKMCTL" -c "$folder/control" cnc load "$folder/bad.plc"
-    holds "$complained" "$folder/bad.plc:2:1: error: " "a wrong program"
+    holds "$complained" "$folder/bad.plc:2:6: error: " "a wrong program"
     exits 0 "$RKMCTL" -c "$folder/control" --json cnc load "$folder/a.yaml" "$folder/a.nc" "$folder/a.plc"
     holds "$said" '"blocks":1,"instructions":3' "the answer"
     cnc start

@@ -40,6 +40,13 @@ bad.plc:5:2: error: unknown instruction \`TIM' [plc-error]
     holds "$complained" "cannot read none.xml" "stderr"
 }
 
+test_what_is_no_program_is_refused_by_its_name() {
+    texts
+    echo 'switches: []' >m.machine.yaml
+    exits 2 "$RKM04" check m.machine.yaml
+    holds "$complained" "m.machine.yaml: expected a program; \`rkm04 test' runs scenarios" "stderr"
+}
+
 test_errors_as_json() {
     texts
     printf 'LDR A\n' >a.plc
