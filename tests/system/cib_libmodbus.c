@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#define LIMIT 30 /* s until an answer counts as never coming */
+
 static void check(int right, const char *what)
 {
     if (right)
@@ -22,6 +24,7 @@ int main(int argc, char **argv)
         return 2;
     modbus_t *bus = modbus_new_rtu(argv[1], 19200, 'N', 8, 1);
     check(bus != NULL && modbus_set_slave(bus, 1) == 0 && modbus_connect(bus) == 0, "connect");
+    check(modbus_set_response_timeout(bus, LIMIT, 0) == 0 && modbus_set_byte_timeout(bus, LIMIT, 0) == 0, "time limits");
     check(modbus_read_input_registers(bus, 0x30, 2, word) == 2 && word[0] == 0x0808, "type");
     check(modbus_write_registers(bus, 0x10, 5, command) == 5, "command");
     check(modbus_read_input_registers(bus, 0x10, 2, word) == 2 && word[0] == 1, "ACK");

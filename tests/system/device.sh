@@ -226,7 +226,7 @@ print(ready["pty"], ready["tcp"])')" "READY"
     holds "$said" '"position":3' "state"
     exits 0 "$RKMCTL" shutdown
     status_of "$started"
-    XDG_RUNTIME_DIR=$folder exits 0 timeout 20 "$RKM04" serve --device alone --exit-when-idle=0
+    XDG_RUNTIME_DIR=$folder exits 0 timeout "$limit" "$RKM04" serve --device alone --exit-when-idle=0
     holds "$said" 'rkm04/alone.control' "READY without --control"
     [[ $complained != *"frames dropped"* ]] || fail "the log has counters of a bus that is not there"
 }
@@ -265,7 +265,7 @@ def connect(room=None):
     client = socket.socket()
     if room:
         client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, room)
-    client.settimeout(20)
+    client.settimeout(60)
     client.connect((host, int(port)))
     return client, client.makefile("rb")
 

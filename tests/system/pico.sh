@@ -8,7 +8,7 @@
 
 # drive TASK ARGUMENTS...: what it reports is in $said.
 drive() {
-    exits 0 timeout 200 node "$tree/tests/system/pico/drive.mjs" "$1" "$firmware/firmware.elf" "${@:2}"
+    exits 0 timeout 500 node "$tree/tests/system/pico/drive.mjs" "$1" "$firmware/firmware.elf" "${@:2}"
 }
 
 # figure NAME: of the report.

@@ -9,7 +9,7 @@
 # The emulator sets inputs, looks at outputs and switches the power when the kit asks for it; all pulses are compared afterwards.
 test_the_conformance_kit_passes_and_every_pulse_comes_at_its_tick() {
     local board="node $tree/tests/system/pico/kit.mjs $firmware/firmware.elf"
-    exits 0 timeout 200 "$tree/tools/conformance" --port "board:$board $build/tests/pico_replay" \
+    exits 0 timeout 500 "$tree/tools/conformance" --port "board:$board $build/tests/pico_replay" \
         --only M5.3 --only U2 --only U5 --only P6 --only P1
     holds "$said" "a_stored_program_starts_when_power_comes" "the report"
     holds "$said" "outputs_are_switched_by_T_and_C" "the report"
