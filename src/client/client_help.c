@@ -93,8 +93,8 @@ static const struct help {
      "A CNC872: values of cells between CNC system and PLC program; set them; list\n"
      "those with a text in their names; keys of the panel; jog begins a motion with +\n"
      "or - and ends it without; what else the panel has (docs/CNC872.md); load texts:\n"
-     ".plc is a PLC program, .yaml switches, anything else an NC program; plc lists the PLC program that runs, with\n"
-     "values of cells.",
+     ".plc is a PLC program, .yaml switches, anything else an NC program; plc lists\n"
+     "the PLC program that runs, with values of cells.",
      "  -u UNIT\n" EMULATOR_OPTIONS,
      "  rkmctl cnc get PO_STOP B_INK_EX[0]\n  rkmctl cnc set STOP_REQ=1\n  rkmctl cnc panel mode=manual feed=50\n"
      "  rkmctl cnc jog X+\n  rkmctl cnc load mill.plc\n"},
