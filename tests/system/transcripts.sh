@@ -52,6 +52,23 @@ test_the_manual_pages_have_every_option() {
     done
 }
 
+# Their section EXAMPLES as a document; an emulator of `rkm04 serve' stays, as in the shell of a document.
+test_the_examples_of_the_manual_pages_work() {
+    local page
+    for page in rkm04 rkm04-check rkm04-fmt rkm04-explain rkm04-estimate; do
+        {
+            echo "<!-- run: echo 'S100 V500 F1000 R' >drill.rks; cp drill.rks x.rks; cp drill.rks y.rks;" \
+                "echo 'motors: {1: {offset: 3}}' >axes.yaml -->"
+            echo
+            sed '1,/^\.SH EXAMPLES/d' "$source/docs/man/$page.1" |
+                sed -n '/^\.EX$/,/^\.EE$/{/^\./d;s/\\-/-/g;s/ &$//;s,/tmp/,,g;s/^/    /;p}' |
+                grep -v 'import serial' # at a port of its own
+        } >"$folder/$page.md"
+        python3 "$here/transcripts.py" "$folder/$page.md" >"$folder/transcripts" 2>&1 || fail "$(<"$folder/transcripts")"
+        grep -qx '1 blocks' "$folder/transcripts" || fail "no examples in $page.1"
+    done
+}
+
 test_the_manual_pages_have_every_kind_of_event() {
     local kind
     serve bus
