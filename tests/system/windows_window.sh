@@ -70,8 +70,18 @@ test_each_control_of_the_panel_acts_on_an_emulator_there() {
     same "" "$(find "$folder" -name 'rkm04-window-*')" "folders left behind"
 }
 
+test_keys_of_a_CNC872_there_are_let_go_when_the_window_ends() {
+    cd "$folder" || fail "cd"
+    start bus wine_in "$prefix" "$RKM04_EXE" serve --device cnc872 --control tcp:0 --control-file bus.control
+    soon "the unit is ready" ready bus
+    open_window -c bus.control
+    WINDOW_PID=$(pgrep -P "$window") WINDOW_SIGNAL=SIGINT browse cncend
+    soon "the axis has stopped" stands
+}
+stands() { [[ $("$RKMCTL" -c "$folder/bus.control" call cnc.state) == *'"state":"idle"'* ]]; }
+
 test_a_COM_port_leads_to_a_unit_here() {
-    serve bus --control "$folder/unix.control"
+    serve bus
     ln -sfn "$folder/bus" "$prefix/dosdevices/com41"
     export WINDOW_PORT=COM41
     open_window

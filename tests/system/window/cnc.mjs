@@ -158,7 +158,7 @@ export const cases = {
   async cncend(page) {
     await page.selectOption(".device select[aria-label=Mode]", "manual");
     await hold(page, "X+", 1);
-    process.kill(Number(process.env.WINDOW_PID));
+    process.kill(Number(process.env.WINDOW_PID), process.env.WINDOW_SIGNAL ?? "SIGTERM");
     await shows(page, "#status", "element.textContent.includes('is lost')");
   },
 
