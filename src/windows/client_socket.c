@@ -40,7 +40,7 @@ static int connect_to(const char *host, const char *port)
     }
     freeaddrinfo(found);
     if (made != INVALID_SOCKET)
-        ioctlsocket(made, FIONBIO, &no_wait); /* what comes is waited for */
+        ioctlsocket(made, (long)FIONBIO, &no_wait); /* what comes is waited for */
     if (made != INVALID_SOCKET)
         setsockopt(made, IPPROTO_TCP, TCP_NODELAY, (const char *)&on, sizeof on);
     return made != INVALID_SOCKET ? (int)made : -1;
