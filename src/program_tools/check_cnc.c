@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "check_cnc.h"
+#include "check_cnc_names.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,7 +60,7 @@ static void take_error(void *context, const struct cnc_text_error *error)
                                    .length = word_length(checking->kind, text + offset, (size_t)(end - text) - offset),
                                    .severity = DIAGNOSTIC_ERROR,
                                    .name = kinds[checking->kind].name};
-    diagnostics_add(checking->found, &one, NULL, "%s", error->text);
+    diagnostics_add(checking->found, &one, check_cnc_hint(checking->source, error->text), "%s", error->text);
 }
 
 /* Room for a program of `blocks` and `values`; both pointers are to be freed. */

@@ -24,6 +24,7 @@ test_errors_have_their_line_and_column() {
     same "bad.plc:4:8: error: there is no cell \`STOPPY' [plc-error]
     LDR  STOPPY ;
          ^~~~~~
+  hint: did you mean \`STOPPI'?
 bad.plc:5:2: error: unknown instruction \`TIM' [plc-error]
    TIM 3
    ^~~" "$said" "bad.plc"
@@ -45,6 +46,15 @@ test_what_is_no_program_is_refused_by_its_name() {
     echo 'switches: []' >m.machine.yaml
     exits 2 "$RKM04" check m.machine.yaml
     holds "$complained" "m.machine.yaml: expected a program; \`rkm04 test' runs scenarios" "stderr"
+}
+
+test_a_slip_in_a_name_has_the_nearest_as_a_hint() {
+    texts
+    printf '%s\n' DATA 'CLAMP_I BIT 0' DATA_END MODULE_MAIN ' LRD STOPPI' ' LDR STPPI' ' LDR CLAPM_I' ' LDR kxh0' \
+        'MECH_BEGIN OPEN' ' LDR KHX0' 'MECH_END OPEN' ' FL 1,OEPN' ' LDR NOTHING_LIKE_IT' MODULE_MAIN_END >slip.plc
+    exits 1 "$RKM04" check slip.plc
+    same "LDR STOPPI CLAMP_I KHX0 OPEN" "$(sed -n "s/.*hint: did you mean \`\(.*\)'?/\1/p" <<<"$said" | xargs)" "the hints"
+    same 6 "$(grep -c 'error: ' <<<"$said")" "errors"
 }
 
 test_errors_as_json() {
