@@ -137,6 +137,15 @@ double cnc_read_real(const struct cnc_cells *cells, unsigned place)
     return value;
 }
 
+double cnc_no_number(void)
+{
+    const int64_t bits = INT64_C(0x7FF8000000000000);
+    double value;
+
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
 void cnc_write_real(struct cnc_cells *cells, unsigned place, double value)
 {
     int64_t bits;

@@ -161,6 +161,9 @@ static inline void cnc_write_number(struct cnc_cells *cells, unsigned place, enu
     at[7] = (uint8_t)(bits >> 56);
 }
 
+/* What operations of REAL that have no number as their result give: processors differ in theirs. */
+double cnc_no_number(void);
+
 double cnc_read_real(const struct cnc_cells *cells, unsigned place);
 void cnc_write_real(struct cnc_cells *cells, unsigned place, double value);
 

@@ -14,23 +14,31 @@ static void take_program(struct cnc *cnc, const struct cnc_nc_program *program)
         cnc->program_axes |= program->blocks[i].axes;
     cnc->machine.next = 0;
     cnc->machine.block = cnc->machine.selected = CNC_NO_BLOCK;
-    cnc->machine.start = CNC_START_NONE;
     cnc_set(cnc, CNC_BIT_SF_STOP, program != NULL);
+}
+
+/* What speaks against another program or another block to begin with; CNC_OK: nothing. */
+static enum cnc_result find_obstacle(const struct cnc *cnc)
+{
+    if (cnc->machine.phase != CNC_IDLE)
+        return CNC_UNDER_WAY;
+    return cnc->machine.start != CNC_START_NONE ? CNC_STARTING : CNC_OK;
 }
 
 enum cnc_result cnc_load(struct cnc *cnc, const struct cnc_nc_program *program)
 {
-    if (cnc->machine.phase != CNC_IDLE)
-        return CNC_UNDER_WAY;
-    take_program(cnc, program);
-    return CNC_OK;
+    const enum cnc_result why = find_obstacle(cnc);
+    if (why == CNC_OK)
+        take_program(cnc, program);
+    return why;
 }
 
 enum cnc_result cnc_select(struct cnc *cnc, uint32_t block, bool technology)
 {
     struct cnc_machine *machine = &cnc->machine;
-    if (machine->phase != CNC_IDLE)
-        return CNC_UNDER_WAY;
+    const enum cnc_result why = find_obstacle(cnc);
+    if (why != CNC_OK)
+        return why;
     if (cnc->program == NULL || block >= cnc->program->block_count)
         return CNC_NO_SUCH_BLOCK;
     machine->next = machine->selected = block;
@@ -186,6 +194,7 @@ const char *cnc_result_text(enum cnc_result result)
         [CNC_NO_SUCH_BLOCK] = "the NC program has no such block",
         [CNC_NO_AXIS] = "the configuration has no such axis",
         [CNC_MOVES] = "an axis moves, or a block is in its motion or delay: stop it and RESET",
+        [CNC_STARTING] = "a START is under way",
         [CNC_STOPPED] = "a stop came before the start was done",
     };
     return text[result];

@@ -46,12 +46,11 @@ enum cnc_phase { CNC_IDLE, CNC_INIT, CNC_MOVE, CNC_DELAY, CNC_DONE };
 /* What holds a motion, the weakest first (NM9). */
 enum cnc_hold { CNC_HOLD_NONE, CNC_HOLD_STOP, CNC_HOLD_LIMIT, CNC_HOLD_EMERGENCY, CNC_HOLD_ENABLE, CNC_HOLD_ERROR };
 
-/* What a request answers; cnc_result_text() has the words. */
+/* What a request answers; cnc_result_text() has the words. Events and digests have their numbers: new ones come last. */
 enum cnc_result {
     CNC_OK,
     CNC_NO_PROGRAM,   /* no NC program is loaded */
     CNC_UNDER_WAY,    /* a block is under way, or a stop still decelerates */
-    CNC_IN_REFERENCE, /* a reference is under way, its DONE pass with it */
     CNC_MANUAL,       /* manual moves are active */
     CNC_CRITICAL,     /* BZH13 is not 0 */
     CNC_NO_REFERENCE, /* an axis of the program needs a reference */
@@ -61,6 +60,8 @@ enum cnc_result {
     CNC_NO_AXIS,      /* the configuration has no such axis */
     CNC_MOVES,        /* an axis moves, or a block is in its motion or delay */
     CNC_STOPPED,      /* a stop came while START_SUSPEND held the start back */
+    CNC_STARTING,     /* a START is under way */
+    CNC_IN_REFERENCE, /* a reference is under way, its DONE pass with it */
     CNC_RESULTS
 };
 
@@ -230,8 +231,8 @@ void cnc_tick(struct cnc *cnc);
 /* Advance by ticks of 1 us; the T's are the ticks 1000, 2000, ... (NT1). */
 void cnc_advance(struct cnc *cnc, uint64_t ticks);
 
-/* Load another NC program, NULL: none; it begins at its first block. CNC_UNDER_WAY: a block is under way, nothing is changed. The
- * old program is no longer used once this is done. */
+/* Load another NC program, NULL: none; it begins at its first block. CNC_UNDER_WAY, CNC_STARTING: a block or a START is under
+ * way, nothing is changed. The old program is no longer used once this is done. */
 enum cnc_result cnc_load(struct cnc *cnc, const struct cnc_nc_program *program);
 
 /* The panel's START (NE4): begins the program, its next block, or goes on with a stopped one. What speaks against it now is the

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* feed.c: speeds of the path as the cells allow them (NM7, NF1). */
 #include "frame.h"
-#include "wide.h"
 
 struct cnc_override cnc_feed_override(const struct cnc *cnc)
 {
@@ -13,22 +12,22 @@ struct cnc_override cnc_feed_override(const struct cnc *cnc)
                                  (uint32_t)cnc_number(&cnc->cells, CNC_CELL_FEED_OVR_MULTIPLIER, 0)};
 }
 
-/* a * b / divisor, which is below 2^64, rounded down; CNC_SPEED_LIMIT at most. */
-static int64_t scale(uint64_t a, uint64_t b, uint64_t divisor)
-{
-    uint64_t rest;
-    const uint64_t result = wide_divide(wide_product(a, b), divisor, &rest);
-    return result < (uint64_t)CNC_SPEED_LIMIT ? (int64_t)result : CNC_SPEED_LIMIT;
-}
-
 int64_t cnc_feed_speed(int64_t feed, struct cnc_override override, int64_t speed)
 {
     /* 16 384 / 15 u/T a mm/min; 10^15 = 2^15 * 5^15 of millionths and three factors of per mille. 10^12 (F) * 2^31 (speed) *
      * 2^32 (overrides) / divisor is 1.1 * 10^19. */
-    const uint64_t divisor = UINT64_C(30) * 30517578125;
+    const int64_t divisor = INT64_C(30) * 30517578125;
     if (feed <= 0 || speed <= 0)
         return 0;
-    return scale((uint64_t)feed * override.multiplier, (uint64_t)speed * override.percent, divisor);
+    return cnc_scale(feed * override.multiplier, speed * override.percent, divisor);
+}
+
+int64_t cnc_programmed_speed(const struct cnc *cnc, const struct cnc_nc_block *block, struct cnc_override override)
+{
+    const bool threads = block->motion == CNC_MOTION_THREAD;
+    const bool per_revolution = threads || (block->modes & CNC_NC_PER_REVOLUTION) != 0;
+    return cnc_feed_speed(cnc_nc_value(cnc->program, block->feed), threads ? (struct cnc_override){1000, 1000} : override,
+                          per_revolution ? cnc_number(&cnc->cells, CNC_CELL_ACT_SPEED_PM, 0) : 1000);
 }
 
 int64_t cnc_feed_limit(const struct cnc *cnc, bool rapid)
@@ -43,18 +42,10 @@ static int64_t segment_target(const struct cnc *cnc, unsigned k, struct cnc_over
 {
     const struct cnc_segment *segment = &cnc->move.section.segment[k];
     const struct cnc_nc_block *block = &cnc->program->blocks[cnc->move.section.first + k];
-    int64_t target, limit;
-    if (block->motion == CNC_MOTION_RAPID) {
-        target = scale((uint64_t)segment->rapid, (uint64_t)override.percent * override.multiplier, 1000000);
-        limit = cnc_feed_limit(cnc, true);
-    } else {
-        const bool threads = block->motion == CNC_MOTION_THREAD;
-        const bool per_revolution = threads || (block->modes & CNC_NC_PER_REVOLUTION) != 0;
-        target = cnc_feed_speed(cnc_nc_value(cnc->program, block->feed),
-                                threads ? (struct cnc_override){1000, 1000} : override,
-                                per_revolution ? cnc_number(&cnc->cells, CNC_CELL_ACT_SPEED_PM, 0) : 1000);
-        limit = cnc_feed_limit(cnc, false);
-    }
+    const bool is_rapid = block->motion == CNC_MOTION_RAPID;
+    const int64_t limit = cnc_feed_limit(cnc, is_rapid);
+    int64_t target = is_rapid ? cnc_scale(segment->rapid, (int64_t)override.percent * override.multiplier, 1000000)
+                              : cnc_programmed_speed(cnc, block, override);
     target = target < segment->rapid ? target : segment->rapid;
     return target < limit ? target : limit;
 }

@@ -135,6 +135,9 @@ struct cnc_override cnc_feed_override(const struct cnc *cnc);
  * mm/min. */
 int64_t cnc_feed_speed(int64_t feed, struct cnc_override override, int64_t speed);
 
+/* The same of a block with G1 or G33 as it is programmed; the override does not count with G33. */
+int64_t cnc_programmed_speed(const struct cnc *cnc, const struct cnc_nc_block *block, struct cnc_override override);
+
 /* Speeds that the cells allow in all segments of the path (NM7), u/T. */
 void cnc_find_targets(const struct cnc *cnc, int64_t target[CNC_SEGMENTS_MAX]);
 

@@ -2,8 +2,6 @@
 /* Runs PLC programs: registers, sections, mechanisms that wait (NP5, NP6, NP7). */
 #include "plc_code.h"
 
-#include <string.h>
-
 #ifdef __FLT_EVAL_METHOD__
 _Static_assert(__FLT_EVAL_METHOD__ == 0 || __FLT_EVAL_METHOD__ == 1, "REAL is IEEE double: -msse2 -mfpmath=sse on i386");
 #endif
@@ -16,7 +14,6 @@ struct run {
     void *context;
     unsigned part; /* section or mechanism that runs */
     unsigned at;   /* next instruction */
-    unsigned waiting; /* the present one, from 1 */
     bool is_over, has_ended; /* the call; the section with it */
 };
 
@@ -66,15 +63,6 @@ static double read_real(const struct run *run, const struct cnc_operand *operand
 
 /* ---- Numbers --------------------------------------------------------------------------------------------------------- */
 
-/* What is no number has one form: processors differ in theirs. */
-static double unify(double value)
-{
-    const uint64_t none = UINT64_C(0x7FF8000000000000);
-    if (value != value)
-        memcpy(&value, &none, sizeof value);
-    return value;
-}
-
 /* Cut towards 0; what no number of 64 bits is, is the nearest one; what is no number is 0. */
 static int64_t cut_real(double value)
 {
@@ -106,7 +94,8 @@ static void calculate_real(struct run *run, const struct cnc_instruction *instru
         *real = value == 0 ? 0 : *real / value;
         break;
     }
-    *real = unify(*real);
+    if (*real != *real)
+        *real = cnc_no_number();
     run->plc->dr = cut_real(*real);
 }
 
@@ -221,9 +210,9 @@ static void work_bit(struct run *run, const struct cnc_instruction *instruction)
 /* ---- The way through the code ---------------------------------------------------------------------------------------- */
 
 /* The part that runs waits; its next call begins at its place. */
-static void wait_here(struct run *run)
+static void wait_here(struct run *run, const struct cnc_instruction *instruction)
 {
-    run->plc->waits[run->part] = (uint16_t)run->waiting;
+    run->plc->waits[run->part] = (uint16_t)(instruction - run->program->code + 1);
     if (run->part < CNC_PLC_SECTIONS) {
         run->is_over = true;
         return;
@@ -273,7 +262,7 @@ static void wait_with_limit(struct run *run, const struct cnc_instruction *instr
     }
     cnc_write_number(run->cells, counter->place, type, is_late ? 0 : calls);
     if (!run->plc->rlo && !is_late) {
-        wait_here(run);
+        wait_here(run, instruction);
         return;
     }
     run->at += 2;
@@ -295,12 +284,12 @@ static void walk(struct run *run, const struct cnc_instruction *instruction)
     case CODE_JL1: run->at = rlo ? (unsigned)operand->value : run->at; break;
     case CODE_EX:
         run->plc->place[run->part] = (uint16_t)run->at;
-        wait_here(run);
+        wait_here(run, instruction);
         break;
     case CODE_EX0:
     case CODE_EX1:
         if (rlo == (instruction->code == CODE_EX1))
-            wait_here(run);
+            wait_here(run, instruction);
         else
             run->plc->place[run->part] = (uint16_t)run->at;
         break;
@@ -321,7 +310,7 @@ static void halt(struct run *run)
 bool cnc_pass_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, struct cnc_cells *cells,
                   enum cnc_plc_section section, const struct cnc_plc_surroundings *surroundings, void *context)
 {
-    struct run run = {plc, program, cells, surroundings, context, section, plc->place[section], 0, false, false};
+    struct run run = {plc, program, cells, surroundings, context, section, plc->place[section], false, false};
     uint32_t left = CNC_PLC_CALL_MAX;
 
     if (!program->parts[section].is_there)
@@ -330,7 +319,6 @@ bool cnc_pass_plc(struct cnc_plc *plc, const struct cnc_plc_program *program, st
         return false;
     for (; !run.is_over && left > 0; left--) {
         const struct cnc_instruction *instruction = &program->code[run.at++];
-        run.waiting = run.at;
         if (instruction->code <= CODE_LICENCE)
             work_bit(&run, instruction);
         else if (instruction->code <= CODE_SPINDLE_AXIS)

@@ -15,10 +15,7 @@ static uint32_t find_block(const struct cnc *cnc, unsigned n)
 /* Does a block end the prepared queue behind it (NJ3)? */
 static bool changes_position(const struct cnc *cnc, const struct cnc_nc_block *block)
 {
-    for (unsigned group = 1; group <= CNC_M_GROUPS; group++)
-        if (block->m[group] != CNC_NC_NO_M && (cnc->config->m[block->m[group]].attributes & CNC_M_CHANGE_POS) != 0)
-            return true;
-    return false;
+    return cnc_has_attribute(cnc->config, block, CNC_M_CHANGE_POS);
 }
 
 unsigned cnc_queue_length(const struct cnc *cnc)
@@ -81,9 +78,7 @@ static double criterial_feed(const struct cnc *cnc, uint32_t index)
         return 0;
     for (uint32_t k = index - section->first - 1; k <= index - section->first; k++) {
         const struct cnc_nc_block *block = &cnc->program->blocks[section->first + k];
-        const bool per_revolution = block->motion == CNC_MOTION_THREAD || (block->modes & CNC_NC_PER_REVOLUTION) != 0;
-        const int64_t feed = cnc_feed_speed(cnc_nc_value(cnc->program, block->feed), (struct cnc_override){1000, 1000},
-                                            per_revolution ? cnc_number(&cnc->cells, CNC_CELL_ACT_SPEED_PM, 0) : 1000);
+        const int64_t feed = cnc_programmed_speed(cnc, block, (struct cnc_override){1000, 1000});
         lowest = feed < lowest ? feed : lowest;
         lowest = section->segment[k].rapid < lowest ? section->segment[k].rapid : lowest;
     }

@@ -7,15 +7,15 @@
 
 #define LIMBS 8u /* of 32 bits */
 
-int64_t cnc_project(int64_t value, int64_t length, int64_t way)
+int64_t cnc_scale(int64_t value, int64_t by, int64_t divisor)
 {
-    const struct wide product = wide_product((uint64_t)value, (uint64_t)length);
-    const uint64_t divisor = size_of(way);
-    if (product.high >= divisor)
+    const struct wide product = wide_product((uint64_t)value, (uint64_t)by);
+    const uint64_t size = size_of(divisor);
+    if (product.high >= size)
         return CNC_SPEED_LIMIT;
     uint64_t rest;
-    const uint64_t along = wide_divide(product, divisor, &rest);
-    return along < (uint64_t)CNC_SPEED_LIMIT ? (int64_t)along : CNC_SPEED_LIMIT;
+    const uint64_t result = wide_divide(product, size, &rest);
+    return result < (uint64_t)CNC_SPEED_LIMIT ? (int64_t)result : CNC_SPEED_LIMIT;
 }
 
 /* The smallest of the axes' values along the path. */
@@ -24,7 +24,7 @@ static int64_t project_all(const struct cnc_segment *segment, const int64_t valu
     int64_t least = CNC_SPEED_LIMIT;
     for (unsigned i = 0; i < CNC_AXES; i++)
         if (segment->way[i] != 0) {
-            const int64_t along = cnc_project(value[i], segment->length, segment->way[i]);
+            const int64_t along = cnc_scale(value[i], segment->length, segment->way[i]);
             least = along < least ? along : least;
         }
     return least;
@@ -88,7 +88,7 @@ bool cnc_segment_build(struct cnc_segment *segment, const struct cnc_config *con
 
 /* ---- Sections ------------------------------------------------------------------------------------------------------ */
 
-static bool has_attribute(const struct cnc_config *config, const struct cnc_nc_block *block, unsigned attribute)
+bool cnc_has_attribute(const struct cnc_config *config, const struct cnc_nc_block *block, unsigned attribute)
 {
     for (unsigned group = 1; group <= CNC_M_GROUPS; group++)
         if (block->m[group] != CNC_NC_NO_M && (config->m[block->m[group]].attributes & attribute) != 0)
@@ -165,8 +165,8 @@ static bool is_straight(const struct cnc_segment *a, const struct cnc_segment *b
 static bool goes_on(const struct cnc_config *config, const struct cnc_nc_block *block, const struct cnc_segment *way,
                     const struct cnc_segment *next)
 {
-    return block->m[1] == CNC_NC_NO_M && !has_attribute(config, block, CNC_M_BREAK_CONT_END) && is_continuous(block + 1) &&
-           !has_attribute(config, block + 1, CNC_M_BREAK_CONT) && is_straight(way, next);
+    return block->m[1] == CNC_NC_NO_M && !cnc_has_attribute(config, block, CNC_M_BREAK_CONT_END) && is_continuous(block + 1) &&
+           !cnc_has_attribute(config, block + 1, CNC_M_BREAK_CONT) && is_straight(way, next);
 }
 
 /* The sets of the whole: the smallest acceleration, the greatest n. */

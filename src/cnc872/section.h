@@ -63,7 +63,11 @@ double cnc_segment_change(const struct cnc_segment *segment, const struct cnc_co
 bool cnc_segment_build(struct cnc_segment *segment, const struct cnc_config *config, const struct cnc_nc_program *program,
                        uint32_t block, const int64_t from[CNC_AXES]);
 
-/* value * length / way, rounded down (NM5): what an axis' limit is along the path. At most CNC_SPEED_LIMIT. */
-int64_t cnc_project(int64_t value, int64_t length, int64_t way);
+/* Has an M function of the block this attribute, CNC_M_BREAK_CONT ...? */
+bool cnc_has_attribute(const struct cnc_config *config, const struct cnc_nc_block *block, unsigned attribute);
+
+/* value * by / |divisor|, rounded down, at most CNC_SPEED_LIMIT: what an axis' limit is along a path of length `by` on which its
+ * way is `divisor` (NM5). value, by: 0 or more; divisor: not 0. */
+int64_t cnc_scale(int64_t value, int64_t by, int64_t divisor);
 
 #endif

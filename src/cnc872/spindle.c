@@ -14,13 +14,11 @@ static int64_t scale(int64_t a, int64_t b, int64_t divisor)
     return (int64_t)wide_divide(wide_product((uint64_t)a, (uint64_t)b), (uint64_t)divisor, &rest);
 }
 
-/* Highest speed of the gear that is in, 1/1000 rev/min. */
-static int64_t find_gear_speed(const struct cnc *cnc)
+/* The gear that is in, or `gear` if it is not 0; NULL: the configuration does not have it. */
+static const struct cnc_gear *find_limits(const struct cnc *cnc, int64_t gear)
 {
-    const int64_t gear = cnc_number(&cnc->cells, CNC_CELL_SPINDLE_GEAR_ACT_1, 0);
-    if (gear < 1 || gear > (int64_t)CNC_GEARS || !cnc->config->gear[gear].is_configured)
-        return CNC_GEAR_SPEED_STANDARD;
-    return cnc->config->gear[gear].max_speed;
+    gear = gear != 0 ? gear : cnc_number(&cnc->cells, CNC_CELL_SPINDLE_GEAR_ACT_1, 0);
+    return gear <= (int64_t)CNC_GEARS && cnc->config->gear[gear].is_configured ? &cnc->config->gear[gear] : NULL;
 }
 
 /* ---- M40 to M44 (NF5) --------------------------------------------------------------------------------------------------- */
@@ -75,10 +73,9 @@ bool cnc_gear_fits(const struct cnc *cnc, const struct cnc_nc_block *block)
     const unsigned asked = find_gear(cnc, block);
     if ((block->modes & CNC_NC_CONSTANT_CUT) != 0 || speed == 0 || !(block->has_speed || asked != 0) || has_external_gear(cnc))
         return true;
-    const int64_t gear = asked != 0 ? asked : cnc_number(&cnc->cells, CNC_CELL_SPINDLE_GEAR_ACT_1, 0);
-    if (gear < 1 || gear > (int64_t)CNC_GEARS || !cnc->config->gear[gear].is_configured)
+    const struct cnc_gear *limits = find_limits(cnc, asked);
+    if (limits == NULL)
         return true;
-    const struct cnc_gear *limits = &cnc->config->gear[gear];
     return speed >= (int64_t)limits->min_speed * 1000 && speed <= (int64_t)limits->max_speed * 1000;
 }
 
@@ -141,7 +138,8 @@ static void put_actual_speed(struct cnc *cnc, int64_t pm, int64_t pt)
 
 void cnc_put_spindle(struct cnc *cnc)
 {
-    const int64_t most = find_gear_speed(cnc), override = find_override(cnc);
+    const struct cnc_gear *gear = find_limits(cnc, 0);
+    const int64_t most = gear != NULL ? gear->max_speed : CNC_GEAR_SPEED_STANDARD, override = find_override(cnc);
     /* Either way 1/1000 rev/min are rounded down once, after the overrides. */
     const int64_t speed = cnc->spindle.constant_cut ? scale(find_cut_speed(cnc), override, 1000000)
                                                     : scale(cnc->spindle.speed, override, 1000000000);

@@ -160,12 +160,12 @@ END_TEST
 
 START_TEST(limits_along_a_path)
 {
-    ck_assert_int_eq(cnc_project(100, 500, 300), 166);
-    ck_assert_int_eq(cnc_project(100, 500, -300), 166);
-    ck_assert_int_eq(cnc_project(1000000000, INT64_C(100000000000000), 1), CNC_SPEED_LIMIT);
-    ck_assert_int_eq(cnc_project(1092266666, 1000000, 1), CNC_SPEED_LIMIT);
-    ck_assert_int_eq(cnc_project(CNC_SPEED_LIMIT - 1, 1, 1), CNC_SPEED_LIMIT - 1);
-    ck_assert_int_eq(cnc_project(CNC_SPEED_LIMIT + 1, 1, 1), CNC_SPEED_LIMIT);
+    ck_assert_int_eq(cnc_scale(100, 500, 300), 166);
+    ck_assert_int_eq(cnc_scale(100, 500, -300), 166);
+    ck_assert_int_eq(cnc_scale(1000000000, INT64_C(100000000000000), 1), CNC_SPEED_LIMIT);
+    ck_assert_int_eq(cnc_scale(1092266666, 1000000, 1), CNC_SPEED_LIMIT);
+    ck_assert_int_eq(cnc_scale(CNC_SPEED_LIMIT - 1, 1, 1), CNC_SPEED_LIMIT - 1);
+    ck_assert_int_eq(cnc_scale(CNC_SPEED_LIMIT + 1, 1, 1), CNC_SPEED_LIMIT);
 }
 END_TEST
 

@@ -42,6 +42,21 @@ START_TEST(a_stop_drops_a_start_that_waits)
 }
 END_TEST
 
+/* A START that waits has been given for this program and this block: another one comes once a stop has dropped it. */
+START_TEST(a_start_that_waits_keeps_its_program)
+{
+    rig_begin_plc(NULL, "G1 X1 F1000\nX2", "PROC_BEGIN _ON_EVENT\n FL 1,START_SUSPEND\nPROC_END _ON_EVENT\n");
+    ck_assert_int_eq(cnc_load(&cnc, NULL), CNC_STARTING);
+    run_to(10);
+    ck_assert_int_eq(cnc_load(&cnc, NULL), CNC_STARTING);
+    ck_assert_int_eq(cnc_select(&cnc, 1, true), CNC_STARTING);
+    cnc_stop(&cnc);
+    run_to(11);
+    ck_assert_int_eq(cnc_select(&cnc, 1, true), CNC_OK);
+    ck_assert_int_eq(cnc_load(&cnc, NULL), CNC_OK);
+}
+END_TEST
+
 START_TEST(a_start_that_waits_is_disabled)
 {
     rig_begin_plc(NULL, "G1 X1 F1000", "PROC_BEGIN _ON_EVENT\n FL 1,START_SUSPEND\nPROC_END _ON_EVENT\n");
@@ -230,6 +245,7 @@ static Suite *program_suite(void)
     TCase *all = tcase_create("all");
     tcase_add_test(all, W39_start_suspend);
     tcase_add_test(all, a_stop_drops_a_start_that_waits);
+    tcase_add_test(all, a_start_that_waits_keeps_its_program);
     tcase_add_test(all, a_start_that_waits_is_disabled);
     tcase_add_test(all, W35_a_spindle_axis_that_the_program_positions);
     tcase_add_test(all, MODULE_INIT_before_the_first_T);
