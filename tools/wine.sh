@@ -21,8 +21,12 @@ make_wine() {
     [[ -d $1/dosdevices ]]
 }
 
-# end_wine PREFIX: end all that runs there.
+# end_wine PREFIX: end all that runs there, and remove the folder of its server's socket, which Wine leaves behind.
 end_wine() {
+    local folder=
+    [[ -f $1/wineserver ]] && folder=${TMPDIR:-/tmp}/$(<"$1/wineserver")
     WINEPREFIX=$1 timeout 60 "$wineserver" -k 2>/dev/null
     WINEPREFIX=$1 timeout 60 "$wineserver" -w 2>/dev/null
+    [[ $folder == */wine-?????? ]] && rm -rf "$folder"
+    return 0
 }

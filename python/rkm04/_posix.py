@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import shlex
 import socket
+import struct
 import subprocess
 import sys
 from typing import TYPE_CHECKING, Any, Callable, List, NoReturn, Optional, Sequence
@@ -27,7 +28,7 @@ def run_in_place(path: str, arguments: List[str]) -> NoReturn:
     os.execv(path, arguments)
 
 
-CONNECT_S = 30.0
+CONNECT_S = 30
 """s of real time for an emulator that does not accept."""
 
 quote = shlex.quote
@@ -42,7 +43,7 @@ def command_with(name: str, value: str, command: str) -> str:
 def connect_socket(path: str) -> socket.socket:
     """A Unix socket. A path of one has at most 107 bytes: a longer one is reached through its folder."""
     made, folder = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM), -1
-    made.settimeout(CONNECT_S)
+    made.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("@ll", CONNECT_S, 0))  # waits while many connect
     try:
         if len(os.fsencode(path)) > 107:
             folder = os.open(os.path.dirname(path), os.O_PATH)

@@ -118,7 +118,9 @@ void bus_files_flush(struct bus_files *files)
     }
     if (files->record && record_failed(files->record) != 0) {
         check_written(options->record, record_end(files->record));
+        output_file_close(files->record_stream); /* what is wrong with it is reported */
         files->record = NULL;
+        files->record_stream = NULL;
         files->failed = true;
     }
 }

@@ -9,6 +9,7 @@
 
 #include "device.h"
 #include "file/file.h"
+#include "text/text.h"
 
 #define ROWS_MAX 96u     /* of --help */
 #define NAME_SIZE 96u    /* bytes of a name in --help */
@@ -143,6 +144,12 @@ static char *read_text(const char *path, size_t most, size_t *length, char why[D
     return NULL;
 }
 
+/* What file_guess() finds in the files of an option; NULL: nothing. */
+static const char *expected_of(const char *option)
+{
+    return strcmp(option, "config") == 0 ? "a configuration" : strcmp(option, "plc") == 0 ? "a PLC program" : NULL;
+}
+
 static void read_file(struct device_arguments *arguments, unsigned at, const struct device_option *option,
                       const struct argp_state *state)
 {
@@ -152,8 +159,10 @@ static void read_file(struct device_arguments *arguments, unsigned at, const str
     arguments->text[at] = read_text(path, device_option_file_max(option), &length, why);
     if (!arguments->text[at])
         argp_failure(state, 1, 0, "cannot read %s: %s", path, why);
-    else if (!option->read_file(&arguments->config, path, arguments->text[at], length, stderr))
+    else if (!option->read_file(&arguments->config, path, arguments->text[at], length, stderr)) {
+        file_guess_note(state->name, path, expected_of(option->name), arguments->text[at], length);
         exit(argp_err_exit_status);
+    }
 }
 
 /* The options of a kind, for messages: "rate, program". */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "check_cnc.h"
 #include "check_print.h"
 #include "options/options.h"
 
@@ -47,6 +48,8 @@ bool tool_file_read(struct tool_file *file, const char *program)
     file->source.length = file->text.length;
     if (wrong != NULL)
         fprintf(stderr, "%s: cannot read %s: %s\n", program, file->source.name, wrong);
+    else if (!check_cnc_takes(file->source.name))
+        file_guess_note(program, file->source.name, NULL, file->source.text, file->source.length);
     return wrong == NULL;
 }
 

@@ -144,6 +144,9 @@ bool replay_next_line(struct replay *replay)
         return false;
     replay->lines.json = json_loadb(replay->lines.length > 0 ? replay->lines.line : "", replay->lines.length,
                                     JSON_REJECT_DUPLICATES, &error);
+    if (replay->lines.count == 1 && (replay->lines.length == 0 || replay->lines.line[0] != '{'))
+        return wrong_at(replay, 1, "expected a recording, which begins with {\"rkm04_record\":1,: `rkm04 serve --record FILE' "
+                                   "makes one");
     if (!replay->lines.json)
         return wrong_at(replay, error.position > 0 ? (size_t)error.position : 1u, "expected a JSON object: %s", error.text);
     if (!json_is_object(replay->lines.json))

@@ -81,6 +81,8 @@ static bool read_file(const struct exec_inputs *inputs, struct exec_file *file, 
         fprintf(stderr, "%s: cannot read %s: %s\n", inputs->command, file->name, wrong);
     else if (!output_file_spare(path))
         fprintf(stderr, "%s: %s\n", inputs->command, wrong = strerror(ENOMEM));
+    else
+        file_guess_note(inputs->command, file->name, NULL, file->text.text, file->text.length);
     return wrong == NULL;
 }
 

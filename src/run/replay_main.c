@@ -252,6 +252,8 @@ static bool report_text(struct replay *replay, const char *name, enum replay_end
     struct replay_counts counts = replay_counts(replay);
     if (replay_note(replay))
         fprintf(stderr, "rkm04 replay: %s: %s\n", name, replay_note(replay));
+    if (end == REPLAY_WRONG && !replay_sim(replay))
+        file_guess_note_path("rkm04 replay", name);
     if (end == REPLAY_WRONG)
         return fprintf(stderr, "%s\n", replay_text(replay)) > 0;
     if (end != REPLAY_SAME && end != REPLAY_DIFFERENT)
@@ -290,6 +292,12 @@ static int run_replay(struct replay *replay, FILE *in, const char *name, const s
     return end == REPLAY_WRONG ? STATUS_USAGE : end == REPLAY_SAME && ok ? STATUS_SUCCESS : STATUS_FAILURE;
 }
 
+static bool is_folder(FILE *in)
+{
+    struct stat status;
+    return fstat(fileno(in), &status) == 0 && S_ISDIR(status.st_mode);
+}
+
 int replay_main(int argc, char **argv)
 {
     static const struct argp argp = {option_table, parse_option, "FILE", doc, NULL, NULL, NULL};
@@ -298,8 +306,8 @@ int replay_main(int argc, char **argv)
     bool is_stdin = strcmp(options.path, "-") == 0;
     const char *name = is_stdin ? "<stdin>" : options.path;
     FILE *in = is_stdin ? stdin : fopen(options.path, "re");
-    if (!in) {
-        fprintf(stderr, "rkm04 replay: cannot read %s: %s\n", options.path, strerror(errno));
+    if (!in || is_folder(in)) {
+        fprintf(stderr, "rkm04 replay: cannot read %s: %s\n", options.path, strerror(in ? EISDIR : errno));
         return STATUS_FAILURE;
     }
     if (!output_file_spare(options.path)) {

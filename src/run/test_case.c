@@ -98,6 +98,8 @@ int test_case_read(struct test_case *test, const char *path, const struct device
         return STATUS_FAILURE;
     }
     test->scenario = scenario_read(test->file, text, length, &files, stderr);
+    if (test->scenario == NULL)
+        file_guess_note("rkm04 test", test->file, "a scenario", text, length);
     free(text);
     return test->scenario != NULL ? STATUS_SUCCESS : STATUS_USAGE;
 }

@@ -5,6 +5,7 @@
  *     number, digits, time_value    numbers and times as people write them: "1.5s", "20ms"
  *     program_text, diagnose        program texts of a unit, and what a unit would refuse in them
  *     error_lines    errors of a text, up to a limit
+ *     file_guess     what a file seems to be, for users who have mixed files up
  *     readings       names and values of the readings of the manual
  *     nearest        the known name next to a wrong one, for messages
  *     trace_names    endings of names of traces, for help texts
@@ -20,6 +21,7 @@
 #include "digits.h"
 #include "error_lines.h"
 #include "exit_status.h"
+#include "file_guess.h"
 #include "invisible.h"
 #include "nearest.h"
 #include "number.h"

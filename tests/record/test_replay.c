@@ -41,8 +41,8 @@ START_TEST(a_file_that_is_no_record_is_named_with_line_column_and_what_was_expec
         const char *text, *expected;
     } cases[] = {
         {"", "x:1:1: expected a recording, which begins with {\"rkm04_record\":1,"},
-        {"hello\n", "x:1:5: expected a JSON object: "},
-        {"[]\n", "x:1:1: expected a JSON object, as in "},
+        {"hello\n", "x:1:1: expected a recording, which begins with {\"rkm04_record\":1,: `rkm04 serve --record FILE' makes"},
+        {"[]\n", "x:1:1: expected a recording, which begins with"},
         {"{}\n", "x:1:1: expected a recording, which begins with"},
         {"{\"rkm04_record\":2}\n", "x:1:17: expected \"rkm04_record\": 1"},
         {"{\"rkm04_record\":1}\n", "x:1:1: expected \"nodes\", a list of 1 to 16 addresses from 1 to 16"},

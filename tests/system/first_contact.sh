@@ -202,6 +202,40 @@ test_a_slip_in_any_name_is_answered_with_the_nearest() {
     [[ $complained != *mean* ]] || fail "one is proposed for a right name: $complained"
 }
 
+# says COMMAND...: it is refused, and the last argument is named as what it seems to be.
+says() {
+    local guess=$1
+    shift
+    "$RKM04" "$@" >/dev/null 2>"$folder/complained" </dev/null && fail "rkm04 $* takes it"
+    grep -qF "note: ${*: -1} seems to be $guess" "$folder/complained" || fail "rkm04 $*: expected that it seems to be $guess"
+}
+
+test_a_file_of_another_kind_is_named() {
+    cd "$folder" || fail "cd"
+    printf 'S100 V5000 A5000 F100 R' >a.rks
+    printf 'name: x\nsteps:\n  - {advance: 1s}\n' >scenario.txt
+    printf '<?xml version="1.0"?>\n<ChannelConfig/>\n' >mill.xml
+    printf '; c\nMODULE_MAIN\nMODULE_MAIN_END\n' >mill.plc
+    exits 0 "$RKM04" exec --trace pulses.csv a.rks
+    exits 0 "$RKM04" exec --trace pulses.vcd a.rks
+    printf '{"rkm04_record":1,"nodes":[1]}\n' >bus.record
+    cp pulses.csv csv.txt
+    head -c 1000 /dev/zero >flash.bin
+    for command in check fmt explain estimate exec plot; do
+        says "a scenario, for \`rkm04 test'" "$command" scenario.txt
+        says "a VCD trace" "$command" pulses.vcd
+    done
+    says "a recording, for \`rkm04 replay'" test bus.record
+    says "a trace as CSV, for \`rkm04 plot'" replay csv.txt
+    says "a scenario, for \`rkm04 test'" replay scenario.txt
+    says "no text" replay flash.bin
+    says "a PLC program of a CNC872" exec --device cnc872 --config mill.plc
+    says "a configuration of a CNC872" exec --device cnc872 --plc mill.xml
+    says "a configuration of a CNC872" exec --device cnc872 --nc mill.xml
+    exits 0 "$RKM04" check a.rks mill.xml mill.plc
+    same "" "$complained" "what fits"
+}
+
 test_help_is_a_word_too() {
     local whole
     exits 0 "$RKM04" serve --help

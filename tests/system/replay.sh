@@ -115,7 +115,10 @@ test_a_snapshot_of_later_takes_a_clock_that_goes_along() {
 test_what_is_no_record_is_named_with_its_place() {
     printf 'hello\n' >"$folder/x.record"
     exits 2 "$RKM04" replay "$folder/x.record"
-    holds "$complained" "$folder/x.record:1:5: expected a JSON object" "the complaint"
+    holds "$complained" "$folder/x.record:1:1: expected a recording, which begins with" "the complaint"
+    holds "$complained" "\`rkm04 serve --record FILE' makes one" "the complaint"
+    exits 1 "$RKM04" replay "$folder"
+    holds "$complained" "cannot read $folder: Is a directory" "the complaint"
     : >"$folder/empty.record"
     exits 2 "$RKM04" replay "$folder/empty.record"
     holds "$complained" "$folder/empty.record:1:1: expected a record" "the complaint"
