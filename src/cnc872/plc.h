@@ -39,14 +39,14 @@ struct cnc_plc_part {
     bool is_there;
 };
 
-/* A translated program: about 2 MB, constant after the translation. */
+/* A translated program: about 2 MB, constant after the translation. What lies behind code[length - 1] is not used then. */
 struct cnc_plc_program {
-    struct cnc_instruction code[CNC_PLC_CODE_MAX];
     struct cnc_plc_part parts[CNC_PLC_PLACES]; /* sections, then mechanisms */
     struct cnc_names names;                    /* for operands of the control socket, too */
     uint32_t length;                           /* instructions */
     uint16_t mechanisms;
     uint16_t memory, bits; /* how many bytes and bits of its own it has */
+    struct cnc_instruction code[CNC_PLC_CODE_MAX];
 };
 
 /* The state of a running program: plain memory. */

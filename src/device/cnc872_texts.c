@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The files that a CNC872 is made from (section 12 to 14). Each different text is read once and kept to the end of the process:
  * units, snapshots and recordings hold it by its address. */
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,10 +119,10 @@ static bool read_config(struct cnc_text *text, struct error_log *log)
     return config && cnc_config_read(text->text, text->length, config, report, log);
 }
 
-/* Give back what lies behind `count` elements, and one. Returns where they are now. */
-static void *shrink(void *memory, size_t count, size_t size)
+/* Give back what lies behind `size` bytes. Returns where they are now. */
+static void *shrink(void *memory, size_t size)
 {
-    void *less = realloc(memory, (count + 1u) * size);
+    void *less = realloc(memory, size);
     if (!less)
         return memory;
     return less;
@@ -140,16 +141,25 @@ static bool read_program(struct cnc_text *text, struct error_log *log)
     if (!program->blocks || !program->values || !cnc_nc_read(text->text, text->length, config, program, report, log))
         return false;
     /* The rooms were those that the text could have needed. */
-    program->blocks = shrink(program->blocks, program->block_count, sizeof *program->blocks);
-    program->values = shrink(program->values, program->value_count, sizeof *program->values);
+    program->blocks = shrink(program->blocks, (program->block_count + (size_t)1) * sizeof *program->blocks);
+    program->values = shrink(program->values, (program->value_count + (size_t)1) * sizeof *program->values);
     return true;
+}
+
+/* Bytes of a PLC program as far as it is used. */
+static size_t plc_size(const struct cnc_plc_program *plc)
+{
+    return offsetof(struct cnc_plc_program, code) + plc->length * sizeof plc->code[0];
 }
 
 static bool read_plc(struct cnc_text *text, struct error_log *log)
 {
     struct cnc_plc_program *plc = malloc(sizeof *plc);
     text->plc = plc;
-    return plc && cnc_translate_plc(text->text, text->length, plc, report, log);
+    if (!plc || !cnc_translate_plc(text->text, text->length, plc, report, log))
+        return false;
+    text->plc = shrink(plc, plc_size(plc));
+    return true;
 }
 
 static void free_text(struct cnc_text *text)
@@ -184,7 +194,7 @@ static struct cnc_text *copy_text(enum cnc_text_kind kind, const struct cnc_text
 /* Bytes that a text takes, with what is made from it. */
 static size_t size_of(const struct cnc_text *text)
 {
-    size_t size = sizeof *text + text->length + (text->config ? sizeof *text->config : 0) + (text->plc ? sizeof *text->plc : 0);
+    size_t size = sizeof *text + text->length + (text->config ? sizeof *text->config : 0) + (text->plc ? plc_size(text->plc) : 0);
     if (text->program)
         size += text->program->block_count * sizeof *text->program->blocks +
                 text->program->value_count * sizeof *text->program->values;

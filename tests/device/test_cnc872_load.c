@@ -243,6 +243,18 @@ START_TEST(a_scenario_loads_a_plc_program)
 }
 END_TEST
 
+/* An author who tries all day. */
+START_TEST(NL4_hundreds_of_programs_are_loaded)
+{
+    for (unsigned k = 0; k < 400; k++) {
+        char params[100];
+        snprintf(params, sizeof params, "{\"plc\": \"DATA\\nA DW %u\\nDATA_END\"}", k);
+        fake_rig_do(&rig, "cnc.load", params);
+    }
+    expect_result("cnc.get", "{\"cells\": [\"A\"]}", "{\"A\":399}");
+}
+END_TEST
+
 static Suite *cnc872_load_suite(void)
 {
     Suite *suite = suite_create("cnc872_load");
@@ -257,6 +269,7 @@ static Suite *cnc872_load_suite(void)
     tcase_add_test(tests, watched_cells_follow_their_names);
     tcase_add_test(tests, a_loaded_program_is_in_recordings_and_snapshots_and_outlives_power);
     tcase_add_test(tests, a_scenario_loads_a_plc_program);
+    tcase_add_test(tests, NL4_hundreds_of_programs_are_loaded);
     suite_add_tcase(suite, tests);
     return suite;
 }
