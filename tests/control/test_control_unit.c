@@ -265,7 +265,7 @@ static const struct {
     {"{\"di\":{\"3\":1},\"mask\":1}", "-32602 expected either di, an object as in {\"3\": 1, \"08\": 0}, or mask, a number"},
     {"{}", "-32602 expected either di, an object as in {\"3\": 1, \"08\": 0}, or mask, a number"},
     {"{\"di\":{\"3\":1},\"unit\":2}", "-32602 unit: there is no such unit: expected one of 1"},
-    {"{\"dI\":{\"3\":1}}", "-32602 unknown parameter `dI': expected di, mask, unit"},
+    {"{\"dI\":{\"3\":1}}", "-32602 unknown parameter `dI': expected di, mask, unit; did you mean `di'?"},
 };
 
 START_TEST(U2_inputs_are_set_one_or_several)
