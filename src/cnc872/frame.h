@@ -162,7 +162,8 @@ void cnc_request_single(struct cnc *cnc, unsigned axis, bool is_requested);
 /* It is over. */
 void cnc_end_single(struct cnc *cnc, unsigned axis);
 
-/* One T of it towards a target speed; by_emergency: with AccelerationEmergency. Returns the speed, 0 while BZH13 is not 0. */
+/* One T of it towards a target speed, FeedRT at most (NM6); by_emergency: with AccelerationEmergency. Returns the speed, 0 while
+ * BZH13 is not 0. */
 int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_emergency);
 
 /* Does one of these axes move by itself? */

@@ -27,12 +27,13 @@ void cnc_end_single(struct cnc *cnc, unsigned axis)
 int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_emergency)
 {
     struct cnc_axis *moved = &cnc->axis[axis];
-    const int64_t hold = by_emergency ? cnc->config->axis[axis].acceleration[CNC_SET_EMERGENCY] : 0;
+    const struct cnc_axis_config *config = &cnc->config->axis[axis];
+    const int64_t hold = by_emergency ? config->acceleration[CNC_SET_EMERGENCY] : 0, most = cnc_speed_of(config->feed_rapid);
     if (cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) != 0) {
         cnc_path_halt(&moved->path, NULL);
         return 0;
     }
-    const int64_t v = cnc_path_step(&moved->path, NULL, target, hold, NULL);
+    const int64_t v = cnc_path_step(&moved->path, NULL, target < most ? target : most, hold, NULL);
     moved->position += moved->direction * v;
     if (v > 0)
         cnc_set(cnc, CNC_BIT_SM_POxPI + axis, moved->direction < 0);
@@ -76,9 +77,7 @@ static int64_t find_speed(const struct cnc *cnc, unsigned axis, bool rapid)
     if (has_own && (!rapid || own != 0))
         feed = own;
     int64_t speed = cnc_feed_speed(feed * 1000, cnc_feed_override(cnc), 1000);
-    const int64_t most = cnc_speed_of(config->feed_rapid), slow = cnc_speed_of(config->feed_slow);
-    const int64_t limit = cnc_feed_limit(cnc, rapid);
-    speed = speed < most ? speed : most;
+    const int64_t slow = cnc_speed_of(config->feed_slow), limit = cnc_feed_limit(cnc, rapid);
     speed = speed < limit ? speed : limit;
     if ((cnc_is_set(cnc, CNC_BIT_ZPx0 + axis) || cnc_is_set(cnc, CNC_BIT_ZPx1 + axis)) && slow < speed)
         speed = slow;

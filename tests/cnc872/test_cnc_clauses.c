@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cnc872/frame.h"
 #include "cnc_rig.h"
 
 static void start_in(uint64_t turn)
@@ -455,6 +456,20 @@ START_TEST(NE3_the_slowest_manual_move_is_a_motion)
 }
 END_TEST
 
+/* No axis goes faster than its FeedRT, whatever the other feeds are (8.1.19, NM6): 65 u/T is 0.06 mm/min. */
+START_TEST(NM6_FeedRT_limits_references_and_spindle_axes)
+{
+    rig_power("<ChannelConfig><Axis Name=\"X\" FeedRT=\"0.06\"/>"
+              "<Axis Name=\"4\" Rotary=\"1\" FeedRT=\"0.06\"/></ChannelConfig>", NULL);
+    stand_at(3, MM);
+    cnc_position_spindle(&cnc, 3);
+    set_cell("HOMING_START_REQ", 0, 1);
+    run_to(101);
+    ck_assert_int_eq(at(101).x, -100 * 65);
+    ck_assert_int_eq(cnc.axis[3].position, MM + 101 * 65);
+}
+END_TEST
+
 static Suite *clauses_suite(void)
 {
     Suite *suite = suite_create("cnc_clauses");
@@ -485,6 +500,7 @@ static Suite *clauses_suite(void)
     tcase_add_test(clauses, NQ1_fields_of_other_values);
     tcase_add_test(clauses, NA4_after_an_emergency_stop_an_axis_moves_again);
     tcase_add_test(clauses, NE3_the_slowest_manual_move_is_a_motion);
+    tcase_add_test(clauses, NM6_FeedRT_limits_references_and_spindle_axes);
     suite_add_tcase(suite, clauses);
     return suite;
 }

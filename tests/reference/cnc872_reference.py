@@ -91,7 +91,7 @@ class References:
         elif one.state == BACK:
             feed = values["feed_reference"] if slow or one.kr else values["feed"]
         normal, _, steep = map(to_acceleration, values["acceleration"])
-        speed = min(one.speed + normal, max(0 if held else to_speed(feed), one.speed - normal, 0))
+        speed = min(one.speed + normal, max(0 if held else to_speed(min(feed, values["feed_rapid"])), one.speed - normal, 0))
         if held or limit or one.emergency:
             speed = min(speed, max(0, one.speed - steep))
         one.speed = 0 if cells["BZH13"] else speed
