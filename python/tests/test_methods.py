@@ -26,6 +26,7 @@ COUNTERPARTS = {
     "wait": rkm04.Bus.wait,
     "subscribe": rkm04.Bus.events,
     "unsubscribe": rkm04.Events.close,
+    "collected": rkm04.Bus.call,
     "trace.start": rkm04.Bus.trace,
     "trace.stop": rkm04.Bus.trace,
     "plant.get": Plant.state,
@@ -41,6 +42,7 @@ COUNTERPARTS = {
     "restore": rkm04.Bus.restore,
     "shutdown": rkm04.Bus.close,
 }
+CONNECTIONS = {"collected"}  # of a control socket alone, for clients that cannot take every event
 DEVICES = {"pmc": "pmc-2hs"}  # whose methods begin so: rkm04.Bus.call
 
 
@@ -57,7 +59,7 @@ def test_every_method_has_its_counterpart():
     assert sorted(name for name in documented() if device_of(name) == "rkm04") == sorted(COUNTERPARTS)
 
 
-@pytest.mark.parametrize("method", documented())
+@pytest.mark.parametrize("method", [method for method in documented() if method not in CONNECTIONS])
 def test_every_method_is_known_in_this_process(method):
     with rkm04.Bus(device=device_of(method)) as bus:
         try:

@@ -205,18 +205,29 @@ def test_an_emulator_that_was_asked_to_end_has_ended(tmp_path):
         assert os.listdir(tmp_path) == []
 
 
+def until_answered(request):
+    """(number of tries, answer): of an emulator that may be too late on a busy machine."""
+    for tries in range(1, 100):
+        try:
+            return tries, request()
+        except rkm04.Error:
+            pass
+    raise AssertionError("no answer in time, of a hundred")
+
+
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="Windows stops no process")
 def test_an_emulator_that_is_stopped_is_waited_for_within_the_timeout(stoppable):
     control, process = stoppable
     none = pytest.raises(rkm04.Error, match=r"within 0.3 s of real time, found none")
-    with rkm04.connect(control, timeout=0.3) as bus:
+    with until_answered(lambda: rkm04.connect(control, timeout=0.3))[1] as bus:
         process.send_signal(signal.SIGSTOP)
         for request in [lambda: bus.call("advance", ticks=1_000_000), lambda: bus.now,
                         lambda: rkm04.connect(control, timeout=0.3)]:
             with none:
                 request()
         process.send_signal(signal.SIGCONT)
-        assert bus.advance("1s") == 2_000_000  # late answers are not taken for those of later requests
+        tries, now = until_answered(lambda: bus.advance("1s"))
+        assert now == (1 + tries) * 1_000_000  # late answers are not taken for those of later requests
         process.send_signal(signal.SIGSTOP)
         with none:
             bus.plant.set("\n" * 900_000)
