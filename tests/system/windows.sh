@@ -200,16 +200,13 @@ test_rkmctl_talks_to_a_unit_over_TCP_and_a_COM_port() {
     done
 }
 
-test_rkmctl_reports_a_port_that_is_not_there_and_what_it_does_not_have() {
+test_rkmctl_reports_a_port_that_is_not_there() {
     begin
     for port in COM77 tcp:127.0.0.1:1; do
         ctl_exe version >ctl.out 2>ctl.err
         same 1 $? "exit status at $port"
         holds "$(<ctl.err)" "$port" "the message"
     done
-    wine_in "$prefix" "${RKM04_EXE%/*}/rkmctl.exe" window >ctl.out 2>ctl.err
-    same 2 $? "exit status of window"
-    holds "$(<ctl.err)" "docs/WINDOWS.md" "the message"
 }
 
 run_cases "$@"
