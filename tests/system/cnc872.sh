@@ -39,6 +39,17 @@ test_NU1_the_part_passes_its_scenario() {
     holds "$said" "pass " "the report"
 }
 
+# With another number of the alarm the scenario fails.
+test_NU1_the_shaft_passes_its_scenario_on_the_lathe() {
+    exits 0 "$RKM04" check "$example/lathe/lathe.xml" "$example/lathe/lathe.plc"
+    exits 0 "$RKM04" test "$example/lathe/shaft.yaml"
+    holds "$said" "pass " "the report"
+    cp "$example"/lathe/* "$folder"
+    sed -i 's/WAITED,2000,LATE_TAIL,22h/WAITED,2000,LATE_TAIL,23h/' "$folder/lathe.plc"
+    exits 3 "$RKM04" test --no-records "$folder/shaft.yaml"
+    holds "$said" "PLC_ERROR" "the report of another alarm"
+}
+
 # cnc WORD...: rkmctl cnc; its answer is in $said.
 cnc() {
     exits 0 "$RKMCTL" -c "$folder/control" cnc "$@"

@@ -1,0 +1,15 @@
+(SPDX-License-Identifier: MIT)
+(a shaft, clamped between chuck and tailstock)
+M41 S500 M3 T3
+G0 X40 Z100
+M25
+G1 Z50 F300
+X45
+G0 X100 Z300
+T5
+G96 S120 L2500 M42
+G0 X35 Z101
+G1 Z60 F250
+G97 S800 M5
+M26
+G0 X100 Z350 M30
