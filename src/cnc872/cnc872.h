@@ -58,8 +58,8 @@ enum cnc_result {
     CNC_DISABLED,     /* START_DISABLE is 1 */
     CNC_NO_SUCH_BLOCK,
     CNC_NO_AXIS,      /* the configuration has no such axis */
-    CNC_MOVES,        /* an axis moves, or a block is in its motion or delay */
     CNC_STOPPED,      /* a stop came while START_SUSPEND held the start back */
+    CNC_MOVES,        /* an axis moves, or a block is in its motion or delay */
     CNC_STARTING,     /* a START is under way */
     CNC_IN_REFERENCE, /* a reference is under way, its DONE pass with it */
     CNC_RESULTS
