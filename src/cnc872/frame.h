@@ -162,8 +162,11 @@ void cnc_request_single(struct cnc *cnc, unsigned axis, bool is_requested);
 /* It is over. */
 void cnc_end_single(struct cnc *cnc, unsigned axis);
 
+/* Single motions come so far from 0, in u (70 000 million km): differences of positions have 64 bits. */
+#define CNC_REACH (INT64_C(1) << 62)
+
 /* One T of it towards a target speed, FeedRT at most (NM6); by_emergency: with AccelerationEmergency. Returns the speed, 0 while
- * BZH13 is not 0. */
+ * BZH13 is not 0 and at CNC_REACH. */
 int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_emergency);
 
 /* Does one of these axes move by itself? */

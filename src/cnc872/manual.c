@@ -29,7 +29,8 @@ int64_t cnc_step_single(struct cnc *cnc, unsigned axis, int64_t target, bool by_
     struct cnc_axis *moved = &cnc->axis[axis];
     const struct cnc_axis_config *config = &cnc->config->axis[axis];
     const int64_t hold = by_emergency ? config->acceleration[CNC_SET_EMERGENCY] : 0, most = cnc_speed_of(config->feed_rapid);
-    if (cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) != 0) {
+    const bool is_far = moved->direction * moved->position >= CNC_REACH;
+    if (is_far || cnc_number(&cnc->cells, CNC_CELL_BZH13, 0) != 0) {
         cnc_path_halt(&moved->path, NULL);
         return 0;
     }

@@ -22,7 +22,9 @@ static const char *mechanism_name(const struct cnc_plc_program *plc, const struc
 
 static const char *part_name(const struct cnc_plc_program *plc, unsigned part)
 {
-    return part < CNC_PLC_SECTIONS ? section_names[part] : mechanism_name(plc, &plc->code[plc->parts[part].end].operand);
+    if (part < CNC_PLC_SECTIONS)
+        return section_names[part];
+    return mechanism_name(plc, &plc->code[plc->parts[part].end].operand);
 }
 
 /* Sections and mechanisms that wait: [{name, line}]. */

@@ -51,11 +51,13 @@ static bool has_line(const char *bytes, size_t length, const char *text)
 const char *file_guess(const char *bytes, size_t length)
 {
     length = length < LOOKED_AT ? length : LOOKED_AT;
+    if (length == 0)
+        return NULL;
     for (size_t i = 0; i < sizeof guesses / sizeof guesses[0]; i++)
         if ((guesses[i].begins == NULL || begins_with(bytes, length, guesses[i].begins)) &&
             (guesses[i].line == NULL || has_line(bytes, length, guesses[i].line)))
             return guesses[i].what;
-    return length > 0 && memchr(bytes, 0, length) != NULL ? "no text" : NULL;
+    return memchr(bytes, 0, length) != NULL ? "no text" : NULL;
 }
 
 void file_guess_note(const char *program, const char *name, const char *expected, const char *bytes, size_t length)

@@ -37,6 +37,28 @@ static void drive_w17(uint64_t turn)
     set_bit("KHX0", cnc.axis[0].actual >= 6 * MM);
 }
 
+START_TEST(na2_an_endless_move_ends_before_positions_have_no_place)
+{
+    static const struct {
+        const char *key;
+        int way;
+    } moves[] = {{"EXM_X0", 1}, {"EXM_X1", -1}};
+    for (size_t i = 0; i < sizeof moves / sizeof moves[0]; i++) {
+        power_manual(NULL);
+        cnc.axis[0].position = moves[i].way * (INT64_MAX / 2 - 40 * MM);
+        set_bit(moves[i].key, true);
+        run_to(60000);
+        const int64_t end = cnc.axis[0].position;
+        ck_assert_int_gt(moves[i].way * end, INT64_MAX / 2 - 40 * MM);
+        ck_assert_int_le(moves[i].way * end, INT64_MAX / 2 + MM);
+        set_bit(moves[i].key, false);
+        set_bit(moves[1 - i].key, true);
+        run_to(61000); /* and it comes back */
+        ck_assert_int_lt(moves[i].way * cnc.axis[0].position, moves[i].way * end);
+    }
+}
+END_TEST
+
 START_TEST(w17_limit_switches)
 {
     rig_begin("G1 X10 F1000");
@@ -342,6 +364,7 @@ int main(void)
     tcase_add_test(all, na3_speed);
     tcase_add_test(all, na1_not_while_a_block_is_under_way);
     tcase_add_test(all, na5_a_restart_goes_straight_to_the_target);
+    tcase_add_test(all, na2_an_endless_move_ends_before_positions_have_no_place);
     tcase_add_test(all, w34_software_limit);
     tcase_add_test(all, w34_a_manual_move_leaves_a_software_limit);
     tcase_add_test(all, ns5_a_critical_error_stops_at_once);
