@@ -37,8 +37,7 @@ void cnc_put_time(struct cnc *cnc)
     }
     cnc_write_number(&cnc->cells, cnc_cell_place(CNC_CELL_FILETIME_INFO), CNC_QWRD,
                      FILETIME_2000 + (int64_t)cnc->turn * 10000);
-    if (ms == 0 || cnc_read_number(&cnc->cells, cnc_cell_place(CNC_CELL_SYST_DATE_INFO), CNC_WORD) == 0) /* at power-up */
-        put_date(cnc, cnc->turn / MS_PER_DAY);
+    put_date(cnc, cnc->turn / MS_PER_DAY);
 }
 
 /* ---- Switches of the machine (NJ4) -------------------------------------------------------------------------------------- */
