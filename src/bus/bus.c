@@ -102,7 +102,8 @@ static bool open_flash(struct bus *bus)
             return false;
         }
         unit->flash_path = strdup(path);
-        if (!flash_file_open(&unit->flash, unit->flash_path, device->flash_blocks, device->flash_block_size))
+        if (!flash_file_open(&unit->flash, unit->flash_path, device->flash_name, device->flash_blocks,
+                             device->flash_block_size))
             return false;
         unit->open = true;
     }

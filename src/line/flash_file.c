@@ -48,7 +48,7 @@ static bool make_image(struct flash_file *flash)
         return true;
     }
     bool full = written >= 0 && written < (ssize_t)size_of(flash);
-    log_error("cannot write the flash image %s: %s", flash->path, full ? "the disk is full" : strerror(errno));
+    log_error("cannot write the %s image %s: %s", flash->name, flash->path, full ? "the disk is full" : strerror(errno));
     if (ftruncate(flash->fd, 0) != 0)
         log_error("%s is incomplete: remove it", flash->path);
     return false;
@@ -71,7 +71,7 @@ static bool sync_image(const struct flash_file *flash)
 {
     if (fdatasync(flash->fd) == 0)
         return true;
-    log_error("cannot write the flash image %s: %s", flash->path, strerror(errno));
+    log_error("cannot write the %s image %s: %s", flash->name, flash->path, strerror(errno));
     return false;
 }
 
@@ -81,17 +81,17 @@ static bool check_image(struct flash_file *flash)
     struct stat found;
     char *why;
     if (fstat(flash->fd, &found) != 0 || !S_ISREG(found.st_mode)) {
-        log_error("--flash: %s is not a file: expected a flash image of %u bytes, or a new name", flash->path,
-                  size_of(flash));
+        log_error("--%s: %s is not a file: expected a %s image of %u bytes, or a new name", flash->name, flash->path,
+                  flash->name, size_of(flash));
         return false;
     }
     if (!output_file_claim(flash->fd, flash->path, &why)) {
-        log_error("cannot use the flash image %s: %s", flash->path, why ? why : strerror(ENOMEM));
+        log_error("cannot use the %s image %s: %s", flash->name, flash->path, why ? why : strerror(ENOMEM));
         free(why);
         return false;
     }
     if (flock(flash->fd, LOCK_EX | LOCK_NB) != 0) {
-        log_error("another emulator uses the flash image %s: end it, or choose another --flash", flash->path);
+        log_error("another emulator uses the %s image %s: end it, or choose another --%s", flash->name, flash->path, flash->name);
         return false;
     }
     /* The size under the lock: it may have been made just now. */
@@ -99,8 +99,8 @@ static bool check_image(struct flash_file *flash)
         return make_image(flash);
     if (found.st_size == (off_t)size_of(flash))
         return sync_image(flash);
-    log_error("%s has %lld bytes and is no flash image: expected %u bytes, or a new name", flash->path,
-              (long long)found.st_size, size_of(flash));
+    log_error("%s has %lld bytes and is no %s image: expected %u bytes, or a new name", flash->path,
+              (long long)found.st_size, flash->name, size_of(flash));
     return false;
 }
 
@@ -122,13 +122,14 @@ static int open_or_make(const char *path, bool *made)
     return fd < 0 && errno == EEXIST ? open(path, flags) : fd; /* another emulator has made it just now */
 }
 
-bool flash_file_open(struct flash_file *flash, const char *path, unsigned blocks, unsigned block_size)
+bool flash_file_open(struct flash_file *flash, const char *path, const char *name, unsigned blocks, unsigned block_size)
 {
-    *flash = (struct flash_file){.path = path, .blocks = blocks, .block_size = block_size, .unsynced = -1};
+    *flash = (struct flash_file){
+        .path = path, .name = name ? name : "flash", .blocks = blocks, .block_size = block_size, .unsynced = -1};
     bool made;
     flash->fd = open_or_make(path, &made);
     if (flash->fd < 0) {
-        log_error("cannot open the flash image %s: %s", path, strerror(errno));
+        log_error("cannot open the %s image %s: %s", flash->name, path, strerror(errno));
         return false;
     }
     if (check_image(flash)) {
@@ -161,7 +162,7 @@ bool flash_file_sync(struct flash_file *flash)
         return true;
     /* The system may now take for written what is not: it is reported only once. */
     flash->lost[block] = true;
-    log_error("cannot write the flash image %s: %s", flash->path, strerror(errno));
+    log_error("cannot write the %s image %s: %s", flash->name, flash->path, strerror(errno));
     return false;
 }
 
@@ -172,7 +173,7 @@ static int write_at(struct flash_file *flash, unsigned block, unsigned offset, c
     ssize_t written = pwrite(flash->fd, data, length, block * flash->block_size + offset);
     if (written == (ssize_t)length)
         return 0;
-    log_error("cannot write the flash image %s: %s", flash->path, written >= 0 ? "the disk is full" : strerror(errno));
+    log_error("cannot write the %s image %s: %s", flash->name, flash->path, written >= 0 ? "the disk is full" : strerror(errno));
     return 1;
 }
 
@@ -186,7 +187,7 @@ int flash_file_read(struct flash_file *flash, unsigned block, unsigned offset, v
         return 1;
     if (pread(flash->fd, data, length, block * flash->block_size + offset) == (ssize_t)length)
         return 0;
-    log_error("cannot read the flash image %s", flash->path);
+    log_error("cannot read the %s image %s", flash->name, flash->path);
     return 1;
 }
 

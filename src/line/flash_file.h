@@ -16,6 +16,7 @@
 
 struct flash_file {
     const char *path;
+    const char *name; /* of what lies there, for messages; also that of the option */
     unsigned blocks, block_size;
     int fd;           /* -1: not open */
     int unsynced;     /* block with writes that may not be on the disk yet; -1: none */
@@ -24,9 +25,9 @@ struct flash_file {
 };
 
 /* Open the image `path` of so many blocks, at most DEVICE_FLASH_BLOCKS_MAX of at most DEVICE_FLASH_BLOCK_MAX bytes, making an
- * erased one if there is none, for this process alone. `path` must stay. Failures are reported. Returns false if it did not
- * work. */
-bool flash_file_open(struct flash_file *flash, const char *path, unsigned blocks, unsigned block_size);
+ * erased one if there is none, for this process alone. `path` and `name` (NULL: "flash") must stay. Failures are reported.
+ * Returns false if it did not work. */
+bool flash_file_open(struct flash_file *flash, const char *path, const char *name, unsigned blocks, unsigned block_size);
 
 /* See that all is on the disk. Failures are reported. Returns false if it did not work: the block that was written cannot be
  * read or programmed then until it has been erased. */

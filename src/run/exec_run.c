@@ -55,7 +55,8 @@ bool exec_run_begin(struct exec_run *run)
     struct sim_config config = {.nodes = {.count = 1, .node = {1}}, .device = run->device, .unit = run->config};
     if (run->flash_path) {
         config.flash = (struct sim_flash){flash_read, flash_erase, flash_program, run};
-        if (!flash_file_open(&run->flash, run->flash_path, run->device->flash_blocks, run->device->flash_block_size)) {
+        if (!flash_file_open(&run->flash, run->flash_path, run->device->flash_name, run->device->flash_blocks,
+                             run->device->flash_block_size)) {
             run->flash_path = NULL;
             return false;
         }

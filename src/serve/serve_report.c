@@ -52,7 +52,7 @@ static void log_flash(struct bus *bus)
     for (unsigned at = 0; at < sim_units(&bus->sim); at++) {
         const char *name = bus->sim.unit[at].name;
         if (bus->unit[at].flash_path)
-            bus_log(&bus->log, "unit %s: flash image %s", name, bus->unit[at].flash_path);
+            bus_log(&bus->log, "unit %s: %s image %s", name, bus->unit[at].flash.name, bus->unit[at].flash_path);
         for (unsigned motor = 1; motor <= sim_device(&bus->sim)->axes; motor++) {
             const struct device_axis state = sim_axis(&bus->sim, at + 1u, motor);
             if (state.slot == DEVICE_SLOT_LOADED)

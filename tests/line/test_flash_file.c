@@ -52,7 +52,7 @@ static int port_program(void *context, unsigned block, unsigned offset, const vo
 
 static bool open_image(void)
 {
-    return flash_file_open(&file, path, RKM04_FLASH_BLOCKS, RKM04_FLASH_BLOCK_SIZE);
+    return flash_file_open(&file, path, NULL, RKM04_FLASH_BLOCKS, RKM04_FLASH_BLOCK_SIZE);
 }
 
 static void get_image(uint8_t image[FLASH_FILE_SIZE])

@@ -421,7 +421,12 @@ test_NO3_a_backup_that_cannot_be_is_refused() {
     exits 2 "$RKM04" exec --backup "$folder/b" "$folder/a.nc"
     holds "$complained" "the device rkm04 has no backup memory" "exec"
     exits 1 "$RKM04" exec --device cnc872 --backup "$folder/no/b" --nc "$folder/a.nc"
-    holds "$complained" "rkm04 exec: cannot open the flash image $folder/no/b" "exec in a folder that is not there"
+    holds "$complained" "rkm04 exec: cannot open the backup image $folder/no/b" "exec in a folder that is not there"
+    cp "$folder/a.nc" "$folder/b.nc"
+    exits 1 "$RKM04" exec --device cnc872 --backup "$folder/b.nc" --nc "$folder/a.nc"
+    holds "$complained" "b.nc has 12 bytes and is no backup image" "exec with another file"
+    exits 1 "$RKM04" serve --device cnc872 --backup "$folder"
+    holds "$complained" "backup image" "serve with a folder"
     exits 2 "$RKM04" exec --device cnc872
     holds "$complained" "no program given" "exec without a program"
     printf 'device: cnc872\nbackup: a.nc\nsteps:\n  - advance: 1ms\n' >"$folder/a.yaml"
