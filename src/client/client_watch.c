@@ -3,6 +3,7 @@
 
 #include <err.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -11,7 +12,8 @@
 #include "client_port.h"
 #include "client_screen.h"
 
-#define PERIOD_US 100000 /* from frame to frame */
+#define PERIOD_US 100000  /* from frame to frame */
+#define SILENCE_US 2000000 /* a state that is older is not taken for the present one */
 #define TEXT_COLUMNS 100 /* of --once */
 #define KEYS "q quit"
 #define KEYS_UNITS "q quit   Tab, Shift-Tab: next unit, the one before"
@@ -23,6 +25,7 @@ struct watching {
     json_t *state;   /* of that; NULL: not yet */
     bool asked;      /* for the state, not yet answered */
     bool plain;      /* nothing but ASCII */
+    uint64_t since;  /* when it was */
     uint64_t next;   /* when to ask again */
 };
 
@@ -84,10 +87,19 @@ static enum exit_status show_once(struct watching *w)
 
 /* ---- Live ------------------------------------------------------------------------------------------------------------- */
 
+/* Has the emulator been asked and not answered for so long that it is to be seen? */
+static bool is_silent(const struct watching *w)
+{
+    return w->asked && client_now() - w->since >= SILENCE_US;
+}
+
 static void draw(const struct watching *w)
 {
     static struct panel panel;
-    struct panel_view view = make_view(w, json_array_size(w->units) > 1 ? KEYS_UNITS : KEYS);
+    char silence[80];
+    const char *keys = json_array_size(w->units) > 1 ? KEYS_UNITS : KEYS;
+    snprintf(silence, sizeof silence, "no answer for %u s   %s", (unsigned)((client_now() - w->since) / 1000000u), keys);
+    struct panel_view view = make_view(w, is_silent(w) ? silence : keys);
     int rows, columns;
     client_screen_size(&rows, &columns);
     client_panel_draw(&panel, &view, rows, columns);
@@ -115,7 +127,7 @@ static bool handle_keys(struct watching *w)
         if (key == CLIENT_KEY_BEFORE)
             select_unit(w, json_array_size(w->units) - 1);
     }
-    if (client_screen_size(&rows, &columns))
+    if (client_screen_size(&rows, &columns) || is_silent(w))
         draw(w);
     return true;
 }
@@ -139,7 +151,8 @@ static enum client_rpc_outcome update_state(struct watching *w, json_t **json)
         if (!client_rpc_send(rpc, "state", state_params(w)))
             return CLIENT_RPC_LOST;
         w->asked = true;
-        w->next = client_now() + PERIOD_US;
+        w->since = client_now();
+        w->next = w->since + PERIOD_US;
     }
     return CLIENT_RPC_NOTHING;
 }

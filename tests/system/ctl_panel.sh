@@ -48,6 +48,14 @@ test_the_picture_is_updated_while_it_is_shown() {
     panel see:moving see:dwell see:moving "see: 1   ●" "see: 1   ○" keys:q status:0
 }
 
+test_it_is_seen_when_the_emulator_does_not_answer() {
+    emulator
+    panel "see:idle" "run:kill -STOP $started" "see:no answer for" "see: s   q quit" "see:idle" \
+        "run:kill -CONT $started" "gone:no answer" see:quit keys:q status:0
+    panel "see:idle" "run:kill -STOP $started" "see:no answer for" keys:q status:0
+    kill -CONT "$started"
+}
+
 test_an_LED_blinks_by_the_clock_of_the_line() {
     emulator
     exits 0 ctl bus set 'F10 Y B10 Y R'
