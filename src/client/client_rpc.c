@@ -365,15 +365,16 @@ enum client_rpc_outcome client_rpc_call(struct client_rpc *rpc, const char *meth
 
 bool client_rpc_ends(struct client_rpc *rpc, int timeout_ms)
 {
-    uint64_t end = client_now() + (uint64_t)timeout_ms * 1000u;
+    struct patience patience = begin_patience(timeout_ms);
     char rest[1024];
     for (;;) {
-        uint64_t now = client_now();
-        bool more = client_socket_wait(rpc->fd, now < end ? (int)((end - now + 999u) / 1000u) : 0);
-        if (!more && now >= end)
+        const int left = next_wait(rpc, &patience);
+        if (client_socket_wait(rpc->fd, left)) {
+            ssize_t length = client_socket_read(rpc->fd, rest, sizeof rest);
+            if (length == 0 || (length < 0 && errno != EINTR && errno != EAGAIN))
+                return true;
+        }
+        if (left == 0)
             return false;
-        ssize_t length = more ? client_socket_read(rpc->fd, rest, sizeof rest) : 1;
-        if (length == 0 || (length < 0 && errno != EINTR))
-            return true;
     }
 }
