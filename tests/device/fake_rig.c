@@ -128,6 +128,15 @@ json_t *fake_rig_command(struct fake_rig *rig, const char *method, const char *p
     return result;
 }
 
+void fake_rig_expect_result(struct fake_rig *rig, const char *method, const char *params, const char *wanted)
+{
+    json_t *result = fake_rig_command(rig, method, params);
+    char *text = json_dumps(result, JSON_COMPACT);
+    ck_assert_msg(strstr(text, wanted) != NULL, "%s %s: %s, expected %s", method, params, text, wanted);
+    free(text);
+    json_decref(result);
+}
+
 void fake_rig_do(struct fake_rig *rig, const char *method, const char *params)
 {
     json_decref(fake_rig_command(rig, method, params));

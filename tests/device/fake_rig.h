@@ -35,6 +35,9 @@ const char *fake_rig_seen(struct fake_rig *rig);
 
 /* A command, params as JSON. Returns its result, a new reference; or fails. */
 json_t *fake_rig_command(struct fake_rig *rig, const char *method, const char *params);
+
+/* The result of a command, as text without spaces, has `wanted` in it. */
+void fake_rig_expect_result(struct fake_rig *rig, const char *method, const char *params, const char *wanted);
 void fake_rig_do(struct fake_rig *rig, const char *method, const char *params);
 
 /* A command that is refused with a message that has `expected` in it. */

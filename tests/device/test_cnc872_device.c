@@ -22,14 +22,9 @@ static void end(void)
     fake_rig_end(&rig);
 }
 
-/* The result of a command as text. */
 static void expect_result(const char *method, const char *params, const char *wanted)
 {
-    json_t *result = fake_rig_command(&rig, method, params);
-    char *text = json_dumps(result, JSON_COMPACT);
-    ck_assert_msg(strstr(text, wanted) != NULL, "%s %s: %s, expected %s", method, params, text, wanted);
-    free(text);
-    json_decref(result);
+    fake_rig_expect_result(&rig, method, params, wanted);
 }
 
 /* Advance to the end of T number k. */
